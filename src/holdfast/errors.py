@@ -1,0 +1,18 @@
+"""The errors holdfast raises on purpose.
+
+Every message is one plain sentence that names the place and the remedy, because the command line prints it as it is.
+"""
+
+__all__ = ["Cancelled", "HoldfastError", "InputError"]
+
+
+class HoldfastError(Exception):
+    """Base of every error holdfast raises on purpose."""
+
+
+class InputError(HoldfastError, ValueError):
+    """A file, a flag or a value given by the user cannot be used; the command line exits with code 2."""
+
+
+class Cancelled(HoldfastError):
+    """The user stopped the work; what was found so far travels with the exception's cause, if anywhere."""

@@ -1,0 +1,194 @@
+"""Closed loops of segments: building them from vertices, their direction, and what is refused.
+
+Glossary
+--------
+vertices : (N, 3) rows x, y, bulge; segment k runs from vertex k to vertex k + 1, the last one back to vertex 0.
+joint : the common end of two neighbouring segments of a loop.
+place : words that tell a user where something is, such as ``loop 0, segment 3 (LINE 2F)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import hypot, sin
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from holdfast.errors import InputError
+from holdfast.geometry.intersect import bounding_box, common_points
+from holdfast.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
+from holdfast.kernels.distance import is_inside
+
+__all__ = [
+    "checked_vertices",
+    "encloses",
+    "loop_segments",
+    "refuse_meeting_loops",
+    "refuse_self_crossing",
+    "reversed_vertices",
+    "signed_area",
+]
+
+Place = Callable[[int], str]
+
+# Segments shorter than this, in mm, have no direction worth the name.
+SHORTEST = 1e-7
+# Points nearer than this, in mm, touch.
+TOUCHING = 1e-7
+
+
+def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
+    """Copy the vertices of one loop after checking that each number and each segment can be used.
+
+    Parameters
+    ----------
+    vertices : (N, 3) array-like of x, y in mm and bulge.
+    loop : the loop's place, for messages.
+    place : the place of segment k, for messages.
+
+    Returns
+    -------
+    (N, 3) array, read-only.
+
+    Raises
+    ------
+    InputError
+        For a wrong shape, NaN or infinite numbers, zero-length segments, or too few segments to enclose anything.
+    """
+    try:
+        array = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
+        ) from error
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InputError(f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex.")
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if bad.size:
+        raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it.")
+    if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
+        raise InputError(
+            f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."
+        )
+    steps = np.hypot(*(np.roll(array[:, :2], -1, axis=0) - array[:, :2]).T)
+    short = np.flatnonzero(steps < SHORTEST)
+    if short.size:
+        k = int(short[0])
+        raise InputError(
+            f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled vertex "
+            "(a full circle is drawn as two halves)."
+        )
+    array.setflags(write=False)
+    return array
+
+
+def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
+    """Segments of a loop given by (N, 3) vertices."""
+    points = [(float(x), float(y)) for x, y in vertices[:, :2]]
+    ends = points[1:] + points[:1]
+    return tuple(segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True))
+
+
+def signed_area(segments: Sequence[Segment]) -> float:
+    """Area in mm² enclosed by a loop, positive when it runs counter-clockwise (shoelace plus circular segments)."""
+    area = 0.0
+    for segment in segments:
+        (x0, y0), (x1, y1) = segment.start, segment.end
+        area += (x0 * y1 - x1 * y0) / 2
+        if isinstance(segment, Arc):
+            sweep = 2 * segment.half_sweep
+            area += segment.sign * segment.radius**2 * (sweep - sin(sweep)) / 2
+    return area
+
+
+def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same loop run the other way round, from the same first vertex."""
+    out = np.empty_like(vertices)
+    order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
+    out[:, :2] = vertices[order, :2]
+    out[:, 2] = -vertices[np.roll(order, -1), 2]
+    out.setflags(write=False)
+    return out
+
+
+def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
+    """Pairs (i, j) whose (N, 4) bounding boxes come within the touching distance."""
+    for i, (x0, y0, x1, y1) in enumerate(boxes_a):
+        apart = (
+            (boxes_b[:, 0] > x1 + TOUCHING)
+            | (boxes_b[:, 2] < x0 - TOUCHING)
+            | (boxes_b[:, 1] > y1 + TOUCHING)
+            | (boxes_b[:, 3] < y0 - TOUCHING)
+        )
+        for j in np.flatnonzero(~apart):
+            yield i, int(j)
+
+
+def boxes(segments: Sequence[Segment]) -> NDArray[np.float64]:
+    """Bounding boxes of segments, shape (N, 4)."""
+    return np.array([bounding_box(segment) for segment in segments])
+
+
+def refuse_self_crossing(segments: Sequence[Segment], place: Place) -> None:
+    """Refuse a loop that crosses or touches itself anywhere but at its joints.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point.
+    """
+    count = len(segments)
+    box = boxes(segments)
+    # Tangent neighbours meet again within rounding of their joint; that is no crossing.
+    blur = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
+    for i, j in near_pairs(box, box):
+        if j <= i:
+            continue
+        joints: list[Point] = []
+        if j == i + 1:
+            joints.append(segments[i].end)
+        if (j + 1) % count == i:
+            joints.append(segments[j].end)
+        for x, y in common_points(segments[i], segments[j], TOUCHING):
+            if all(hypot(x - px, y - py) > blur for px, py in joints):
+                raise InputError(
+                    f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet itself only "
+                    "where one segment ends and the next begins."
+                )
+
+
+def refuse_meeting_loops(a: Sequence[Segment], b: Sequence[Segment], place_a: Place, place_b: Place) -> None:
+    """Refuse two loops that cross or touch.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point.
+    """
+    for i, j in near_pairs(boxes(a), boxes(b)):
+        for x, y in common_points(a[i], b[j], TOUCHING):
+            raise InputError(
+                f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart from each other."
+            )
+
+
+def encloses(outer: Sequence[Segment], inner: Sequence[Segment]) -> bool:
+    """Whether a counter-clockwise loop has another loop, which does not meet it, in its inside."""
+    x, y = inner[0].start
+    return bool(is_inside(x, y, segment_rows(outer)))
+
+
+def same_carrier(a: Segment, b: Segment) -> bool:
+    """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense.
+
+    Directions agree within 1e-9 (sum of the components' differences), places and radii within 1e-7 mm.
+    """
+    if isinstance(a, Line) and isinstance(b, Line):
+        (tx, ty), (ux, uy) = a.tangent, b.tangent
+        dx, dy = b.start[0] - a.start[0], b.start[1] - a.start[1]
+        return abs(tx - ux) + abs(ty - uy) < 1e-9 and abs(dx * ty - dy * tx) < 1e-7
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
+        return apart < 1e-7 and abs(a.radius - b.radius) < 1e-7 and a.sign == b.sign
+    return False

@@ -1,0 +1,196 @@
+"""Line and arc segments of a generalized polygon, with material on their left.
+
+Glossary
+--------
+parameter : position along a segment measured from its middle; millimetres on a line, radians on an arc.
+normal : unit vector pointing away from the material (to the right of a line's direction, away from the centre of a
+    convex arc, towards the centre of a concave one).
+convex arc : an arc run through counter-clockwise, so that the material is on the centre's side; its ``sign`` is +1.
+row : the eight numbers that describe a segment to the compiled kernels, see :func:`segment_rows`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan, atan2, cos, hypot, pi, sin, tau
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+__all__ = ["LINE", "ARC", "ROW_LENGTH", "Arc", "Line", "Point", "Segment", "segment_from_bulge", "segment_rows"]
+
+Point = tuple[float, float]
+
+LINE = 0.0
+ARC = 1.0
+ROW_LENGTH = 8
+
+
+@frozen
+class Line:
+    """A straight segment.
+
+    Parameters
+    ----------
+    start, end : (x, y) in mm; they differ.
+    """
+
+    start: Point
+    end: Point
+
+    @property
+    def length(self) -> float:
+        """Length in mm."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    @property
+    def half_extent(self) -> float:
+        """Largest parameter: half the length, in mm."""
+        return self.length / 2
+
+    @property
+    def middle(self) -> Point:
+        """The point of parameter 0."""
+        return ((self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2)
+
+    @property
+    def tangent(self) -> Point:
+        """Unit vector from start to end."""
+        length = self.length
+        return ((self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length)
+
+    def at(self, parameter: float) -> Point:
+        """Point at a parameter in mm."""
+        (x, y), (tx, ty) = self.middle, self.tangent
+        return (x + parameter * tx, y + parameter * ty)
+
+    def normal(self, parameter: float = 0.0) -> Point:
+        """Outward unit normal (the same everywhere)."""
+        tx, ty = self.tangent
+        return (ty, -tx)
+
+    def parameter(self, point: Point) -> float:
+        """Parameter in mm of the foot of a point on the carrying line."""
+        (x, y), (tx, ty) = self.middle, self.tangent
+        return (point[0] - x) * tx + (point[1] - y) * ty
+
+    def row(self) -> tuple[float, ...]:
+        """The segment as a kernel row."""
+        return (LINE, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0)
+
+    def part(self, low: float, high: float) -> Line:
+        """The piece between two parameters in mm."""
+        return Line(self.at(low), self.at(high))
+
+
+@frozen
+class Arc:
+    """A circular arc, or a full circle.
+
+    Parameters
+    ----------
+    center : (x, y) in mm.
+    radius : in mm, positive.
+    mid_angle : direction from the centre to the arc's middle, in radians.
+    half_sweep : half the angle covered, in radians, in (0, pi]; pi is a full circle.
+    sign : +1 for a convex arc (run counter-clockwise), -1 for a concave one (run clockwise).
+    """
+
+    center: Point
+    radius: float
+    mid_angle: float
+    half_sweep: float
+    sign: float
+
+    @property
+    def length(self) -> float:
+        """Length in mm."""
+        return 2 * self.half_sweep * self.radius
+
+    @property
+    def half_extent(self) -> float:
+        """Largest parameter: half the sweep, in radians."""
+        return self.half_sweep
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the arc is a whole circle."""
+        return self.half_sweep >= pi
+
+    @property
+    def start(self) -> Point:
+        """First point in running direction."""
+        return self.at(-self.sign * self.half_sweep)
+
+    @property
+    def end(self) -> Point:
+        """Last point in running direction."""
+        return self.at(self.sign * self.half_sweep)
+
+    def at(self, parameter: float) -> Point:
+        """Point at a parameter: the counter-clockwise angle in radians from the arc's middle."""
+        angle = self.mid_angle + parameter
+        return (self.center[0] + self.radius * cos(angle), self.center[1] + self.radius * sin(angle))
+
+    def normal(self, parameter: float = 0.0) -> Point:
+        """Outward unit normal at a parameter in radians."""
+        angle = self.mid_angle + parameter
+        return (self.sign * cos(angle), self.sign * sin(angle))
+
+    def parameter(self, point: Point) -> float:
+        """Parameter in radians, in (-pi, pi], of the point of the circle nearest to a point."""
+        dx, dy = point[0] - self.center[0], point[1] - self.center[1]
+        mx, my = cos(self.mid_angle), sin(self.mid_angle)
+        return atan2(mx * dy - my * dx, mx * dx + my * dy)
+
+    def row(self) -> tuple[float, ...]:
+        """The segment as a kernel row."""
+        return (ARC, *self.center, cos(self.mid_angle), sin(self.mid_angle), self.half_sweep, self.radius, self.sign)
+
+    def part(self, low: float, high: float) -> Arc:
+        """The piece between two parameters in radians."""
+        return Arc(self.center, self.radius, self.mid_angle + (low + high) / 2, (high - low) / 2, self.sign)
+
+
+Segment = Line | Arc
+
+
+def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
+    """Build the segment from ``start`` to ``end`` with a DXF bulge (tan of a quarter of the sweep, 0 for a line).
+
+    The points differ; a bulge below 1e-12 in size is a line. Formula: chord c, sweep 4 atan(bulge), radius
+    c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).
+    """
+    if abs(bulge) < 1e-12:
+        return Line(start, end)
+    half_sweep = 2 * atan(abs(bulge))
+    sign = 1.0 if bulge > 0 else -1.0
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    chord = hypot(dx, dy)
+    radius = chord / (2 * sin(half_sweep))
+    # The middle of the arc lies bulge * chord / 2 to the right of the chord; the centre one radius to its left.
+    nx, ny = dy / chord, -dx / chord
+    to_center = sign * radius * cos(half_sweep)
+    center = ((start[0] + end[0]) / 2 - nx * to_center, (start[1] + end[1]) / 2 - ny * to_center)
+    mid_angle = atan2(sign * ny, sign * nx)
+    return Arc(center, radius, mid_angle, half_sweep, sign)
+
+
+def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
+    """Describe segments to the kernels.
+
+    Returns
+    -------
+    (N, 8) array, read-only
+        Columns: kind (0 line, 1 arc); middle of the line or centre of the arc (x, y); tangent of the line or direction
+        from the centre to the arc's middle (x, y); largest parameter; radius (0 for a line); sign of the normal.
+    """
+    rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, ROW_LENGTH)
+    rows.setflags(write=False)
+    return rows
+
+
+def normalized_angle(angle: float) -> float:
+    """The same direction in [0, 2 pi)."""
+    return angle % tau

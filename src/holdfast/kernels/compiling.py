@@ -1,0 +1,93 @@
+"""How kernels are compiled, and where the compiled code is kept.
+
+Numba's disk cache looks only at the file of the function it keeps, so a kernel that calls a changed kernel of another
+file would be served stale. The cache therefore lives in a folder named by a hash of all the package's sources: any
+change of any source starts a new folder. Where no folder can be written, kernels are compiled anew in every process.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core import config
+
+__all__ = ["cache_folder", "compiled", "is_first_run"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+FOLDERS_KEPT = 3
+
+
+def source_hash() -> str:
+    """Hash of the package's sources and of the versions that compile them."""
+    digest = sha256(f"{sys.version} numba {numba.__version__}".encode())
+    package = Path(__file__).resolve().parent
+    for path in sorted(package.glob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:20]
+
+
+def user_cache() -> Path:
+    """The folder for all of holdfast's compiled code: ``$HOLDFAST_CACHE_DIR`` or ``holdfast`` in the user's cache."""
+    named = os.environ.get("HOLDFAST_CACHE_DIR")
+    if named:
+        return Path(named)
+    base = os.environ.get("XDG_CACHE_HOME")
+    return Path(base or Path("~/.cache").expanduser()) / "holdfast"
+
+
+@cache
+def cache_folder() -> Path | None:
+    """The folder for the compiled code of exactly these sources, or None where nothing can be written."""
+    folder = user_cache() / f"kernels-{source_hash()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except (OSError, RuntimeError):
+        return None
+    drop_old_folders(folder)
+    return folder
+
+
+def drop_old_folders(current: Path) -> None:
+    """Remove the compiled code of sources long replaced, keeping the newest few folders."""
+    try:
+        others = [p for p in current.parent.glob("kernels-*") if p != current]
+        others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
+    except OSError:
+        return
+    for folder in others[FOLDERS_KEPT:]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_first_run() -> bool:
+    """Whether the kernels of these sources still have to be compiled (a matter of ten seconds or so)."""
+    folder = cache_folder()
+    return folder is None or next(folder.rglob("*.nbi"), None) is None
+
+
+def compiled(function: Function) -> Function:
+    """Compile a kernel on first use, without the interpreter lock, and keep the machine code on disk if possible."""
+    folder = cache_folder()
+    if folder is None:
+        return numba.njit(nogil=True)(function)  # type: ignore[no-any-return]
+    # Numba reads the folder when it decorates; the setting of the rest of the process is put back.
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(folder)
+    try:
+        return numba.njit(nogil=True, cache=True)(function)  # type: ignore[no-any-return]
+    except RuntimeError:
+        return numba.njit(nogil=True)(function)  # type: ignore[no-any-return]
+    finally:
+        config.CACHE_DIR = before

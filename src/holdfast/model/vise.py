@@ -1,0 +1,86 @@
+"""The fixture vise: two jaws with a lattice of peg holes each (paper, sections 1 and 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+from attrs import field, frozen
+
+from holdfast.errors import InputError
+
+__all__ = ["Vise"]
+
+
+def pair(value: float | Sequence[float]) -> tuple[float, float]:
+    """One pitch for both directions, or one for x and one for y."""
+    numbers = tuple(value) if isinstance(value, Sequence) else (value, value)
+    if len(numbers) != 2:
+        raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
+    return float(numbers[0]), float(numbers[1])
+
+
+@frozen
+class Vise:
+    """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
+
+    Parameters
+    ----------
+    pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
+    columns : columns of holes on each jaw.
+    peg_radius : in mm; 0 is allowed.
+    rows : rows of holes on each jaw, or None for as many as needed.
+    min_gap : smallest distance in x from the centre of a left peg to the centre of a right one, in mm; None means the
+        x pitch.
+    max_opening : largest jaw separation in mm, or None for no limit.
+    row_offset : height in mm of the right jaw's row 0 above the left jaw's.
+
+    Raises
+    ------
+    InputError
+        For values that are not finite and positive, and for pegs too fat for neighbouring holes.
+
+    Examples
+    --------
+    >>> from holdfast import Vise
+    >>> Vise(pitch=10, columns=2, peg_radius=3).min_gap
+    10.0
+    """
+
+    pitch: tuple[float, float] = field(converter=pair)
+    columns: int
+    peg_radius: float = field(converter=float)
+    rows: int | None = None
+    min_gap: float = field(default=None, converter=lambda gap: gap)  # resolved below
+    max_opening: float | None = None
+    row_offset: float = field(default=0.0, converter=float)
+
+    def __attrs_post_init__(self) -> None:
+        if self.min_gap is None:
+            object.__setattr__(self, "min_gap", self.pitch[0])
+        else:
+            object.__setattr__(self, "min_gap", float(self.min_gap))
+        for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
+            if not (isfinite(value) and value > 0):
+                raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
+        for name, count in (("columns", self.columns), ("rows", self.rows)):
+            if count is not None and (count != int(count) or count < 1):
+                raise InputError(f"{name} {count} is not a positive whole number: a jaw needs at least one.")
+        if not (isfinite(self.peg_radius) and self.peg_radius >= 0):
+            raise InputError(f"peg radius {self.peg_radius} is not a length: give 0 or more, in mm.")
+        if 2 * self.peg_radius > min(self.pitch):
+            raise InputError(
+                f"pegs of radius {self.peg_radius:g} overlap in neighbouring holes {min(self.pitch):g} apart: "
+                "use a smaller peg or a larger pitch."
+            )
+        if not (isfinite(self.min_gap) and self.min_gap >= 0):
+            raise InputError(f"min gap {self.min_gap} is not a length: give 0 or more, in mm.")
+        if self.max_opening is not None:
+            if not (isfinite(self.max_opening) and self.max_opening > 0):
+                raise InputError(f"max opening {self.max_opening} is not a positive length: give it in mm.")
+            if self.max_opening < self.min_gap:
+                raise InputError(
+                    f"max opening {self.max_opening:g} is below the min gap {self.min_gap:g}: no jaw separation is left."
+                )
+        if not isfinite(self.row_offset):
+            raise InputError(f"row offset {self.row_offset} is not a length: give it in mm.")

@@ -1,0 +1,162 @@
+"""The workpiece: a generalized polygon with holes (paper, section 2.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import ArrayLike, NDArray
+
+from holdfast.errors import InputError
+from holdfast.geometry.face import Face, faces_of_loop
+from holdfast.geometry.intersect import bounding_box
+from holdfast.geometry.loop import (
+    checked_vertices,
+    encloses,
+    loop_segments,
+    refuse_meeting_loops,
+    refuse_self_crossing,
+    reversed_vertices,
+    signed_area,
+)
+from holdfast.geometry.segment import Point, Segment
+
+__all__ = ["Workpiece"]
+
+
+@define(frozen=True, slots=False, eq=False)
+class Workpiece:
+    """A prismatic part, known by its silhouette. Build it with :meth:`from_loops` or :func:`holdfast.load`.
+
+    Parameters
+    ----------
+    name : what the user calls it.
+    loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then the holes,
+        clockwise.
+
+    Examples
+    --------
+    >>> from holdfast import Workpiece
+    >>> plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
+    >>> [face.number for face in plate.faces]
+    [0, 1, 2, 3]
+    """
+
+    name: str
+    loops: tuple[NDArray[np.float64], ...] = field(repr=lambda loops: f"<{len(loops)} loops>")
+
+    @classmethod
+    def from_loops(
+        cls, name: str, loops: Sequence[ArrayLike], labels: Sequence[Sequence[str]] | None = None
+    ) -> Workpiece:
+        """Check loops of (x, y, bulge) vertices in mm and turn them so that material lies on the left.
+
+        Parameters
+        ----------
+        name : what the user calls the part.
+        loops : the outer loop first, then any holes; each (N, 3), run in either direction.
+        labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
+
+        Raises
+        ------
+        InputError
+            For open or degenerate loops, numbers that are not finite, segments of zero length, loops that cross or
+            touch, holes outside the outer loop or inside one another.
+        """
+        if not loops:
+            raise InputError(f"{name} has no loop: give at least an outer loop.")
+        first_numbers = [0]
+
+        def segment_place(loop: int, k: int) -> str:
+            # Labels follow the loop as drawn, so a message before turning must not use later numbers.
+            label = f" ({labels[loop][k]})" if labels else ""
+            return f"{name}: loop {loop}, segment {k}{label}"
+
+        used: list[NDArray[np.float64]] = []
+        segments: list[tuple[Segment, ...]] = []
+        for index, loop in enumerate(loops):
+            vertices = checked_vertices(loop, f"{name}: loop {index}", lambda k, i=index: segment_place(i, k))  # type: ignore[misc]
+            drawn = loop_segments(vertices)
+            refuse_self_crossing(drawn, lambda k, i=index: segment_place(i, k))  # type: ignore[misc]
+            for earlier in range(index):
+                refuse_meeting_loops(
+                    loop_segments(np.array(loops[earlier], dtype=np.float64)),
+                    drawn,
+                    lambda k, i=earlier: segment_place(i, k),  # type: ignore[misc]
+                    lambda k, i=index: segment_place(i, k),  # type: ignore[misc]
+                )
+            if (signed_area(drawn) > 0) != (index == 0):
+                vertices = reversed_vertices(vertices)
+            used.append(vertices)
+            segments.append(loop_segments(vertices))
+            first_numbers.append(first_numbers[-1] + len(vertices))
+        refuse_misplaced_holes(name, segments)
+        return cls(name, tuple(used))
+
+    @cached_property
+    def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
+        """Segments of each loop."""
+        return tuple(loop_segments(vertices) for vertices in self.loops)
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """All segments; their places in this tuple are their numbers."""
+        return tuple(segment for loop in self.loop_segments for segment in loop)
+
+    @cached_property
+    def faces(self) -> tuple[Face, ...]:
+        """All faces, ordered by their numbers."""
+        faces: list[Face] = []
+        number = 0
+        for loop in self.loop_segments:
+            faces += faces_of_loop(loop, number)
+            number += len(loop)
+        return tuple(faces)
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(smallest x, smallest y, largest x, largest y) in mm."""
+        boxes = np.array([bounding_box(segment) for segment in self.loop_segments[0]])
+        low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+        return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    @property
+    def center(self) -> Point:
+        """Centre of the bounding box, the point that moments are taken about."""
+        x0, y0, x1, y1 = self.bounds
+        return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def refuse_misplaced_holes(name: str, segments: Sequence[Sequence[Segment]]) -> None:
+    """Refuse holes outside the outer loop and holes inside one another (loops are known not to meet).
+
+    Raises
+    ------
+    InputError
+        Naming the hole.
+    """
+    for index in range(1, len(segments)):
+        x, y = segments[index][0].start
+        if not encloses(segments[0], segments[index]):
+            raise InputError(
+                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop must be the "
+                "outline that encloses all the others."
+            )
+        for other in range(1, len(segments)):
+            if other != index and not encloses_hole(segments[other], segments[index]):
+                raise InputError(
+                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: holes may not "
+                    "overlap; load the inner piece as a part of its own."
+                )
+
+
+def encloses_hole(hole: Sequence[Segment], other: Sequence[Segment]) -> bool:
+    """Whether another loop lies in the material outside a clockwise hole."""
+    x, y = other[0].start
+    from holdfast.geometry.segment import segment_rows
+    from holdfast.kernels.distance import winding_angle
+
+    turned = sum(winding_angle(x, y, row) for row in segment_rows(hole))
+    return turned > -np.pi
