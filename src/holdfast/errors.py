@@ -3,7 +3,7 @@
 Every message is one plain sentence that names the place and the remedy, because the command line prints it as it is.
 """
 
-__all__ = ["Cancelled", "HoldfastError", "InputError"]
+__all__ = ["HoldfastError", "InputError"]
 
 
 class HoldfastError(Exception):
@@ -12,7 +12,3 @@ class HoldfastError(Exception):
 
 class InputError(HoldfastError, ValueError):
     """A file, a flag or a value given by the user cannot be used; the command line exits with code 2."""
-
-
-class Cancelled(HoldfastError):
-    """The user stopped the work; what was found so far travels with the exception's cause, if anywhere."""

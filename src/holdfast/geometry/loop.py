@@ -10,21 +10,26 @@ place : words that tell a user where something is, such as ``loop 0, segment 3 (
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import hypot, sin
+from functools import cached_property
+from math import hypot, pi, sin
 
 import numpy as np
+from attrs import define
 from numpy.typing import ArrayLike, NDArray
 
 from holdfast.errors import InputError
 from holdfast.geometry.intersect import bounding_box, common_points
 from holdfast.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
-from holdfast.kernels.distance import is_inside
+from holdfast.kernels.distance import turns_around
 
 __all__ = [
+    "LoopShape",
     "checked_vertices",
     "encloses",
     "loop_segments",
+    "near_pairs",
     "refuse_meeting_loops",
+    "refuse_no_area",
     "refuse_self_crossing",
     "reversed_vertices",
     "signed_area",
@@ -36,6 +41,35 @@ Place = Callable[[int], str]
 SHORTEST = 1e-7
 # Points nearer than this, in mm, touch.
 TOUCHING = 1e-7
+
+
+@define(frozen=True, slots=False, eq=False)
+class LoopShape:
+    """A loop's segments with what is needed to compare it with other loops quickly.
+
+    Parameters
+    ----------
+    segments : in running order, run either way.
+    boxes : (N, 4) bounding boxes of the segments.
+    """
+
+    segments: tuple[Segment, ...]
+    boxes: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment]) -> LoopShape:
+        """The shape of some segments."""
+        return cls(tuple(segments), np.array([bounding_box(segment) for segment in segments]))
+
+    @cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """Kernel rows of the segments, shape (N, 8)."""
+        return segment_rows(self.segments)
+
+    @cached_property
+    def box(self) -> NDArray[np.float64]:
+        """Bounding box of the loop, shape (4,)."""
+        return np.concatenate([self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0)])
 
 
 def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
@@ -97,9 +131,16 @@ def signed_area(segments: Sequence[Segment]) -> float:
         (x0, y0), (x1, y1) = segment.start, segment.end
         area += (x0 * y1 - x1 * y0) / 2
         if isinstance(segment, Arc):
-            sweep = 2 * segment.half_sweep
-            area += segment.sign * segment.radius**2 * (sweep - sin(sweep)) / 2
+            area += segment.sign * segment.radius**2 * circular_segment(2 * segment.half_sweep) / 2
     return area
+
+
+def circular_segment(sweep: float) -> float:
+    """sweep - sin(sweep) without cancellation for small sweeps (Taylor series below 0.1 rad, exact to rounding)."""
+    if sweep > 0.1:
+        return sweep - sin(sweep)
+    square = sweep * sweep
+    return sweep * square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72)))
 
 
 def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -107,9 +148,21 @@ def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     out = np.empty_like(vertices)
     order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
     out[:, :2] = vertices[order, :2]
-    out[:, 2] = -vertices[np.roll(order, -1), 2]
+    out[:, 2] = 0.0 - vertices[np.roll(order, -1), 2]
     out.setflags(write=False)
     return out
+
+
+def refuse_no_area(shape: LoopShape, loop: str) -> None:
+    """Refuse a loop that runs back along itself.
+
+    Raises
+    ------
+    InputError
+        Naming the loop.
+    """
+    if abs(signed_area(shape.segments)) <= TOUCHING * sum(segment.length for segment in shape.segments):
+        raise InputError(f"{loop} encloses no area, it runs back along itself: draw the outline of the part.")
 
 
 def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
@@ -125,12 +178,7 @@ def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> It
             yield i, int(j)
 
 
-def boxes(segments: Sequence[Segment]) -> NDArray[np.float64]:
-    """Bounding boxes of segments, shape (N, 4)."""
-    return np.array([bounding_box(segment) for segment in segments])
-
-
-def refuse_self_crossing(segments: Sequence[Segment], place: Place) -> None:
+def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
     """Refuse a loop that crosses or touches itself anywhere but at its joints.
 
     Raises
@@ -138,8 +186,8 @@ def refuse_self_crossing(segments: Sequence[Segment], place: Place) -> None:
     InputError
         Naming both segments and the point.
     """
+    segments, box = shape.segments, shape.boxes
     count = len(segments)
-    box = boxes(segments)
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
     blur = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
     for i, j in near_pairs(box, box):
@@ -158,7 +206,7 @@ def refuse_self_crossing(segments: Sequence[Segment], place: Place) -> None:
                 )
 
 
-def refuse_meeting_loops(a: Sequence[Segment], b: Sequence[Segment], place_a: Place, place_b: Place) -> None:
+def refuse_meeting_loops(a: LoopShape, b: LoopShape, place_a: Place, place_b: Place) -> None:
     """Refuse two loops that cross or touch.
 
     Raises
@@ -166,17 +214,17 @@ def refuse_meeting_loops(a: Sequence[Segment], b: Sequence[Segment], place_a: Pl
     InputError
         Naming both segments and the point.
     """
-    for i, j in near_pairs(boxes(a), boxes(b)):
-        for x, y in common_points(a[i], b[j], TOUCHING):
+    for i, j in near_pairs(a.boxes, b.boxes):
+        for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
             raise InputError(
                 f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart from each other."
             )
 
 
-def encloses(outer: Sequence[Segment], inner: Sequence[Segment]) -> bool:
-    """Whether a counter-clockwise loop has another loop, which does not meet it, in its inside."""
-    x, y = inner[0].start
-    return bool(is_inside(x, y, segment_rows(outer)))
+def encloses(around: LoopShape, inner: LoopShape) -> bool:
+    """Whether a loop, run either way, has another loop, which does not meet it, in its inside."""
+    x, y = inner.segments[0].start
+    return bool(abs(turns_around(x, y, around.rows)) > pi)
 
 
 def same_carrier(a: Segment, b: Segment) -> bool:

@@ -15,10 +15,10 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import config
+from numba.core import config as numba_config
 
 __all__ = ["cache_folder", "compiled", "is_first_run"]
 
@@ -78,16 +78,21 @@ def is_first_run() -> bool:
 
 
 def compiled(function: Function) -> Function:
-    """Compile a kernel on first use, without the interpreter lock, and keep the machine code on disk if possible."""
+    """Compile a kernel on first use, without the interpreter lock, and keep the machine code on disk if possible.
+
+    Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments of slices,
+    and long kernels that call other long kernels (every caller is optimized together with all it calls).
+    """
     folder = cache_folder()
     if folder is None:
-        return numba.njit(nogil=True)(function)  # type: ignore[no-any-return]
+        return cast(Function, numba.njit(nogil=True, error_model="numpy")(function))
     # Numba reads the folder when it decorates; the setting of the rest of the process is put back.
+    config: Any = numba_config
     before = config.CACHE_DIR
     config.CACHE_DIR = str(folder)
     try:
-        return numba.njit(nogil=True, cache=True)(function)  # type: ignore[no-any-return]
+        return cast(Function, numba.njit(nogil=True, error_model="numpy", cache=True)(function))
     except RuntimeError:
-        return numba.njit(nogil=True)(function)  # type: ignore[no-any-return]
+        return cast(Function, numba.njit(nogil=True, error_model="numpy")(function))
     finally:
         config.CACHE_DIR = before

@@ -60,18 +60,28 @@ def winding_angle(x: float, y: float, row: Array) -> float:
     ax, ay = row[6] * cos(mid - row[5]) - dx, row[6] * sin(mid - row[5]) - dy
     bx, by = row[6] * cos(mid + row[5]) - dx, row[6] * sin(mid + row[5]) - dy
     turned = atan2(ax * by - ay * bx, ax * bx + ay * by)
-    # The arc and its chord enclose the point (or not): the chord's angle is then off by one turn.
+    # Seen from inside its circle a counter-clockwise arc turns forward, by up to a whole turn; from outside it turns as
+    # its chord does.
     if hypot(dx, dy) < row[6]:
-        chord = (dx * row[3] + dy * row[4]) - row[6] * cos(row[5])
-        if chord > 0.0:
+        if row[5] >= pi:
+            turned = 2.0 * pi
+        elif turned < 0.0:
             turned += 2.0 * pi
+    elif row[5] >= pi:
+        turned = 0.0
     return row[7] * turned
+
+
+@compiled
+def turns_around(x: float, y: float, rows: Array) -> float:
+    """Angle in radians that (N, 8) segments, run along their directions, turn around a point not on them."""
+    total = 0.0
+    for k in range(rows.shape[0]):
+        total += winding_angle(x, y, rows[k])
+    return total
 
 
 @compiled
 def is_inside(x: float, y: float, rows: Array) -> bool:
     """Whether a point not on the outline lies in the material bounded by (N, 8) segments, material on the left."""
-    total = 0.0
-    for k in range(rows.shape[0]):
-        total += winding_angle(x, y, rows[k])
-    return total > pi
+    return turns_around(x, y, rows) > pi

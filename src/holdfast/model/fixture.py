@@ -7,7 +7,7 @@ from typing import Literal
 
 from attrs import frozen
 
-__all__ = ["Fixture", "Jaw", "Peg", "Pose"]
+__all__ = ["Fixture", "Jaw", "Peg", "Pose", "column_letters"]
 
 Jaw = Literal["left", "right"]
 

@@ -13,7 +13,7 @@ from holdfast.model.fixture import Fixture, Peg, Pose
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position"]
 
 LEFT, RIGHT = 0, 1
 
@@ -47,7 +47,7 @@ class FixtureTable:
     force: NDArray[np.float64]
 
     def __attrs_post_init__(self) -> None:
-        for name in self.__attrs_attrs__:  # type: ignore[attr-defined]
+        for name in self.__attrs_attrs__:
             getattr(self, name.name).setflags(write=False)
 
     def __len__(self) -> int:
@@ -55,7 +55,7 @@ class FixtureTable:
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
         """The fixtures of an index array or slice, in its order."""
-        return evolve(self, **{a.name: getattr(self, a.name)[order] for a in self.__attrs_attrs__})  # type: ignore[attr-defined]
+        return evolve(self, **{a.name: getattr(self, a.name)[order] for a in self.__attrs_attrs__})
 
     @classmethod
     def empty(cls) -> FixtureTable:
@@ -92,6 +92,10 @@ class Result:
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
     contact_margin : smallest distance in mm that was asked for between a contact and the end of its feature.
     notes : remarks a user should read, one sentence each.
+    twins : fixtures with the same holes, faces and orientation as one listed, where the workpiece lies in another place.
+    statistics : how much work the search was: numbers of contact features, chord curves, uprights, pairs of curves
+        compared, simultaneous contacts (all four inside their features, before closure, jaw order and clamping), and
+        touches (contacts without clamping force, which are passed over).
     """
 
     workpiece: Workpiece
@@ -102,6 +106,8 @@ class Result:
     complete: bool = True
     contact_margin: float = 0.0
     notes: tuple[str, ...] = field(default=())
+    twins: FixtureTable = field(factory=FixtureTable.empty)
+    statistics: Mapping[str, int] = field(factory=dict)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -138,6 +144,12 @@ def hole_position(vise: Vise, jaw: int, column: int, row: int, jaw_separation: f
     return x, y
 
 
+def whole_turn_degrees(theta: float) -> float:
+    """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
+    degrees = float(np.degrees(theta)) % 360.0
+    return 0.0 if degrees > 360.0 - 1e-10 else degrees
+
+
 def fixture_at(table: FixtureTable, vise: Vise, index: int) -> Fixture:
     """Make the :class:`Fixture` of one row of a table."""
     separation = float(table.jaw_separation[index])
@@ -151,7 +163,7 @@ def fixture_at(table: FixtureTable, vise: Vise, index: int) -> Fixture:
     return Fixture(
         type="I" if table.type[index] == 1 else "II",
         pegs=(pegs[0], pegs[1], pegs[2], pegs[3]),
-        pose=Pose(float(np.degrees(table.theta[index])), x, y),
+        pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
         jaw_separation=separation,
         quality={"closure_margin": float(table.null_vector[index].min())},
     )

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import isfinite
+from collections.abc import Iterable
+from math import inf, isfinite, isnan, nan
+from typing import Any
 
 from attrs import field, frozen
+from attrs.converters import optional
 
 from holdfast.errors import InputError
 
 __all__ = ["Vise"]
 
 
-def pair(value: float | Sequence[float]) -> tuple[float, float]:
+def pair(value: float | Iterable[float]) -> tuple[float, float]:
     """One pitch for both directions, or one for x and one for y."""
-    numbers = tuple(value) if isinstance(value, Sequence) else (value, value)
+    numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
     if len(numbers) != 2:
         raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
     return float(numbers[0]), float(numbers[1])
+
+
+def whole(value: float | None) -> Any:
+    """A whole number as an int; None and anything else as it is, to be looked at later."""
+    return value if value is None or not isfinite(value) or value != int(value) else int(value)
+
+
+def optional_length(value: float | None) -> float:
+    """A length, or NaN (which the vise resolves) for None."""
+    return nan if value is None else float(value) if not isnan(float(value)) else inf
 
 
 @frozen
@@ -48,23 +60,21 @@ class Vise:
     """
 
     pitch: tuple[float, float] = field(converter=pair)
-    columns: int
+    columns: int = field(converter=whole)
     peg_radius: float = field(converter=float)
-    rows: int | None = None
-    min_gap: float = field(default=None, converter=lambda gap: gap)  # resolved below
-    max_opening: float | None = None
+    rows: int | None = field(default=None, converter=whole)
+    min_gap: float = field(default=None, converter=optional_length)
+    max_opening: float | None = field(default=None, converter=optional(float))
     row_offset: float = field(default=0.0, converter=float)
 
     def __attrs_post_init__(self) -> None:
-        if self.min_gap is None:
+        if isnan(self.min_gap):
             object.__setattr__(self, "min_gap", self.pitch[0])
-        else:
-            object.__setattr__(self, "min_gap", float(self.min_gap))
         for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
         for name, count in (("columns", self.columns), ("rows", self.rows)):
-            if count is not None and (count != int(count) or count < 1):
+            if count is not None and (not isinstance(count, int) or count < 1):
                 raise InputError(f"{name} {count} is not a positive whole number: a jaw needs at least one.")
         if not (isfinite(self.peg_radius) and self.peg_radius >= 0):
             raise InputError(f"peg radius {self.peg_radius} is not a length: give 0 or more, in mm.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from attrs import define, field
@@ -13,10 +13,13 @@ from holdfast.errors import InputError
 from holdfast.geometry.face import Face, faces_of_loop
 from holdfast.geometry.intersect import bounding_box
 from holdfast.geometry.loop import (
+    LoopShape,
     checked_vertices,
     encloses,
     loop_segments,
+    near_pairs,
     refuse_meeting_loops,
+    refuse_no_area,
     refuse_self_crossing,
     reversed_vertices,
     signed_area,
@@ -67,7 +70,6 @@ class Workpiece:
         """
         if not loops:
             raise InputError(f"{name} has no loop: give at least an outer loop.")
-        first_numbers = [0]
 
         def segment_place(loop: int, k: int) -> str:
             # Labels follow the loop as drawn, so a message before turning must not use later numbers.
@@ -75,24 +77,22 @@ class Workpiece:
             return f"{name}: loop {loop}, segment {k}{label}"
 
         used: list[NDArray[np.float64]] = []
-        segments: list[tuple[Segment, ...]] = []
+        drawn: list[LoopShape] = []
         for index, loop in enumerate(loops):
-            vertices = checked_vertices(loop, f"{name}: loop {index}", lambda k, i=index: segment_place(i, k))  # type: ignore[misc]
-            drawn = loop_segments(vertices)
-            refuse_self_crossing(drawn, lambda k, i=index: segment_place(i, k))  # type: ignore[misc]
-            for earlier in range(index):
-                refuse_meeting_loops(
-                    loop_segments(np.array(loops[earlier], dtype=np.float64)),
-                    drawn,
-                    lambda k, i=earlier: segment_place(i, k),  # type: ignore[misc]
-                    lambda k, i=index: segment_place(i, k),  # type: ignore[misc]
-                )
-            if (signed_area(drawn) > 0) != (index == 0):
+            place = partial(segment_place, index)
+            vertices = checked_vertices(loop, f"{name}: loop {index}", place)
+            shape = LoopShape.of(loop_segments(vertices))
+            refuse_self_crossing(shape, place)
+            refuse_no_area(shape, f"{name}: loop {index}")
+            if (signed_area(shape.segments) > 0) != (index == 0):
                 vertices = reversed_vertices(vertices)
             used.append(vertices)
-            segments.append(loop_segments(vertices))
-            first_numbers.append(first_numbers[-1] + len(vertices))
-        refuse_misplaced_holes(name, segments)
+            drawn.append(shape)
+        boxes = np.array([shape.box for shape in drawn])
+        for a, b in near_pairs(boxes, boxes):
+            if a < b:
+                refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
+        refuse_misplaced_holes(name, drawn)
         return cls(name, tuple(used))
 
     @cached_property
@@ -129,7 +129,7 @@ class Workpiece:
         return (x0 + x1) / 2, (y0 + y1) / 2
 
 
-def refuse_misplaced_holes(name: str, segments: Sequence[Sequence[Segment]]) -> None:
+def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
     """Refuse holes outside the outer loop and holes inside one another (loops are known not to meet).
 
     Raises
@@ -137,26 +137,17 @@ def refuse_misplaced_holes(name: str, segments: Sequence[Sequence[Segment]]) -> 
     InputError
         Naming the hole.
     """
-    for index in range(1, len(segments)):
-        x, y = segments[index][0].start
-        if not encloses(segments[0], segments[index]):
+    boxes = np.array([shape.box for shape in shapes])
+    for index, hole in enumerate(shapes[1:], start=1):
+        x, y = hole.segments[0].start
+        if not encloses(shapes[0], hole):
             raise InputError(
                 f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop must be the "
                 "outline that encloses all the others."
             )
-        for other in range(1, len(segments)):
-            if other != index and not encloses_hole(segments[other], segments[index]):
+        for _, other in near_pairs(boxes[index : index + 1], boxes):
+            if other not in (0, index) and encloses(shapes[other], hole):
                 raise InputError(
                     f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: holes may not "
                     "overlap; load the inner piece as a part of its own."
                 )
-
-
-def encloses_hole(hole: Sequence[Segment], other: Sequence[Segment]) -> bool:
-    """Whether another loop lies in the material outside a clockwise hole."""
-    x, y = other[0].start
-    from holdfast.geometry.segment import segment_rows
-    from holdfast.kernels.distance import winding_angle
-
-    turned = sum(winding_angle(x, y, row) for row in segment_rows(hole))
-    return turned > -np.pi

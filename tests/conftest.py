@@ -1,0 +1,15 @@
+"""Settings of the whole suite: property tests draw the same examples every time and know no deadline."""
+
+from __future__ import annotations
+
+from hypothesis import HealthCheck, settings
+
+settings.register_profile(
+    "holdfast",
+    deadline=None,
+    derandomize=True,
+    print_blob=False,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("holdfast")
