@@ -1,0 +1,70 @@
+"""Force closure of four frictionless contacts (model: condition 4).
+
+The wrench of a contact at q with outward unit normal n is w = (n, (q - c) x n / L). Four wrenches of the plane's
+three-dimensional wrench space have a null vector whose entries are, up to a common factor, the signed 3x3 minors of
+[w1 w2 w3 w4] (Cramer's rule); they positively span the space exactly when all entries have one sign and none is 0.
+Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis of multifinger positive grips*,
+Algorithmica 2 (1987); the construction from minors is linear algebra.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.kernels.compiling import compiled
+
+Array = NDArray[np.float64]
+
+
+@compiled
+def cross(ax: float, ay: float, bx: float, by: float) -> float:
+    """Cross product of two vectors of the plane."""
+    return ax * by - ay * bx
+
+
+@compiled
+def null_vector(points: Array, normals: Array, length: float, out: Array) -> float:
+    """Null vector of the four wrenches.
+
+    Parameters
+    ----------
+    points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c, in mm.
+    normals : (4, 2) outward unit normals.
+    length : L in mm.
+    out : (4,) receives the null vector scaled to sum 1, when its entries do not cancel.
+
+    Returns
+    -------
+    float
+        The smallest entry, or -1 when the wrenches have no null vector with a non-zero sum.
+    """
+    t0 = cross(points[0, 0], points[0, 1], normals[0, 0], normals[0, 1]) / length
+    t1 = cross(points[1, 0], points[1, 1], normals[1, 0], normals[1, 1]) / length
+    t2 = cross(points[2, 0], points[2, 1], normals[2, 0], normals[2, 1]) / length
+    t3 = cross(points[3, 0], points[3, 1], normals[3, 0], normals[3, 1]) / length
+    m01 = cross(normals[0, 0], normals[0, 1], normals[1, 0], normals[1, 1])
+    m02 = cross(normals[0, 0], normals[0, 1], normals[2, 0], normals[2, 1])
+    m03 = cross(normals[0, 0], normals[0, 1], normals[3, 0], normals[3, 1])
+    m12 = cross(normals[1, 0], normals[1, 1], normals[2, 0], normals[2, 1])
+    m13 = cross(normals[1, 0], normals[1, 1], normals[3, 0], normals[3, 1])
+    m23 = cross(normals[2, 0], normals[2, 1], normals[3, 0], normals[3, 1])
+    out[0] = t1 * m23 - t2 * m13 + t3 * m12
+    out[1] = -(t0 * m23 - t2 * m03 + t3 * m02)
+    out[2] = t0 * m13 - t1 * m03 + t3 * m01
+    out[3] = -(t0 * m12 - t1 * m02 + t2 * m01)
+    total = out[0] + out[1] + out[2] + out[3]
+    if abs(total) < 1e-13:
+        return -1.0
+    for k in range(4):
+        out[k] /= total
+    return min(out[0], out[1], out[2], out[3])
+
+
+@compiled
+def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Outward unit normal of a feature at a point on it."""
+    if row[0] == 0.0:
+        return (row[4], -row[3])
+    scale = row[7] / row[6]
+    return (scale * (x - row[1]), scale * (y - row[2]))

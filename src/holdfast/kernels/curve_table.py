@@ -1,0 +1,97 @@
+"""The table of all chord curves and uprights of a workpiece: pairs of features times lattice steps."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.kernels.chord_intervals import chord_intervals
+from holdfast.kernels.compiling import compiled
+from holdfast.kernels.pieces import CURVE_INTEGERS, CURVE_REALS, SHIFT, grown
+from holdfast.kernels.uprights import UPRIGHT_REALS, uprights_between
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@compiled
+def reach(row: Array) -> float:
+    """Largest distance of a feature's points from its middle (line) or centre (arc)."""
+    return row[5] if row[0] == 0.0 else row[6]
+
+
+@compiled
+def grown_whole(array: IntArray) -> IntArray:
+    """A copy of a (N, M) array of whole numbers with room for twice as many rows."""
+    out = np.empty((2 * array.shape[0], array.shape[1]), np.int64)
+    for i in range(array.shape[0]):
+        for j in range(array.shape[1]):
+            out[i, j] = array[i, j]
+    return out
+
+
+@compiled
+def tail_curves(
+    tail: int, features: Array, centers: IntArray, lengths: Array, starts: IntArray, steps: IntArray, angles: Array
+) -> tuple[IntArray, Array, IntArray, Array]:
+    """All chords whose tail is on one feature and whose head is on the same feature or one of a higher number.
+
+    Parameters
+    ----------
+    tail : index of the tail's feature.
+    features : (F, 8) rows.
+    centers : (F,) number of each arc's centre, -1 for lines; concentric arcs share it.
+    lengths : (D,) lengths of the lattice steps in mm.
+    starts : (D + 1,) where the steps of each length begin.
+    steps : (S, 2) column and row differences. Both directions of every step are listed.
+    angles : (S,) their directions in radians.
+
+    Returns
+    -------
+    (integers, reals, upright integers, upright reals)
+        The curve table of ``pieces`` and the upright table of ``uprights`` (its orientations still to be set by psi =
+        alpha - shift, brought into range by the caller; here psi is alpha - shift).
+    """
+    integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
+    whole, uprights = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, UPRIGHT_REALS))
+    count = upright_count = 0
+    a = features[tail]
+    for head in range(tail, features.shape[0]):
+        b = features[head]
+        apart, play = hypot(b[1] - a[1], b[2] - a[2]), reach(a) + reach(b)
+        center = centers[tail] if centers[tail] == centers[head] else -1
+        for length in range(lengths.shape[0]):
+            d = lengths[length]
+            if d > apart + play or d < apart - play:
+                continue
+            ranges = chord_intervals(a, b, d)
+            standing = uprights_between(a, b, d)
+            for step in range(starts[length], starts[length + 1]):
+                column, row = steps[step, 0], steps[step, 1]
+                if head == tail and (column < 0 or (column == 0 and row < 0)):
+                    continue
+                for k in range(ranges.shape[0]):
+                    if count == integers.shape[0]:
+                        integers, reals = grown_whole(integers), grown(reals)
+                    write_step(integers[count], tail, head, column, row, center)
+                    for column_of in range(5):
+                        reals[count, column_of] = ranges[k, column_of]
+                    reals[count, 5], reals[count, SHIFT] = d, angles[step]
+                    count += 1
+                for k in range(standing.shape[0]):
+                    if upright_count == whole.shape[0]:
+                        whole, uprights = grown_whole(whole), grown(uprights)
+                    write_step(whole[upright_count], tail, head, column, row, center)
+                    for column_of in range(3):
+                        uprights[upright_count, column_of] = standing[k, column_of]
+                    uprights[upright_count, 3], uprights[upright_count, 4] = d, standing[k, 2] - angles[step]
+                    upright_count += 1
+    return integers[:count], reals[:count], whole[:upright_count], uprights[:upright_count]
+
+
+@compiled
+def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
+    """Write the whole numbers of a curve or upright."""
+    row[0], row[1], row[2], row[3], row[4] = tail, head, column_step, row_step, center

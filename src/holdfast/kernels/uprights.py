@@ -1,0 +1,230 @@
+"""Uprights: chords that fit at one orientation only and slide there.
+
+Two pegs on parallel lines, or on arcs of equal radius whose centres lie exactly one chord apart, fix the orientation;
+the workpiece can still slide along the lines or around the arcs, and the other pegs stop it. Such a chord is not a curve
+over the orientation: it stands upright at one. It is met with the other chords by evaluating those there.
+
+Two uprights at one orientation leave the workpiece a freedom that the contacts do not resist, so they never make a
+fixture together; nor does an upright whose contacts share one line of action.
+
+Columns of an upright: FROM and TO (parameter of the tail on its feature), DIRECTION (alpha), STEP_LENGTH, ORIENTATION
+(psi in radians); its whole numbers are TAIL, HEAD, COLUMN_STEP, ROW_STEP as for a curve.
+"""
+
+from __future__ import annotations
+
+from math import acos, atan2, ceil, cos, floor, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.kernels.chord import HEIGHT, are_one_chord_apart, parameter_on
+from holdfast.kernels.chord_intervals import PARALLEL
+from holdfast.kernels.compiling import compiled
+from holdfast.kernels.crossing import value_at
+from holdfast.kernels.pieces import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL, grown
+from holdfast.kernels.pieces import FROM as CURVE_FROM
+from holdfast.kernels.pieces import TO as CURVE_TO
+from holdfast.kernels.type_one import CONTACTS, FOUND, place_chord
+from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
+from holdfast.kernels.vise_checks import RECORD_LENGTH, is_fixture, place_peg, share_a_jaw, write_record
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+FROM, TO, DIRECTION, STEP_LENGTH, ORIENTATION = range(5)
+UPRIGHT_REALS = 5
+TURN = 2.0 * pi
+# A chord square to its parallel lines, to within this cosine, has one line of action for both contacts.
+SQUARE = 1e-12
+
+
+@compiled
+def line_uprights(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the uprights between two parallel lines as (from, to, alpha) rows; return their number."""
+    nx, ny = a[4], -a[3]
+    cosine = (nx * (b[1] - a[1]) + ny * (b[2] - a[2])) / d
+    if abs(cosine) >= 1.0 - SQUARE:
+        return 0
+    count = 0
+    same = 1.0 if a[3] * b[3] + a[4] * b[4] > 0.0 else -1.0
+    for k in range(2):
+        alpha = atan2(ny, nx) + (1.0 - 2.0 * k) * acos(cosine)
+        # Parameter on b of the head when the tail is in the middle of a; it moves by +-s with the tail.
+        middle = same * ((a[1] + d * cos(alpha) - b[1]) * b[3] + (a[2] + d * sin(alpha) - b[2]) * b[4])
+        low, high = max(-a[5], -b[5] - middle), min(a[5], b[5] - middle)
+        if low <= high:
+            out[count, FROM], out[count, TO], out[count, DIRECTION] = low, high, alpha
+            count += 1
+    return count
+
+
+@compiled
+def arc_uprights(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the uprights between equal arcs one chord apart as (from, to, alpha) rows; return their number."""
+    if not are_one_chord_apart(a, b, d):
+        return 0
+    alpha = atan2(b[2] - a[2], b[1] - a[1])
+    turned = atan2(a[3] * b[4] - a[4] * b[3], a[3] * b[3] + a[4] * b[4])
+    if b[5] >= pi:
+        out[0, FROM], out[0, TO], out[0, DIRECTION] = -a[5], a[5], alpha
+        return 1
+    count = 0
+    for lap in range(-1, 2):
+        middle = turned + lap * TURN
+        low, high = max(-a[5], middle - b[5]), min(a[5], middle + b[5])
+        if low < high:
+            out[count, FROM], out[count, TO], out[count, DIRECTION] = low, high, alpha
+            count += 1
+    return count
+
+
+@compiled
+def uprights_between(a: Array, b: Array, d: float) -> Array:
+    """Uprights of a chord of length d from feature a to feature b.
+
+    Returns
+    -------
+    (N, 3) array
+        Columns: lowest and highest parameter of the tail on a, alpha in radians.
+    """
+    out = np.empty((4, 3))
+    count = 0
+    if a[0] == 0.0 and b[0] == 0.0:
+        if abs(a[3] * b[4] - a[4] * b[3]) <= PARALLEL:
+            count = line_uprights(a, b, d, out)
+    elif a[0] != 0.0 and b[0] != 0.0:
+        count = arc_uprights(a, b, d, out)
+    return out[:count]
+
+
+@compiled
+def orientation_inside(curve: int, psi: float, reals: Array) -> tuple[bool, float]:
+    """Whether a curve exists at an orientation, and psi moved by whole turns into its range."""
+    base = reals[curve, CURVE_FROM] - reals[curve, SHIFT]
+    inside = psi + TURN * ceil((base - psi) / TURN)
+    return (inside <= reals[curve, CURVE_TO] - reals[curve, SHIFT], inside)
+
+
+@compiled
+def place_upright(pegs: Array, x: float, y: float, line: float, whole: IntArray, upright: Array, psi: float) -> None:
+    """Write the pegs of an upright to (2, 5) places, with its tail at (x, y) in row ``line`` of column 0."""
+    alpha, d = upright[DIRECTION], upright[STEP_LENGTH]
+    place_peg(pegs[0], x, y, whole[TAIL], 0.0, line)
+    place_peg(
+        pegs[1],
+        x + d * cos(alpha),
+        y + d * sin(alpha),
+        whole[HEAD],
+        float(whole[COLUMN_STEP]),
+        line + whole[ROW_STEP],
+    )
+
+
+@compiled
+def tail_inside(row: Array, upright: Array, x: float, y: float) -> bool:
+    """Whether a tail lies in an upright's range on its feature."""
+    s = parameter_on(row, x, y)
+    return upright[FROM] <= s <= upright[TO]
+
+
+@compiled
+def upright_type_one(
+    chosen: IntArray,
+    whole: IntArray,
+    uprights: Array,
+    members: IntArray,
+    loose: Array,
+    features: Array,
+    integers: IntArray,
+    reals: Array,
+    pitch_y: float,
+    row_offset: float,
+    limits: Array,
+    stats: IntArray,
+) -> Array:
+    """All Type I fixtures that rest on one of the ``chosen`` uprights and on a curve of ``members``.
+
+    Parameters and result as for ``type_one_cell``.
+    """
+    out = np.empty((16, RECORD_LENGTH))
+    count = int(np.int64(0))
+    pegs, work, null = np.empty((4, 5)), np.empty((8, 2)), np.empty(4)
+    for u in chosen:
+        upright, psi = uprights[u], uprights[u, ORIENTATION]
+        ax, ay = -sin(psi), cos(psi)
+        row = loose[whole[u, TAIL]]
+        lowest, highest = height_range(row, ax, ay)
+        for curve in members:
+            exists, inside = orientation_inside(curve, psi, reals)
+            if not exists:
+                continue
+            height = value_at(inside, curve, loose, integers, reals, HEIGHT)[0]
+            for order in range(2):
+                # The upright is on the left for order 0, on the right for order 1.
+                sign = 1.0 if order == 0 else -1.0
+                base = height - sign * row_offset
+                first = int(ceil((lowest - base) / pitch_y - 1e-9))
+                last = int(floor((highest - base) / pitch_y + 1e-9))
+                for line in range(first, last + 1):
+                    for k in range(2):
+                        meets, x, y = row_meets(row, ax, ay, base + line * pitch_y, 1.0 - 2.0 * k)
+                        if not meets or not tail_inside(row, upright, x, y):
+                            continue
+                        if order == 0:
+                            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, psi)
+                            place_chord(pegs[2:], curve, psi, float(-line), features, integers, reals)
+                        else:
+                            place_chord(pegs[:2], curve, psi, 0.0, features, integers, reals)
+                            place_upright(pegs[2:], x, y, float(line), whole[u], upright, psi)
+                        verdict, apart = is_fixture(pegs, 2.0, psi, features, limits, work, null)
+                        if verdict > 0 and order == 0:
+                            stats[CONTACTS] += 1
+                        if verdict == 2:
+                            if count == out.shape[0]:
+                                out = grown(out)
+                            write_record(out[count], 1.0, pegs, psi, apart, null)
+                            count += 1
+    stats[FOUND] += count
+    return out[:count]
+
+
+@compiled
+def upright_type_two(
+    chosen: IntArray,
+    whole: IntArray,
+    uprights: Array,
+    members: IntArray,
+    loose: Array,
+    features: Array,
+    integers: IntArray,
+    reals: Array,
+    pitch_y: float,
+    row_offset: float,
+    limits: Array,
+    stats: IntArray,
+) -> Array:
+    """All Type II fixtures two of whose left pegs form one of the ``chosen`` uprights from the shared tail.
+
+    Parameters and result as for ``type_one_cell``.
+    """
+    out = np.empty((16, RECORD_LENGTH))
+    count = int(np.int64(0))
+    pegs, work, null = np.empty((4, 5)), np.empty((8, 2)), np.empty(4)
+    for u in chosen:
+        upright, psi = uprights[u], uprights[u, ORIENTATION]
+        tail = whole[u, TAIL]
+        for curve in members:
+            if integers[curve, TAIL] != tail:
+                continue
+            exists, inside = orientation_inside(curve, psi, reals)
+            if not exists or not share_a_jaw(whole[u], integers[curve], limits):
+                continue
+            place_triple(pegs, curve, curve, inside, features, integers, reals)
+            x, y = pegs[0, 0], pegs[0, 1]
+            if not tail_inside(loose[tail], upright, x, y):
+                continue
+            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, psi)
+            out, count = add_right_pegs(out, count, pegs, psi, features, pitch_y, row_offset, limits, work, null, stats)
+    stats[FOUND] += count
+    return out[:count]

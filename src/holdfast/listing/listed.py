@@ -1,0 +1,69 @@
+"""From the records of any engine to the result a user sees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.listing.distinct import count_distinct
+from holdfast.listing.finish import finish, placed, twins
+from holdfast.listing.problem import TYPES, Problem
+from holdfast.model.result import FixtureTable, Result
+
+__all__ = ["listed_result"]
+
+
+def listed_result(
+    problem: Problem,
+    records: list[NDArray[np.float64]],
+    *,
+    complete: bool,
+    best: int | None = None,
+    statistics: Mapping[str, int],
+) -> Result:
+    """Check, list once, rank and count the fixtures that an engine found.
+
+    Parameters
+    ----------
+    problem : what was searched.
+    records : (N, 21) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
+    complete : whether the search came to its end.
+    best : list only this many, the best ones.
+    statistics : see ``Result.statistics``.
+    """
+    candidates = finish(records, problem.rows, problem.outline, problem.vise, problem.wrench_length)
+    first, others = twins(candidates, problem.faces[candidates.feature])
+    listed = candidates.take(first)
+    center = problem.workpiece.center
+    everything = placed(listed, problem.faces, problem.vise, center)
+    kept_apart = placed(candidates.take(others), problem.faces, problem.vise, center)
+    ranked = everything.take(rank(everything))
+    return Result(
+        workpiece=problem.workpiece,
+        vise=problem.vise,
+        table=ranked if best is None else ranked.take(slice(0, best)),
+        found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
+        distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
+        complete=complete,
+        contact_margin=problem.contact_margin,
+        notes=notes(len(kept_apart)),
+        statistics=statistics,
+        twins=kept_apart,
+    )
+
+
+def rank(table: FixtureTable) -> NDArray[np.intp]:
+    """Order of a table in identity order by closure margin, largest first; equal to 9 digits stay in order."""
+    if len(table) == 0:
+        return np.zeros(0, np.intp)
+    return np.argsort(-np.round(table.null_vector.min(axis=1), 9), kind="stable")
+
+
+def notes(twin_count: int) -> tuple[str, ...]:
+    """Remarks on a search that a user should read."""
+    if twin_count == 0:
+        return ()
+    some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
+    return (f"{some}: the same holes, faces and orientation with the part in another place, kept apart from the list.",)

@@ -1,0 +1,85 @@
+"""Design: every fixture of a workpiece in a vise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from threading import Event
+
+import numpy as np
+
+from holdfast.contact.curves import CurveTable, curve_table, loosened
+from holdfast.listing.listed import listed_result
+from holdfast.listing.problem import TYPES, Problem, Progress, check_options
+from holdfast.model.result import Result
+from holdfast.model.vise import Vise
+from holdfast.model.workpiece import Workpiece
+from holdfast.search.cells import run_blocks, thread_count
+from holdfast.search.vise_search import ViseSearch, lattice_steps
+
+__all__ = ["design"]
+
+
+def design(
+    workpiece: Workpiece,
+    vise: Vise,
+    *,
+    types: Sequence[str] = TYPES,
+    contact_margin: float = 0.0,
+    best: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+) -> Result:
+    """Find every fixture of a workpiece in a vise.
+
+    Parameters
+    ----------
+    workpiece, vise : what to hold and what to hold it in.
+    types : "I" (two pegs on each jaw), "II" (three and one), or both.
+    contact_margin : smallest distance in mm between a contact and the end of its feature.
+    best : list only this many, the best ones; None lists all.
+    threads : how many threads share the work; None for one on each processor. The result does not depend on it.
+    progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
+    cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
+
+    Returns
+    -------
+    Result
+        Fixtures ranked by closure margin, largest first; fixtures of equal margin (to 9 digits) in the order of their
+        holes, pose and faces.
+
+    Raises
+    ------
+    InputError
+        For an unknown type, numbers out of range, and a peg that fits nowhere along the part.
+
+    Examples
+    --------
+    >>> import holdfast
+    >>> widget = holdfast.load("widget")
+    >>> result = holdfast.design(widget, holdfast.Vise(pitch=8, columns=1, peg_radius=3))
+    >>> result.counts
+    {'I': 459, 'II': 46}
+    >>> [peg.hole for peg in result[0].pegs]
+    ['L-A1', 'L-A2', 'R-A1', 'R-A2']
+    """
+    check_options(types, contact_margin, best, threads)
+    problem = Problem.of(workpiece, vise, contact_margin)
+    loose = loosened(problem.rows[:, :8])
+    table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
+    search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
+    records, complete = run_blocks(search.blocks(types), thread_count(threads), progress, cancel)
+    return listed_result(problem, records, complete=complete, best=best, statistics=statistics(search, table))
+
+
+def statistics(search: ViseSearch, table: CurveTable) -> dict[str, int]:
+    """Counts that tell how much work a search was (see ``Result.statistics``)."""
+    total = np.sum(search.stats, axis=0) if search.stats else np.zeros(4, np.int64)
+    return {
+        "features": len(search.features),
+        "chord_curves": len(table),
+        "uprights": len(table.upright_integers),
+        "curve_pairs": int(total[0]),
+        "simultaneous_contacts": int(total[1]),
+        "touches": int(total[3]),
+    }

@@ -1,0 +1,168 @@
+"""The search of the fixture vise: its lattice steps and its blocks of work.
+
+Two pegs of one jaw are a lattice step apart; the two jaws share the direction of rows and differ by the sliding of the
+right jaw along x. Another toolkit would bring its own module in place of this one and of ``kernels.vise_checks``,
+``kernels.type_one`` and ``kernels.type_two``; features, chord curves, crossings and closure are common to all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from functools import partial
+from itertools import pairwise
+from math import hypot, pi, tau
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from holdfast.contact.curves import CurveTable, LatticeSteps
+from holdfast.kernels.chord import HEIGHT, POSITION
+from holdfast.kernels.pieces import cell_pieces
+from holdfast.kernels.type_one import type_one_cell
+from holdfast.kernels.type_two import type_two_cell
+from holdfast.kernels.uprights import upright_type_one, upright_type_two
+from holdfast.model.vise import Vise
+from holdfast.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
+
+__all__ = ["ViseSearch", "lattice_steps"]
+
+Array = NDArray[np.float64]
+
+CELLS_PER_HALF_TURN = 96
+# A piece may vary its slope by this part of the part's size; only speed depends on it.
+FLATNESS = 0.04
+
+
+def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
+    """Differences between two holes of one jaw, up to a length in mm, both directions of each."""
+    pitch_x, pitch_y = vise.pitch
+    most_rows = int(longest / pitch_y) if vise.rows is None else min(vise.rows - 1, int(longest / pitch_y))
+    columns, rows = np.meshgrid(
+        np.arange(-(vise.columns - 1), vise.columns), np.arange(-most_rows, most_rows + 1), indexing="ij"
+    )
+    steps = np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.int64)
+    sizes = np.array([hypot(k * pitch_x, m * pitch_y) for k, m in np.abs(steps)])
+    keep = (sizes > 0.0) & (sizes <= longest)
+    steps, sizes = steps[keep], sizes[keep]
+    order = np.lexsort((steps[:, 1], steps[:, 0], sizes))
+    steps, sizes = steps[order], sizes[order]
+    lengths, starts = np.unique(sizes, return_index=True)
+    angles = np.arctan2(steps[:, 1] * pitch_y, steps[:, 0] * pitch_x)
+    return LatticeSteps(lengths, np.append(starts, len(steps)).astype(np.int64), steps, angles)
+
+
+@define(eq=False)
+class ViseSearch:
+    """Everything the vise's kernels need, and the blocks of work made of it.
+
+    Parameters
+    ----------
+    vise : the vise.
+    features, loose : (F, 8) rows about the centre of the part, as they are and with their ends moved out by a hair.
+    table : chord curves and uprights between the loose features.
+    contact_margin : in mm.
+    wrench_length : L in mm.
+    stats : (cells, 4) statistics the kernels add to, one row for each block so that threads never share one.
+    """
+
+    vise: Vise
+    features: Array
+    loose: Array
+    table: CurveTable
+    contact_margin: float
+    wrench_length: float
+    stats: list[NDArray[np.int64]] = field(factory=list)
+
+    @property
+    def limits(self) -> Array:
+        """The limits as the kernels take them (see ``kernels.vise_checks``)."""
+        return np.array([self.vise.min_gap, self.contact_margin, self.wrench_length, self.vise.columns - 1.0])
+
+    def blocks(self, types: Collection[str]) -> list[Block]:
+        """Blocks of work that together find all fixtures of the given types ("I", "II")."""
+        blocks: list[Block] = []
+        for name, half_turns in (("I", 1), ("II", 2)):
+            if name not in types:
+                continue
+            edges = cell_edges(half_turns, half_turns * CELLS_PER_HALF_TURN)
+            upright_cells = self.upright_cells(half_turns, edges)
+            for cell, (low, high) in enumerate(pairwise(edges)):
+                blocks += self.cell_blocks(name, float(low), float(high), upright_cells[cell])
+        return blocks
+
+    def upright_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
+        """Uprights by the cell their orientation falls into."""
+        psi = self.table.upright_reals[:, 4]
+        psi = FIRST_ORIENTATION + (psi - FIRST_ORIENTATION) % tau
+        self.table.upright_reals[:, 4] = psi
+        cells = np.searchsorted(edges, psi, side="right") - 1
+        cells[psi >= FIRST_ORIENTATION + half_turns * pi] = -1
+        return [np.flatnonzero(cells == cell) for cell in range(len(edges) - 1)]
+
+    def cell_blocks(self, name: str, low: float, high: float, uprights: NDArray[np.int64]) -> list[Block]:
+        """The work of one cell: its crossings, and its uprights if it has any."""
+        members = members_of_cell(self.table, low, high)
+        blocks = []
+        if len(members) > 1:
+            stats = np.zeros(4, np.int64)
+            self.stats.append(stats)
+            kernel = type_one_cell if name == "I" else type_two_cell
+            mode = HEIGHT if name == "I" else POSITION
+            work = partial(self.cross, kernel, mode, low, high, members, stats)
+            blocks.append(Block(work, 1.0 + (1.0 if name == "I" else 0.2) * len(members) ** 2))
+        if len(members) and len(uprights):
+            stats = np.zeros(4, np.int64)
+            self.stats.append(stats)
+            upright_kernel = upright_type_one if name == "I" else upright_type_two
+            work = partial(self.meet_uprights, upright_kernel, uprights, members, stats)
+            blocks.append(Block(work, 1.0 + len(members) * len(uprights)))
+        return blocks
+
+    def cross(
+        self,
+        kernel: Callable[..., Array],
+        mode: float,
+        low: float,
+        high: float,
+        members: NDArray[np.int64],
+        stats: NDArray[np.int64],
+    ) -> Array:
+        """Run a kernel of crossings on one cell."""
+        flatness = FLATNESS * self.wrench_length
+        integers, reals = self.table.integers, self.table.reals
+        pieces = cell_pieces(low, high, members, self.loose, integers, reals, mode, flatness)
+        return kernel(
+            pieces,
+            self.loose,
+            self.features,
+            integers,
+            reals,
+            self.vise.pitch[1],
+            self.vise.row_offset,
+            self.limits,
+            stats,
+        )
+
+    def meet_uprights(
+        self,
+        kernel: Callable[..., Array],
+        uprights: NDArray[np.int64],
+        members: NDArray[np.int64],
+        stats: NDArray[np.int64],
+    ) -> Array:
+        """Run a kernel of uprights on one cell."""
+        return kernel(
+            uprights,
+            self.table.upright_integers,
+            self.table.upright_reals,
+            members,
+            self.loose,
+            self.features,
+            self.table.integers,
+            self.table.reals,
+            self.vise.pitch[1],
+            self.vise.row_offset,
+            self.limits,
+            stats,
+        )

@@ -1,0 +1,73 @@
+"""Wrenches and force closure for whole sets of fixtures (model: conditions 4 and 5)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["clamping_force", "null_vectors", "outward_normals"]
+
+Array = NDArray[np.float64]
+
+# Minors whose sum is no larger are rounding: the four lines of action meet in one point, or two pairs coincide. A pose at
+# such a double root is known only to the square root of the rounding error.
+LEAST_SPAN = 1e-7
+
+
+def outward_normals(rows: Array, points: Array) -> Array:
+    """Outward unit normals of features at peg centres on them.
+
+    Parameters
+    ----------
+    rows : (..., 8) feature rows, see ``geometry.segment.segment_rows``.
+    points : (..., 2) in mm.
+
+    Returns
+    -------
+    (..., 2) array
+    """
+    radial = rows[..., 7:8] * (points - rows[..., 1:3]) / np.where(rows[..., 6:7] == 0.0, 1.0, rows[..., 6:7])
+    straight = np.stack([rows[..., 4], -rows[..., 3]], axis=-1)
+    return np.where(rows[..., :1] == 0.0, straight, radial)
+
+
+def null_vectors(points: Array, normals: Array, length: float) -> Array:
+    """Null vectors of four contacts' wrenches (n, (q - c) x n / L), scaled to sum 1.
+
+    Parameters
+    ----------
+    points : (N, 4, 2) peg centres about c in mm.
+    normals : (N, 4, 2) outward unit normals.
+    length : L in mm.
+
+    Returns
+    -------
+    (N, 4) array
+        Signed 3x3 minors (Cramer's rule) over their sum; all -1 where the wrenches do not span the space.
+    """
+    moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
+    wrenches = np.concatenate([normals, moments[..., None]], axis=-1)
+    out = np.empty(wrenches.shape[:2])
+    for k in range(4):
+        out[:, k] = (-1) ** k * np.linalg.det(np.delete(wrenches, k, axis=1))
+    total = out.sum(axis=1, keepdims=True)
+    spans = np.abs(total) > LEAST_SPAN
+    return np.asarray(np.where(spans, out / np.where(spans, total, 1.0), -1.0))
+
+
+def clamping_force(null: Array, normals: Array, theta: Array, lefts: NDArray[np.bool_]) -> Array:
+    """Push of the left pegs along the vise's x axis, sum over left pegs of lambda_i (-n_i) . x.
+
+    Parameters
+    ----------
+    null : (N, 4) null vectors.
+    normals : (N, 4, 2) outward unit normals in the workpiece's frame.
+    theta : (N,) orientation of the workpiece in radians.
+    lefts : (N, 4) which pegs are on the left jaw.
+
+    Returns
+    -------
+    (N,) array
+    """
+    along = normals[..., 0] * np.cos(theta)[:, None] - normals[..., 1] * np.sin(theta)[:, None]
+    return np.asarray(-(null * along * lefts).sum(axis=1))

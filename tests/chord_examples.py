@@ -1,0 +1,106 @@
+"""Random chords for the tests of the kernels, and a slow independent solution of the chord equations."""
+
+from __future__ import annotations
+
+from math import cos, hypot, pi, sin
+from random import Random
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.kernels.chord import chord
+from holdfast.kernels.chord_intervals import chord_intervals
+from strategies import random_row
+
+Array = NDArray[np.float64]
+
+KINDS = ("line", "arc", "circle")
+PAIRS = [(a, b) for a in KINDS for b in KINDS]
+TURN = 2 * pi
+
+
+def arc_row(x: float, y: float, radius: float, middle: float = 0.0, half: float = pi, sign: float = 1.0) -> Array:
+    """A feature row of an arc."""
+    return np.array([1.0, x, y, cos(middle), sin(middle), half, radius, sign])
+
+
+def line_row(x: float, y: float, angle: float, half: float) -> Array:
+    """A feature row of a line."""
+    return np.array([0.0, x, y, cos(angle), sin(angle), half, 0.0, 1.0])
+
+
+def random_chord(random: Random, kinds: tuple[str, str]) -> tuple[Array, Array, float]:
+    """Two features of given kinds and a length of chord; now and then in a special position to each other."""
+    a, b = np.array(random_row(random, kinds[0])), np.array(random_row(random, kinds[1]))
+    d = random.uniform(3.0, 40.0)
+    if kinds[0] != "line" and kinds[1] != "line":
+        special = random.random()
+        if special < 0.1:
+            b[1:3] = a[1:3]
+        elif special < 0.2:
+            b[6] = a[6]
+        elif special < 0.3:
+            b[6], d = a[6], hypot(b[1] - a[1], b[2] - a[2])
+    return a, b, d
+
+
+def random_ranges(random: Random, kinds: tuple[str, str], least: float = 1e-6) -> tuple[Array, Array, float, Array]:
+    """A random chord that exists, with its ranges no narrower than ``least`` radians."""
+    while True:
+        a, b, d = random_chord(random, kinds)
+        ranges = chord_intervals(a, b, d)
+        ranges = ranges[ranges[:, 1] - ranges[:, 0] > least]
+        if len(ranges):
+            return a, b, d, ranges
+
+
+def turn_at(a: Array, b: Array, d: float, alpha: float, branch: float) -> float:
+    """X, the cross product of the two contact directions."""
+    c = chord(a, b, d, alpha, branch)
+    return c[2] * c[5] - c[3] * c[4]
+
+
+def overshoot(row: Array, points: Array) -> Array:
+    """How far in mm (N, 2) points of a feature's carrier lie past the feature's ends, negative inside."""
+    delta = points - row[1:3]
+    if row[0] == 0.0:
+        return np.abs(delta @ row[3:5]) - row[5]
+    angle = np.angle((delta[:, 0] + 1j * delta[:, 1]) / (row[3] + 1j * row[4]))
+    return np.full(len(points), -1.0) if row[5] >= pi else (np.abs(angle) - row[5]) * row[6]
+
+
+def off_carrier(row: Array, points: Array) -> Array:
+    """Distance in mm of (N, 2) points from the line or circle that carries a feature."""
+    delta = points - row[1:3]
+    if row[0] == 0.0:
+        return np.abs(delta[:, 0] * row[4] - delta[:, 1] * row[3])
+    return np.abs(np.hypot(delta[:, 0], delta[:, 1]) - row[6])
+
+
+def solutions(a: Array, b: Array, d: float, alphas: Array) -> list[Array]:
+    """All tails of a chord on both carriers, by polynomial roots: one (2 or fewer, 2) array for each direction."""
+    out = []
+    for alpha in alphas:
+        w = d * np.array([cos(alpha), sin(alpha)])
+        if a[0] == 0.0 and b[0] == 0.0:
+            matrix = np.array([a[3:5], -b[3:5]]).T
+            s = np.linalg.solve(matrix, b[1:3] - a[1:3] - w)[0]
+            out.append((a[1:3] + s * a[3:5])[None])
+            continue
+        if a[0] == 0.0 or b[0] == 0.0:
+            line, start, arc, center = (a, a[1:3], b, b[1:3] - w) if a[0] == 0.0 else (b, b[1:3] - w, a, a[1:3])
+            gap = start - center
+            s = np.roots([1.0, 2 * gap @ line[3:5], gap @ gap - arc[6] ** 2])
+            points = start + s[np.isreal(s)].real[:, None] * line[3:5]
+        else:
+            # |z| = R_a and |z - g| = R_b, z = R_a e^it, give a quadratic in e^it.
+            g = complex(*(b[1:3] - w - a[1:3]))
+            if abs(g) < 1e-9:
+                out.append(np.empty((0, 2)))
+                continue
+            middle = a[6] ** 2 + abs(g) ** 2 - b[6] ** 2
+            t = np.roots([a[6] * g.conjugate(), -middle, a[6] * g])
+            z = a[6] * t[np.abs(np.abs(t) - 1) < 1e-9]
+            points = np.stack([z.real, z.imag], axis=1) + a[1:3]
+        out.append(points)
+    return out

@@ -1,0 +1,101 @@
+"""Contact features: where a peg's centre may lie."""
+
+from __future__ import annotations
+
+from math import hypot, pi, tan
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from holdfast.contact.features import contact_features, end_slacks, feature_rows, outline_diameter
+from holdfast.geometry.segment import Arc, segment_rows
+from holdfast.kernels.distance import outline_distance, segment_distance
+from holdfast.model.workpiece import Workpiece
+from holdfast.statics.wrenches import outward_normals
+from strategies import outlines, vises
+
+
+@given(outlines(), vises())
+def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
+    """At every point of a feature the face is at distance rho, along the feature's normal, and no face is nearer."""
+    outline = segment_rows(part.segments)
+    faces = {face.number: face for face in part.faces}
+    for feature in contact_features(part, vise.peg_radius):
+        face = faces[feature.face].segment
+        row = segment_rows([face])[0]
+        for t in np.linspace(-1, 1, 9) * feature.segment.half_extent:
+            (x, y), (nx, ny) = feature.segment.at(t), feature.segment.normal(t)
+            assert segment_distance(x, y, row) == pytest.approx(vise.peg_radius, abs=2e-9)
+            assert outline_distance(x, y, outline) == pytest.approx(vise.peg_radius, abs=2e-9)
+            foot = (x - vise.peg_radius * nx, y - vise.peg_radius * ny)
+            assert segment_distance(*foot, row) < 2e-9
+
+
+@given(outlines(), vises())
+def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
+    """Faces ascend; a feature is of its face's kind; its row gives the same normals as the segment."""
+    features = contact_features(part, vise.peg_radius)
+    assert [f.face for f in features] == sorted(f.face for f in features)
+    faces = {face.number: face.segment for face in part.faces}
+    rows = feature_rows(features)
+    for feature, row in zip(features, rows, strict=True):
+        face = faces[feature.face]
+        assert type(feature.segment) is type(face)
+        if isinstance(face, Arc):
+            assert feature.segment.radius == pytest.approx(face.radius + face.sign * vise.peg_radius)
+        t = 0.4 * feature.segment.half_extent
+        normal = outward_normals(row, np.array(feature.segment.at(t)))
+        assert normal == pytest.approx(feature.segment.normal(t), abs=1e-9)
+
+
+@settings(max_examples=80)
+@given(outlines())
+def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
+    """outline_diameter is at least every sampled distance and no more than the finest one plus the sampling's error."""
+    points = np.array([s.at(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)])
+    farthest = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)).max()
+    diameter = outline_diameter(part)
+    longest = max(s.length for s in part.loop_segments[0])
+    assert farthest - 1e-9 <= diameter <= farthest + longest / 80 * 0.2 + 1e-9
+
+
+def test_known_diameters():
+    """A disc's is 2 R, an obround's its length, a rectangle's its diagonal, a half disc's 2 R."""
+
+    def diameter(*loops):
+        return outline_diameter(Workpiece.from_loops("part", loops))
+
+    assert diameter([[-5, 3, 1], [5, 3, 1]]) == pytest.approx(10)
+    assert diameter([[0, 0, 0], [30, 0, 1], [30, 10, 0], [0, 10, 1]]) == pytest.approx(40)
+    assert diameter([[0, 0, 0], [30, 0, 0], [30, 40, 0], [0, 40, 0]]) == pytest.approx(50)
+    assert diameter([[-5, 0, 0], [5, 0, 1]]) == pytest.approx(10)
+    three_quarters = [[10, 0, tan(3 * pi / 8)], [0, -10, 0], [0, 0, 0]]
+    assert diameter(three_quarters) == pytest.approx(20)
+
+
+def test_tangent_joints_forgive_rounding_and_corners_do_not():
+    """Ends of features joined tangentially have a positive slack, all others a negative one; a whole circle has none."""
+    obround = Workpiece.from_loops("obround", [[[0, 0, 0], [30, 0, 1], [30, 10, 0], [0, 10, 1]]])
+    assert (end_slacks(contact_features(obround, 2.0)) > 0).all()
+    square = Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]])
+    assert (end_slacks(contact_features(square, 2.0)) < 0).all()
+    # With rho = 0 features join at corners, but not tangentially.
+    assert (end_slacks(contact_features(square, 0.0)) < 0).all()
+    half = Workpiece.from_loops("half", [[[0, 0, 0], [30, 0, 0], [30, 10, 1], [0, 10, 0]]])
+    features = contact_features(half, 2.0)
+    slack = end_slacks(features)
+    for feature, (low, high) in zip(features, slack, strict=True):
+        ends = [feature.segment.at(-feature.segment.half_extent), feature.segment.at(feature.segment.half_extent)]
+        for (x, y), value in zip(ends, (low, high), strict=True):
+            assert (value > 0) == (min(hypot(x - 32, y - 10), hypot(x + 2, y - 10)) < 1e-9)
+
+
+def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():
+    """A round hole smaller than the peg has no feature; a larger one has a whole circle of radius r - rho."""
+    plate = [[0, 0, 0], [60, 0, 0], [60, 60, 0], [0, 60, 0]]
+    for radius, expected in ((2.0, []), (3.0, []), (5.0, [2.0])):
+        part = Workpiece.from_loops("plate", [plate, [[30 - radius, 30, 1], [30 + radius, 30, 1]]])
+        inside = [f.segment for f in contact_features(part, 3.0) if f.face >= 4]
+        assert [s.radius for s in inside] == pytest.approx(expected)
+        assert all(s.is_full and s.sign == -1.0 for s in inside)

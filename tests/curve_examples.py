@@ -1,0 +1,68 @@
+"""Random chord curves and their pieces for the tests of the kernels."""
+
+from __future__ import annotations
+
+from math import hypot
+from random import Random
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from chord_examples import KINDS, random_chord
+from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table
+from holdfast.kernels.chord import HEIGHT, POSITION
+from holdfast.kernels.crossing import MOST_ROOTS, STACK_DEPTH, crossings, value_at
+from holdfast.kernels.pieces import cell_pieces
+from strategies import random_row
+
+Array = NDArray[np.float64]
+
+
+def lattice(pitch: float, columns: int, rows: int) -> LatticeSteps:
+    """All steps of a square lattice, grouped by length."""
+    steps = [(k, m) for k in range(1 - columns, columns) for m in range(-rows, rows + 1) if (k, m) != (0, 0)]
+    steps.sort(key=lambda step: (round(hypot(*step), 9), step))
+    sizes = np.array([round(pitch * hypot(*step), 9) for step in steps])
+    lengths, starts = np.unique(sizes, return_index=True)
+    whole = np.array(steps, np.int64)
+    return LatticeSteps(lengths, np.append(starts, len(steps)), whole, np.arctan2(whole[:, 1], whole[:, 0]))
+
+
+def random_table(random: Random, count: int = 4, first: str = "") -> tuple[Array, CurveTable]:
+    """Features of random kinds (the first of a given one) and all their chord curves on a small lattice."""
+    rows = [random_row(random, random.choice(KINDS)) for _ in range(count)]
+    if random.random() < 0.3:
+        pair = random_chord(random, (random.choice(KINDS), random.choice(KINDS)))
+        rows[:2] = [tuple(row) for row in pair[:2]]
+    if first:
+        rows[0] = random_row(random, first)
+    features = np.array(rows)
+    return features, curve_table(features, lattice(random.uniform(8, 14), 2, 2))
+
+
+def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode: int, flatness: float = 2.0) -> Array:
+    """All pieces of a table's curves in a cell."""
+    members = np.arange(len(table))
+    return cell_pieces(low, high, members, features, table.integers, table.reals, mode, flatness)
+
+
+def cross(first, second, features, table, mode, offset, period) -> tuple[Array, int]:
+    """Roots and number of touches of two pieces."""
+    stack, roots = np.empty((STACK_DEPTH, 10)), np.empty(MOST_ROOTS)
+    number, touches = crossings(
+        first, second, features, table.integers, table.reals, mode, offset, period, stack, roots
+    )
+    return roots[:number].copy(), touches
+
+
+@numba.njit
+def sampled(psis, curve, features, integers, reals, mode):
+    """Values and slopes of a curve at many orientations, shape (N, 2)."""
+    out = np.empty((psis.shape[0], 2))
+    for k in range(psis.shape[0]):
+        out[k, 0], out[k, 1] = value_at(psis[k], curve, features, integers, reals, mode)
+    return out
+
+
+__all__ = ["HEIGHT", "POSITION", "cross", "lattice", "pieces_of", "random_table", "sampled"]

@@ -1,0 +1,129 @@
+"""Comparing sets of fixtures: identity up to lattice steps, peg names and the half turn, apart from marginal ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi, radians, tau
+from typing import Any
+
+import numpy as np
+
+import check_result
+from holdfast import Result, Vise, Workpiece
+
+Listed = dict[str, Any]
+
+
+def listed(result: Result) -> list[Listed]:
+    """Fixtures in the form of the result file."""
+    return [
+        {
+            "type": f.type,
+            "pegs": [
+                {"jaw": p.jaw, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.segment}
+                for p in f.pegs
+            ],
+            "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
+            "jaw_separation": f.jaw_separation,
+        }
+        for f in result
+    ]
+
+
+def vise_fields(vise: Vise) -> dict[str, Any]:
+    """A vise in the form of the result file."""
+    return {
+        "pitch": list(vise.pitch),
+        "columns": vise.columns,
+        "rows": vise.rows,
+        "peg_radius": vise.peg_radius,
+        "min_gap": vise.min_gap,
+        "max_opening": vise.max_opening,
+        "row_offset": vise.row_offset,
+    }
+
+
+class Judge:
+    """The independent checker, bound to one workpiece and one vise."""
+
+    def __init__(self, workpiece: Workpiece, vise: Vise) -> None:
+        self.vise = vise_fields(vise)
+        self.by_loop = check_result.segments([loop.tolist() for loop in workpiece.loops])
+        self.segments = [s for loop in self.by_loop for s in loop]
+        self.face = check_result.run_of(self.by_loop)
+        self.runs: dict[int, list[int]] = {}
+        for segment, face in self.face.items():
+            self.runs.setdefault(face, []).append(segment)
+
+    def check(self, fixture: Listed) -> tuple[list[str], bool]:
+        """Faults of a fixture, and whether it is within 1e-6 of a rule's edge."""
+        return check_result.check(fixture, self.vise, self.by_loop, self.segments, self.face, self.runs)  # type: ignore[no-any-return]
+
+    def identity(self, fixture: Listed) -> tuple[Any, float]:
+        """What names a fixture: its pattern of faces and holes, and its orientation in radians."""
+        key, sign = check_result.canonical(fixture["pegs"], self.face, *self.vise["pitch"])
+        return key, (radians(fixture["pose"]["theta_deg"]) + (0 if sign == 1 else pi)) % tau
+
+
+def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
+    """Whether a contact is at an end of its trimmed feature: the peg touches two faces, or stands at a corner."""
+    theta = radians(fixture["pose"]["theta_deg"])
+    turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+    for peg in fixture["pegs"]:
+        point = turn @ (np.array([peg["x"], peg["y"]]) - [fixture["pose"]["x"], fixture["pose"]["y"]])
+        face = judge.face[peg["segment"]]
+        others = [s for k, s in enumerate(judge.segments) if judge.face[k] != face]
+        if min(check_result.nearest(point, s)[0] for s in others) < judge.vise["peg_radius"] + within:
+            return True
+    return False
+
+
+def missing(ours: list[Listed], expected: list[Listed], judge: Judge) -> list[Listed]:
+    """Expected fixtures that are not among ours and are not marginal; both are given for the judge's part and vise."""
+    have: dict[Any, list[float]] = {}
+    for fixture in ours:
+        key, theta = judge.identity(fixture)
+        have.setdefault(key, []).append(theta)
+    lost = []
+    for fixture in expected:
+        key, theta = judge.identity(fixture)
+        found = any(abs((theta - t + pi) % tau - pi) < 1e-5 for t in have.get(key, []))
+        if not found and not judge.check(fixture)[1] and not near_an_end(judge, fixture):
+            lost.append(fixture)
+    return lost
+
+
+def assert_same(ours: list[Listed], theirs: list[Listed], judge: Judge) -> None:
+    """Both lists hold the same fixtures, apart from marginal ones."""
+    assert missing(ours, theirs, judge) == []
+    assert missing(theirs, ours, judge) == []
+
+
+def turned(fixtures: list[Listed], angle: float, face: Callable[[int], int] = lambda k: k) -> list[Listed]:
+    """What the fixtures become when the part is redrawn turned by an angle in radians: the pose turns back."""
+    return [
+        fixture
+        | {
+            "pegs": [peg | {"segment": face(peg["segment"])} for peg in fixture["pegs"]],
+            "pose": fixture["pose"] | {"theta_deg": fixture["pose"]["theta_deg"] - np.degrees(angle)},
+        }
+        for fixture in fixtures
+    ]
+
+
+def mirrored(fixtures: list[Listed], face: Callable[[int], int]) -> list[Listed]:
+    """What the fixtures become when part and vise are mirrored at the vise's x axis."""
+    return [
+        fixture
+        | {
+            "pegs": [
+                peg | {"segment": face(peg["segment"]), "y": -peg["y"], "row": -peg["row"]} for peg in fixture["pegs"]
+            ],
+            "pose": {
+                "theta_deg": -fixture["pose"]["theta_deg"],
+                "x": fixture["pose"]["x"],
+                "y": -fixture["pose"]["y"],
+            },
+        }
+        for fixture in fixtures
+    ]

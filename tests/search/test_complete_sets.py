@@ -1,0 +1,50 @@
+"""The search lists exactly the fixtures of complete sets found by an independent method."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fixture_sets import Judge, listed, near_an_end
+from holdfast import Vise, Workpiece, design
+
+COMPLETE = sorted((Path(__file__).parent.parent / "data" / "complete").glob("*.json"))
+
+
+@pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
+def test_complete_set_is_reproduced(path: Path) -> None:
+    """Every fixture that is not marginal is listed once, and nothing else is; every one passes the checker."""
+    truth = json.loads(path.read_text())
+    workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
+    vise = Vise(**truth["vise"])
+    judge = Judge(workpiece, vise)
+    ours = listed(design(workpiece, vise))
+    assert len(ours) > 0
+    identities = {}
+    for fixture in ours:
+        faults, marginal = judge.check(fixture)
+        assert faults == []
+        key, theta = judge.identity(fixture)
+        identities.setdefault(key, []).append((theta, marginal))
+    expected = {}
+    for fixture in truth["fixtures"]:
+        key, theta = judge.identity(fixture | {"pose": {"theta_deg": fixture["theta_deg"]}})
+        expected.setdefault(key, []).append((theta, fixture["marginal"]))
+    for have, want in ((identities, expected), (expected, identities)):
+        for key, poses in want.items():
+            for theta, marginal in poses:
+                near = [t for t, _ in have.get(key, []) if abs((theta - t + 3) % 6.283185307179586 - 3) < 1e-5]
+                assert len(near) == 1 or marginal, (key, theta)
+
+
+@pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
+def test_no_listed_contact_is_at_an_end(path: Path) -> None:
+    """A peg wedged in a corner or standing on one is not listed: only its own face holds it (these sets have no tangent
+    joints that a contact falls on)."""
+    truth = json.loads(path.read_text())
+    workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
+    vise = Vise(**truth["vise"])
+    judge = Judge(workpiece, vise)
+    assert not any(near_an_end(judge, fixture, 1e-10) for fixture in listed(design(workpiece, vise)))
