@@ -1,0 +1,61 @@
+"""The fixtures as a table for a spreadsheet: one row per fixture, comma-separated, with a line of column names."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import IO
+
+from holdfast.files.atomic import text_file
+from holdfast.files.result_file import fixture_rows
+from holdfast.model.fixture import column_letters
+from holdfast.model.result import Result
+
+__all__ = ["write_result_csv", "write_result_csv_to"]
+
+PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
+COLUMNS = (
+    "number",
+    "type",
+    "theta_deg",
+    "x",
+    "y",
+    "jaw_separation",
+    "closure_margin",
+    *(f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS),
+)
+JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
+NAMES = {1: "I", 2: "II"}
+
+
+def write_result_csv(result: Result, path: str | Path) -> None:
+    """Write the fixtures of a result as comma-separated values, numbered by rank from 1.
+
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the pictures.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with text_file(path) as stream:
+        write_result_csv_to(result, stream)
+
+
+def write_result_csv_to(result: Result, stream: IO[str]) -> None:
+    """Write the comma-separated values to an open text stream."""
+    stream.write(",".join(COLUMNS) + "\n")
+    letters = cache(column_letters)
+    number = 0
+    for kinds, rows in fixture_rows(result.table, result.vise):
+        lines = []
+        for kind, row in zip(kinds, rows, strict=True):
+            number += 1
+            theta, x, y, separation, margin = row[24:]
+            fields = [str(number), NAMES[kind], repr(theta), repr(x), repr(y), repr(separation), f"{margin:.12g}"]
+            for peg, jaw in enumerate(JAWS[kind]):
+                column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
+                hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"
+                fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
+            lines.append(",".join(fields) + "\n")
+        stream.write("".join(lines))

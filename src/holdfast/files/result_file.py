@@ -1,0 +1,146 @@
+"""Writing the result file: one line of JSON for every fixture, streamed from the arrays in blocks.
+
+Glossary
+--------
+head : everything but the fixtures; a few lines in front of them.
+block : the fixtures that are turned into Python objects at the same time.
+
+The bytes depend on nothing but the result. Lengths are rounded to 1e-9 mm and angles to 1e-10 degree; forces and
+quality have twelve significant digits. :mod:`holdfast.files.result_reader` reads the file back.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from holdfast.files.atomic import text_file
+from holdfast.files.result_reader import FORMAT, read_result
+from holdfast.model.result import FixtureTable, Result
+from holdfast.model.vise import Vise
+
+__all__ = ["FORMAT", "fixture_rows", "read_result", "write_result", "write_result_to"]
+
+BLOCK = 4096
+LENGTH_STEPS = 1e9
+ANGLE_STEPS = 1e10
+
+PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
+POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r, "quality": {"closure_margin": %.12g}}'
+
+
+def fixture_template(name: str, jaws: tuple[str, str, str, str]) -> str:
+    """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
+    pegs = ", ".join(PEG.format(jaw) for jaw in jaws)
+    return f'{{"type": "{name}", "pegs": [{pegs}], {POSE}'
+
+
+TEMPLATES = {
+    1: fixture_template("I", ("left", "left", "right", "right")),
+    2: fixture_template("II", ("left", "left", "left", "right")),
+}
+
+
+def write_result(result: Result, path: str | Path) -> None:
+    """Write a result file (MODEL, "Result file"); an earlier file of that name is replaced only when all went well.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with text_file(path) as stream:
+        write_result_to(result, stream)
+
+
+def write_result_to(result: Result, stream: IO[str]) -> None:
+    """Write a result to an open text stream."""
+    lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
+    stream.write("{" + "".join(lines) + '"fixtures": [')
+    write_fixtures(result.table, result.vise, stream)
+    if len(result.twins):
+        stream.write('\n],\n"twins": [')
+        write_fixtures(result.twins, result.vise, stream)
+    stream.write("\n]}\n")
+
+
+def write_fixtures(table: FixtureTable, vise: Vise, stream: IO[str]) -> None:
+    """Write the lines of a list of fixtures, each after the line break that ends the one before."""
+    separator = "\n"
+    for kind, numbers in fixture_rows(table, vise):
+        stream.write(separator + ",\n".join([TEMPLATES[k] % row for k, row in zip(kind, numbers, strict=True)]))
+        separator = ",\n"
+
+
+def head(result: Result) -> dict[str, Any]:
+    """Everything in the file but the fixtures, at full precision."""
+    vise = result.vise
+    return {
+        "format": FORMAT,
+        "workpiece": {
+            "name": result.workpiece.name,
+            "units": "mm",
+            "loops": [(loop + 0.0).tolist() for loop in result.workpiece.loops],
+        },
+        "vise": {
+            "pitch": list(vise.pitch),
+            "columns": int(vise.columns),
+            "rows": None if vise.rows is None else int(vise.rows),
+            "peg_radius": vise.peg_radius,
+            "min_gap": vise.min_gap,
+            "max_opening": None if vise.max_opening is None else float(vise.max_opening),
+            "row_offset": vise.row_offset,
+        },
+        "contact_margin": float(result.contact_margin),
+        "counts": result.counts,
+        "found": {kind: int(result.found[kind]) for kind in ("I", "II")},
+        "distinct": {kind: int(result.distinct[kind]) for kind in ("I", "II")},
+        "complete": bool(result.complete),
+        "notes": list(result.notes),
+        "statistics": {name: int(count) for name, count in result.statistics.items()},
+    }
+
+
+def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
+    """Blocks of fixtures as plain numbers, rounded as they are written.
+
+    Yields
+    ------
+    The types (1 or 2), and for every fixture a tuple of 29 numbers: for each peg column, row, x, y, segment, force;
+    then theta in degrees, x and y of the pose, jaw separation, closure margin.
+    """
+    for start in range(0, len(table), BLOCK):
+        block = table.take(slice(start, start + BLOCK))
+        separation = rounded(block.jaw_separation, LENGTH_STEPS)
+        x, y = hole_positions(block, vise, separation)
+        columns: list[list[Any]] = []
+        for peg in range(4):
+            numbers = (block.column, block.row, x, y, block.segment, block.force)
+            columns += [array[:, peg].tolist() for array in numbers]
+        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
+        theta[theta >= 360.0] = 0.0
+        position = rounded(block.position, LENGTH_STEPS)
+        margin = block.null_vector.min(axis=1)
+        columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, margin)]
+        yield block.type.tolist(), zip(*columns, strict=True)
+
+
+def hole_positions(
+    table: FixtureTable, vise: Vise, separation: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rounded centres of the pegs' holes in the vise frame, two arrays (N, 4)."""
+    right = table.jaw == 1
+    shift = (vise.columns - 1) * vise.pitch[0] + separation[:, None]
+    x = table.column * vise.pitch[0] + np.where(right, shift, 0.0)
+    y = table.row * vise.pitch[1] + np.where(right, vise.row_offset, 0.0)
+    return rounded(x, LENGTH_STEPS), rounded(y, LENGTH_STEPS)
+
+
+def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
+    """The nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
+    return np.rint(values.astype(np.float64) * steps) / steps + 0.0
