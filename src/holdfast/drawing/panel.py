@@ -1,0 +1,141 @@
+"""The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from holdfast.drawing.bench import ARROW, PEG_FILL, TOUCHED
+from holdfast.drawing.dimensions import millimetres
+from holdfast.drawing.fonts import shortened, text_width
+from holdfast.drawing.scene import BLACK, GREY, Scene, decimals_for
+from holdfast.model.fixture import Fixture
+from holdfast.model.vise import Vise
+from holdfast.model.workpiece import Workpiece
+
+__all__ = ["Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
+
+TYPE_WORDS = {"I": "Type I: two pegs on each jaw", "II": "Type II: three pegs left, one right"}
+
+
+class Column:
+    """Writes line after line down a page.
+
+    Parameters
+    ----------
+    scene : what to write on.
+    x, y : upper left corner, page units.
+    width : page units.
+    """
+
+    def __init__(self, scene: Scene, x: float, y: float, width: float) -> None:
+        self.scene, self.x, self.y, self.width = scene, x, y, width
+
+    def words(self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55) -> None:
+        """Write one line, shortened to fit, and leave ``gap`` ems below it."""
+        self.y += 0.75 * size
+        content = shortened(content, size, self.width, bold)
+        self.scene.text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
+        self.y += gap * size
+
+    def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
+        """Write a name at the left and its value at the right of one line."""
+        self.y += 0.75 * size
+        self.scene.text((self.x, self.y), name, 13.0, fill=GREY, middle=False)
+        self.scene.text((self.x + self.width, self.y), value, size, "end", bold=bold, middle=False)
+        self.y += 0.62 * size
+
+    def rule(self, width: float = 1.0) -> None:
+        """Draw a line across."""
+        self.y += 4
+        self.scene.line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
+        self.y += 9
+
+    def row(self, cells: Sequence[str], ends: Sequence[float], size: float, bold: bool = False) -> None:
+        """Write one row of a table: the first cell at the left, the others ending at shares ``ends`` of the width."""
+        self.y += 0.75 * size
+        self.scene.text((self.x, self.y), cells[0], size, bold=True, middle=False)
+        for cell, end in zip(cells[1:], ends, strict=True):
+            self.scene.text((self.x + end * self.width, self.y), cell, size, "end", bold=bold, middle=False)
+        self.y += 0.7 * size
+
+
+def closure_margin(fixture: Fixture) -> str:
+    """The closure margin in words for a picture, or a dash when it is not known."""
+    margin = fixture.quality.get("closure_margin")
+    if margin is None:
+        return "–"
+    return f"{margin:.4f}" if margin >= 0.001 else f"{margin:.2e}".replace("-", "−")
+
+
+def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, title: str | None) -> None:
+    """Write the part's name, the fixture's and its type."""
+    fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
+    column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
+    column.words(title or "Fixture", 18, gap=0.5)
+    column.words(TYPE_WORDS[fixture.type], 14, fill=GREY)
+    column.rule(2.0)
+
+
+def draw_settings(column: Column, fixture: Fixture, vise: Vise) -> None:
+    """Write what to set, with the jaw separation first."""
+    decimals = decimals_for(min(vise.pitch))
+    column.words("Jaw separation S", 13, fill=GREY, gap=0.8)
+    column.words(millimetres(fixture.jaw_separation, decimals), 32, bold=True, gap=0.4)
+    column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
+    origin = f"{signed(fixture.pose.x, decimals)}, {signed(fixture.pose.y, decimals)} mm"
+    column.fact("Part origin x, y", origin)
+    column.fact("Closure margin", closure_margin(fixture))
+    column.rule()
+    count = f"{vise.columns} column{'s' if vise.columns > 1 else ''}"
+    column.fact("Each jaw", f"{count}, pitch {vise.pitch[0]:g} × {vise.pitch[1]:g} mm")
+    column.fact("Pegs", f"Ø {2 * vise.peg_radius:g} mm" if vise.peg_radius else "points, no diameter")
+    if vise.row_offset:
+        word = "above" if vise.row_offset > 0 else "below"
+        column.fact("R rows over L rows", f"{millimetres(abs(vise.row_offset), decimals)} {word}")
+    column.rule()
+
+
+def draw_peg_table(column: Column, fixture: Fixture, vise: Vise) -> None:
+    """Write the four pegs: hole, face, place and force."""
+    decimals = decimals_for(min(vise.pitch))
+    ends = (0.32, 0.575, 0.82, 1.0)
+    places = [(signed(peg.x, decimals), signed(peg.y, decimals)) for peg in fixture.pegs]
+    widest = max(text_width(cell, 14) for place in places for cell in place)
+    size = 14 if widest < 0.24 * column.width else 11
+    column.row(["Peg in", "face", "x mm", "y mm", "force"], ends, 13, bold=True)
+    for peg, place in zip(fixture.pegs, places, strict=True):
+        column.row([peg.hole, str(peg.segment), *place, signed(peg.force, 3)], ends, size)
+    column.y += 2
+    column.words("x, y: peg centre, from the centre of hole L-A1.", 11, fill=GREY)
+    column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
+    column.rule()
+
+
+def draw_legend(column: Column) -> None:
+    """Explain the signs."""
+    scene, x = column.scene, column.x + 16
+    words = [
+        "peg to place, with its hole: jaw, column, row",
+        "hole, left empty",
+        "force of the peg on the part, longer if larger",
+        "face touched, with its number",
+    ]
+    for k, line in enumerate(words):
+        y = column.y + 8
+        if k == 0:
+            scene.circle((x, y), 7, PEG_FILL, BLACK, 1.2)
+        elif k == 1:
+            scene.circle((x, y), 7, "#ffffff", GREY, 0.9)
+        elif k == 2:
+            scene.circle((x - 14, y), 2.8, ARROW)
+            scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
+        else:
+            scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
+            scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
+        scene.text((x + 28, y), line, 11.5, fill=GREY)
+        column.y += 21
+
+
+def signed(value: float, decimals: int) -> str:
+    """A number with a real minus sign and no negative zero."""
+    return millimetres(value, decimals).removesuffix(" mm")

@@ -1,0 +1,45 @@
+"""A part with lines, convex and concave arcs and a hole, held by four pegs."""
+
+from __future__ import annotations
+
+from math import tan
+
+import numpy as np
+
+from holdfast.model.fixture import Fixture, Peg, Pose
+from holdfast.model.result import hole_position
+from holdfast.model.vise import Vise
+from holdfast.model.workpiece import Workpiece
+
+QUARTER = tan(np.pi / 8)
+PART = [
+    # A plate 60 by 40 with one round corner and a half-round notch in the top edge ...
+    [[0, 0, 0], [50, 0, QUARTER], [60, 10, 0], [60, 40, 0], [40, 40, -1], [20, 40, 0], [0, 40, 0]],
+    # ... and a hole, far more than half of which is one arc.
+    [[30, 10, 0], [34, 10, 3.0]],
+]
+PART_AREA = 60 * 40 - (10 * 10 - np.pi * 10**2 / 4) - np.pi * 10**2 / 2
+
+
+def hole_area() -> float:
+    """Area of the hole: the circle segment of chord 4 and bulge 3."""
+    half_sweep = 2 * np.arctan(3.0)
+    radius = 4 / (2 * np.sin(half_sweep))
+    return float(radius**2 / 2 * (2 * half_sweep - np.sin(2 * half_sweep)))
+
+
+def example(size: float = 1.0, name: str = "notched plate") -> tuple[Fixture, Workpiece, Vise]:
+    """The part magnified by ``size``, turned by a quarter and held between two jaws of two columns each."""
+    loops = [[[size * x, size * y, bulge] for x, y, bulge in loop] for loop in PART]
+    workpiece = Workpiece.from_loops(name, loops)
+    vise = Vise(pitch=10 * size, columns=2, peg_radius=3 * size)
+    separation = 36.0 * size
+    # The quarter turn maps (x, y) to (-y, x) before the shift: bottom edge right, top edge left.
+    holes = [("left", 1, 0, 5), ("left", 1, 4, 3), ("right", 0, 1, 0), ("right", 0, 3, 0)]
+    pegs = []
+    for jaw, column, row, segment in holes:
+        x, y = hole_position(vise, int(jaw == "right"), column, row, separation)
+        pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, segment, 0.5))
+    pose = Pose(90.0, 43.0 * size, -5.0 * size)
+    quality = {"closure_margin": 0.125}
+    return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, separation, quality), workpiece, vise
