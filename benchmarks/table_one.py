@@ -1,0 +1,90 @@
+"""The twelve rows of Table 1 of Wallack and Canny (1996): our counts, time and memory beside theirs.
+
+The parts are models of the paper's, whose dimensions were never published, so counts can only be of the same order.
+Every row runs in a process of its own, so that its memory is its own; the seconds are those of the search alone, with
+kernels compiled and loaded. With ``--first-run``, also how long a first run takes, compilation included.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from time import perf_counter
+
+PEG_RADIUS = 3
+# Part, pitch in mm, columns; the paper's counts of type I and II and its seconds.
+ROWS = (
+    ("thin4Handle", 10, 1, 208, 4, 792),
+    ("8Handle", 10, 1, 36, 0, 356),
+    ("small4Handle", 10, 1, 14, 0, 395),
+    ("small4Handle", 10, 10, 88, 123, 9195),
+    ("large4Handle", 10, 1, 40, 5, 949),
+    ("large4Handle", 10, 10, 492, 572, 38968),
+    ("oblongPart", 10, 1, 26, 0, 112),
+    ("oblongPart", 10, 10, 280, 198, 4217),
+    ("oblongPart", 8, 10, 801, 278, 13896),
+    ("widget", 10, 1, 305, 62, 8644),
+    ("widget", 8, 1, 636, 124, 8896),
+    ("flange", 10, 1, 60, 1, 1742),
+)
+
+
+def measure(part: str, pitch: float, columns: int, warm: bool = True) -> dict[str, float]:
+    """Counts, seconds and peak memory in MiB of one design in this process."""
+    import holdfast
+
+    if warm:
+        holdfast.design(holdfast.load("oblongPart"), holdfast.Vise(pitch=10, columns=1, peg_radius=PEG_RADIUS))
+    workpiece = holdfast.load(part)
+    start = perf_counter()
+    result = holdfast.design(workpiece, holdfast.Vise(pitch=pitch, columns=columns, peg_radius=PEG_RADIUS))
+    seconds = perf_counter() - start
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return {**result.counts, "seconds": seconds, "memory": memory}
+
+
+def apart(part: str, pitch: float, columns: int, warm: bool = True, **environment: str) -> dict[str, float]:
+    """Measure one design in a process of its own."""
+    command = [sys.executable, __file__, "--measure", part, str(pitch), str(columns), str(int(warm))]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True, text=True, env={**os.environ, **environment})
+    figures: dict[str, float] = json.loads(done.stdout)
+    return figures
+
+
+def table() -> None:
+    """Print the table row by row."""
+    say = sys.stdout.write
+    say(f"{'':12} {'':>5} {'':>3} | {'holdfast':^33} | {'paper':^22} |\n")
+    say(f"{'part':12} {'pitch':>5} {'c':>3} | {'I':>6} {'II':>6} {'seconds':>8} {'MiB':>6}    | ")
+    say(f"{'I':>5} {'II':>5} {'seconds':>8}   | times faster\n")
+    total, paper_total = 0.0, 0
+    for part, pitch, columns, type_one, type_two, paper_seconds in ROWS:
+        ours = apart(part, pitch, columns)
+        total, paper_total = total + ours["seconds"], paper_total + paper_seconds
+        say(f"{part:12} {pitch:5} {columns:3} | {ours['I']:6} {ours['II']:6} ")
+        say(f"{ours['seconds']:8.2f} {ours['memory']:6.0f}    | {type_one:5} {type_two:5} {paper_seconds:8}   | ")
+        say(f"{paper_seconds / ours['seconds']:12,.0f}\n")
+        sys.stdout.flush()
+    say(f"{'together':12} {'':5} {'':3} | {'':6} {'':6} {total:8.2f} {'':6}    | {'':5} {'':5} {paper_total:8}   | ")
+    say(f"{paper_total / total:12,.0f}\n")
+
+
+def main() -> None:
+    """Run as a script."""
+    if sys.argv[1:2] == ["--measure"]:
+        part, pitch, columns, warm = sys.argv[2:]
+        sys.stdout.write(json.dumps(measure(part, float(pitch), int(columns), warm == "1")))
+        return
+    table()
+    if "--first-run" in sys.argv[1:]:
+        with tempfile.TemporaryDirectory() as folder:
+            first = apart("oblongPart", 10, 1, warm=False, HOLDFAST_CACHE_DIR=folder)
+        sys.stdout.write(f"first run, kernels compiled: {first['seconds']:.1f} s\n")
+
+
+if __name__ == "__main__":
+    main()

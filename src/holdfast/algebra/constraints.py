@@ -1,0 +1,153 @@
+r"""Contact constraints h, g, h_sigma and g_sigma (paper, sections 4.1 to 4.4).
+
+The points (pegs) are mapped onto the features: turned by the orientation psi and moved so that the characteristic point,
+the first peg, stays on the characteristic circle, the first feature, at the angle phi. The paper writes this with
+t = tan(psi / 2) and u = tan(phi / 2). Here the same is written with
+
+    z = exp(i psi) = (1 + i t) / (1 - i t),    w = exp(i phi) = (1 + i u) / (1 - i u):
+
+a change of variables of degree one, so polynomials keep their degrees and their real roots, which move from the line to
+the unit circle. Nothing is at infinity there (psi = pi is z = -1), and the factors 1 + t^2 and 1 + u^2 that the paper's
+denominators leave behind are z = 0 and z = infinity, which drop out of a Laurent polynomial by themselves.
+
+A point x maps to C + R w + z x, with C, R the characteristic circle; a point of the right jaw to C + R w + z (x + sigma).
+At a fixed z a constraint is a polynomial in w and sigma, real when \|w\| = 1. It is kept as numbers:
+
+    w_0 + 2 Re(w_1 w)                                   a trigonometric polynomial in phi, called a ring here.
+    sigma^2 square + sigma linear(w) + constant(w)      a constraint with rings as coefficients.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+__all__ = ["Contacts", "Ring", "circle_constraint", "circle_difference", "line_constraint", "pair_constraint"]
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+BoolArray = NDArray[np.bool_]
+
+# Lengths that agree to this many mm are equal where equality changes the algebra.
+COINCIDENT = 1e-9
+
+
+@define(frozen=True, eq=False)
+class Ring:
+    """middle + 2 Re(first w): a trigonometric polynomial of degree one in phi, one at each of (N, M) values of z."""
+
+    middle: Array
+    first: Complex
+
+    def at(self, w: Complex) -> Array:
+        """The values at points w of the unit circle."""
+        return np.asarray(self.middle + 2.0 * (self.first * w).real)
+
+
+@define(frozen=True, eq=False)
+class Contacts:
+    """N systems of pegs and features in the form the constraints use.
+
+    Parameters
+    ----------
+    rows : (N, K, 8) feature rows.
+    point : (N, K) pegs as complex numbers from the first peg, right pegs with the jaw separation left out, in mm.
+    """
+
+    rows: Array
+    point: Complex
+
+    @property
+    def middle(self) -> Complex:
+        """A point of each line, or the centre of each circle, (N, K)."""
+        return np.asarray(self.rows[..., 1] + 1j * self.rows[..., 2])
+
+    @property
+    def normal(self) -> Complex:
+        """Unit normals of lines (N, K); without meaning for circles."""
+        return np.asarray(self.rows[..., 4] - 1j * self.rows[..., 3])
+
+    @property
+    def radius(self) -> Array:
+        """Radii (N, K), 0 for lines."""
+        return np.asarray(self.rows[..., 6])
+
+    def take(self, which: NDArray[np.int64] | BoolArray) -> Contacts:
+        """The systems of an index array or mask."""
+        return Contacts(self.rows[which], self.point[which])
+
+    def slides(self, k: int, m: int) -> BoolArray:
+        """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
+
+        There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
+        that tells them apart then have the factor z - z0.
+        """
+        arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
+        apart = np.abs(self.middle[:, m] - self.middle[:, k])
+        step = np.abs(self.point[:, m] - self.point[:, k])
+        equal = np.abs(self.radius[:, k] - self.radius[:, m]) <= COINCIDENT
+        return np.asarray(arcs & equal & (np.abs(apart - step) <= COINCIDENT))
+
+    def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
+        """z x + D of pegs k and m, as length (N, M) times direction: x the step from k to m, D from centre m to centre k.
+
+        Where the arcs slide, the length (with a sign) and the direction are exact right through the coincidence:
+        z x + D = x (z - z0) and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2).
+        """
+        step = (self.point[:, m] - self.point[:, k])[:, None]
+        between = (self.middle[:, k] - self.middle[:, m])[:, None]
+        plain = np.exp(1j * psi) * step + between
+        zero = np.angle(-between * np.conj(step))
+        length = np.where(self.slides(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0)
+        along = 1j * step / np.abs(step) * np.exp(0.5j * (psi + zero))
+        return length, np.where(self.slides(k, m)[:, None], along, plain)
+
+
+def line_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Array, Ring]:
+    """h (equation 2) or h_sigma (equation 4) of peg k on a line: (factor of sigma, the rest).
+
+    Parameters
+    ----------
+    psi : (N, M) orientations in radians.
+    """
+    z, normal = np.exp(1j * psi), contacts.normal[:, k, None]
+    start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    first = np.conj(normal) * contacts.radius[:, 0, None] / 2.0
+    return (np.conj(normal) * z).real, Ring((np.conj(normal) * start).real, np.broadcast_to(first, z.shape))
+
+
+def circle_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Ring, Ring]:
+    """g (equation 3) or g_sigma (equation 5) of peg k on a circle: (factor of sigma, the rest); sigma^2 has factor 1."""
+    z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
+    start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    linear = Ring(2.0 * (np.conj(z) * start).real, radius * np.conj(z))
+    square = np.abs(start) ** 2 + (radius - contacts.radius[:, k, None]) * (radius + contacts.radius[:, k, None])
+    return linear, Ring(square, radius * np.conj(start))
+
+
+def pair_constraint(contacts: Contacts, k: int, psi: Array) -> Ring:
+    """h or g of peg k of the first peg's jaw, where all N features k are of one kind; z - z0 is divided out of g."""
+    if contacts.rows[0, k, 0] == 0.0:
+        return line_constraint(contacts, k, psi)[1]
+    length, apart = contacts.centers_apart(0, k, psi)
+    slides = contacts.slides(0, k)[:, None]
+    radius, other = contacts.radius[:, 0, None], contacts.radius[:, k, None]
+    plain = np.abs(apart) ** 2 + (radius - other) * (radius + other)
+    return Ring(np.where(slides, length, plain), np.asarray(radius * np.conj(apart), np.complex128))
+
+
+def circle_difference(contacts: Contacts, k: int, m: int, psi: Array) -> tuple[Array, Ring]:
+    """g_sigma of peg m less that of peg k: sigma^2 cancels, so that it is linear in sigma like h_sigma.
+
+    Returns
+    -------
+    (factor of sigma, the rest), with z - z0 divided out where the arcs slide
+    """
+    z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
+    _, apart = contacts.centers_apart(k, m, psi)
+    one = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    two = (contacts.middle[:, 0] - contacts.middle[:, m])[:, None] + z * contacts.point[:, m, None]
+    radius_k, radius_m = contacts.radius[:, k, None], contacts.radius[:, m, None]
+    middle = (apart * np.conj(one + two)).real + (radius_k - radius_m) * (radius_k + radius_m)
+    return 2.0 * (np.conj(z) * apart).real, Ring(middle, np.asarray(radius * np.conj(apart), np.complex128))

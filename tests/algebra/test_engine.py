@@ -1,0 +1,111 @@
+"""The paper's algebra lists the same fixtures as the chord-curve search."""
+
+from __future__ import annotations
+
+import json
+from math import cos, pi, sin, sqrt, tan
+from pathlib import Path
+from random import Random
+from threading import Event
+
+import pytest
+
+from fixture_sets import Judge, assert_same, listed
+from holdfast import Vise, Workpiece, design
+from holdfast.algebra import design_by_algebra
+from strategies import star, straightened
+
+COMPLETE = Path(__file__).parent.parent / "data" / "complete"
+QUARTER = tan(pi / 8)
+
+
+def assert_engines_agree(workpiece: Workpiece, vise: Vise) -> int:
+    """Both engines list the same fixtures, nothing is left undecided; how many fixtures that is."""
+    ours = design_by_algebra(workpiece, vise)
+    assert ours.complete
+    assert ours.statistics["undecided"] == 0
+    assert_same(listed(ours), listed(design(workpiece, vise)), Judge(workpiece, vise))
+    return len(ours)
+
+
+def rounded(width: float, height: float, radius: float, angle: float) -> Workpiece:
+    """A rounded rectangle, its fillets' centres ``width`` and ``height`` apart, turned by an angle in radians."""
+    w, h, r, q = width / 2, height / 2, radius, QUARTER
+    loop = [(-w, -h - r, 0), (w, -h - r, q), (w + r, -h, 0), (w + r, h, q)]
+    loop += [(w, h + r, 0), (-w, h + r, q), (-w - r, h, 0), (-w - r, -h, q)]
+    turned = [[cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y, b] for x, y, b in loop]
+    return Workpiece.from_loops("rounded", [turned])
+
+
+@pytest.mark.parametrize("name", ["triangle_20_2", "oblongPart_10_1"])
+def test_complete_sets(name: str) -> None:
+    """The engine lists what an independent method found, apart from marginal fixtures."""
+    truth = json.loads((COMPLETE / f"{name}.json").read_text())
+    workpiece = Workpiece.from_loops(name, truth["workpiece"]["loops"])
+    vise = Vise(**truth["vise"])
+    judge = Judge(workpiece, vise)
+    have = [judge.identity(fixture) for fixture in listed(design_by_algebra(workpiece, vise))]
+    for fixture in truth["fixtures"]:
+        key, theta = judge.identity(fixture | {"pose": {"theta_deg": fixture["theta_deg"]}})
+        near = [t for k, t in have if k == key and abs((theta - t + 3) % (2 * pi) - 3) < 1e-5]
+        assert len(near) == 1 or fixture["marginal"]
+    assert assert_engines_agree(workpiece, vise) > 0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_random_parts(seed: int) -> None:
+    """Parts of three and four faces, lines and arcs, jaws with rows at different heights."""
+    part = straightened(star(Random(seed), 3 + seed % 2, True))
+    assert part is not None
+    assert assert_engines_agree(part, Vise(pitch=24.0, columns=1 + seed % 2, peg_radius=2.0, row_offset=1.7 * seed)) > 0
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3])
+def test_equal_arcs_one_step_apart_and_parallel_lines(angle: float) -> None:
+    """Fillets whose centres are lattice steps apart slide: that orientation is found apart from the resultants."""
+    assert assert_engines_agree(rounded(20.0, 20.0, 6.0, angle), Vise(pitch=10.0, columns=2, peg_radius=2.0)) > 0
+
+
+@pytest.mark.parametrize("miss", [1e-3, 1e-6])
+def test_nearly_equal_steps(miss: float) -> None:
+    """Centres almost a step apart crowd up to eight roots together; ball arithmetic takes them apart."""
+    assert assert_engines_agree(rounded(20.0 + miss, 20.0, 6.0, 0.0), Vise(pitch=10.0, columns=1, peg_radius=2.0)) > 0
+
+
+def test_three_equal_arcs_that_all_slide() -> None:
+    """Three left pegs on three equal arcs, each pair of centres one step apart."""
+    radius, half = 20.0 / sqrt(3.0), pi / 3
+    loop = []
+    for k in range(3):
+        for side in (-1, 1):
+            direction = 2 * k * half + side * half
+            x = radius * cos(2 * k * half) + 7.0 * cos(direction)
+            y = radius * sin(2 * k * half) + 7.0 * sin(direction)
+            loop.append([x, y, tan(half / 2) if side < 0 else 0.0])
+    part = Workpiece.from_loops("three", [loop])
+    assert assert_engines_agree(part, Vise(pitch=(10.0, 10.0 * sqrt(3.0)), columns=3, peg_radius=2.0)) > 0
+
+
+def test_concentric_arcs_and_a_whole_circle() -> None:
+    """Three normals through one point never close: a disc has no fixture, a disc with a flat has."""
+    vise = Vise(pitch=10.0, columns=2, peg_radius=2.0)
+    assert len(design_by_algebra(Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]]), vise)) == 0
+    assert assert_engines_agree(Workpiece.from_loops("half", [[[-20, 0, 0], [20, 0, 1]]]), vise) > 0
+
+
+def test_options() -> None:
+    """One type alone, a margin at the ends, and a cancelled search."""
+    part, vise = rounded(30.0, 20.0, 6.0, 0.2), Vise(pitch=10.0, columns=2, peg_radius=2.0)
+    ours = design_by_algebra(part, vise, types=("II",), contact_margin=1.0)
+    theirs = design(part, vise, types=("II",), contact_margin=1.0)
+    assert ours.counts == theirs.counts
+    cancel = Event()
+    cancel.set()
+    assert not design_by_algebra(part, vise, cancel=cancel).complete
+
+
+def test_double_contacts_are_no_fixtures() -> None:
+    """Two pegs exactly as far apart as the tips of a pill touch it doubly: their lines of action are one, nothing closes."""
+    pill = Workpiece.from_loops("pill", [[[0, -8, 0], [30, -8, 1], [30, 8, 0], [0, 8, 1]]])
+    ours = design_by_algebra(pill, Vise(pitch=10.0, columns=2, peg_radius=2.0), types=("II",))
+    assert ours.counts == {"I": 0, "II": 44}

@@ -1,0 +1,52 @@
+"""A result of a real search, as objects and as the JSON of its file."""
+
+from __future__ import annotations
+
+import copy
+import io
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+
+from holdfast import Result, Vise, design, load
+from holdfast.files.result_file import write_result_to
+from holdfast.verification import Verification, verify_file
+
+Data = dict[str, Any]
+
+
+@pytest.fixture(scope="session")
+def widget_result() -> Result:
+    """Twelve fixtures of the widget in a vise with two columns, of both types."""
+    result = design(load("widget"), Vise(pitch=8, columns=2, peg_radius=3))
+    table = result.table
+    chosen = np.concatenate([np.flatnonzero(table.type == kind)[:600:100] for kind in (1, 2)])
+    return attrs.evolve(result, table=table.take(chosen))
+
+
+@pytest.fixture(scope="session")
+def widget_data(widget_result: Result) -> Data:
+    """The JSON of that result's file."""
+    stream = io.StringIO()
+    write_result_to(widget_result, stream)
+    data: Data = json.loads(stream.getvalue())
+    return data
+
+
+@pytest.fixture
+def verified(widget_data: Data, tmp_path: Path) -> Callable[[Callable[[Data], object]], Verification]:
+    """Verify that file after an edit of its JSON."""
+
+    def edited(edit: Callable[[Data], object]) -> Verification:
+        data = copy.deepcopy(widget_data)
+        edit(data)
+        path = tmp_path / "edited.json"
+        path.write_text(json.dumps(data), encoding="utf-8")
+        return verify_file(path)
+
+    return edited

@@ -1,0 +1,62 @@
+"""The same fixture is recognized however it is written."""
+
+from __future__ import annotations
+
+import attrs
+import pytest
+
+from holdfast import Fixture, Pose, Result
+from holdfast.verification.repeats import Seen
+
+
+def shifted(fixture: Fixture, rows: int) -> Fixture:
+    """The fixture moved up by rows of 8 mm."""
+    pegs = [attrs.evolve(peg, row=peg.row + rows, y=peg.y + 8.0 * rows) for peg in fixture.pegs]
+    return attrs.evolve(fixture, pegs=tuple(pegs), pose=attrs.evolve(fixture.pose, y=fixture.pose.y + 8.0 * rows))
+
+
+def renamed(fixture: Fixture) -> Fixture:
+    """The fixture with its pegs in another order."""
+    return attrs.evolve(fixture, pegs=fixture.pegs[::-1])
+
+
+def half_turned(fixture: Fixture) -> Fixture:
+    """The fixture seen from the other side of the vise, whose jaws have two columns: (x, y) becomes (width - x, -y)."""
+    width = fixture.jaw_separation + 16.0
+    pegs = [
+        attrs.evolve(
+            peg,
+            jaw="left" if peg.jaw == "right" else "right",
+            column=1 - peg.column,
+            row=-peg.row,
+            x=width - peg.x,
+            y=-peg.y,
+        )
+        for peg in fixture.pegs
+    ]
+    pose = Pose(fixture.pose.theta_deg + 180.0, width - fixture.pose.x, -fixture.pose.y)
+    return attrs.evolve(fixture, pegs=tuple(pegs), pose=pose)
+
+
+def moved(fixture: Fixture, distance: float) -> Fixture:
+    """The same holes with the workpiece elsewhere."""
+    return attrs.evolve(fixture, pose=attrs.evolve(fixture.pose, x=fixture.pose.x + distance))
+
+
+@pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
+def test_the_same(widget_result: Result, again: object) -> None:
+    seen = Seen()
+    for index, fixture in enumerate(widget_result):
+        assert seen.add(index, fixture) is None
+    for index, fixture in enumerate(widget_result):
+        assert seen.add(100 + index, again(fixture)) == index  # type: ignore[operator]
+
+
+def test_not_the_same(widget_result: Result) -> None:
+    """Another place of the workpiece, or another opening with the same left pegs and pose."""
+    seen = Seen()
+    fixture = widget_result[0]
+    right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.jaw == "right")) for peg in fixture.pegs]
+    wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
+    assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [None, None, None]
+    assert seen.add(3, moved(fixture, 1e-8)) == 0
