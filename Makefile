@@ -1,0 +1,56 @@
+# make demo | test | check | bench | prove | clean -- the first use makes a Python environment in .venv
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+INSTALLED_DEV := $(VENV)/.installed-dev
+INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt
+
+.PHONY: demo test check bench prove clean
+
+# Designs for the example bracket and draws the best fixtures.
+demo: $(INSTALLED)
+	@mkdir -p demo
+	$(BIN)/holdfast design examples/bracket.dxf --pitch 10 --columns 2 --peg-radius 3 --out demo/bracket.json --draw demo/drawings
+	@echo "Look at demo/drawings/fixture-01.png and demo/drawings/thumbnails.png; all fixtures are in demo/bracket.json."
+
+# Every test and every example of the documentation.
+test: $(INSTALLED_DEV)
+	$(BIN)/python -m pytest -n 2
+
+# What a change must pass: format, lint, types, layers, tests.
+check: $(INSTALLED_DEV)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(MAKE) test
+
+# The twelve rows of the paper's Table 1, ours beside theirs.
+bench: $(INSTALLED)
+	$(BIN)/python benchmarks/table_one.py
+
+# Thousands of planted fixtures, then both engines on the complete sets, the paper's parts and random parts.
+prove: $(INSTALLED_DEV)
+	$(BIN)/python -m pytest -n 2 -m prove
+	$(BIN)/python benchmarks/prove.py
+
+# Everything made by the above but the environment.
+clean:
+	rm -rf demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -path ./$(VENV) -prune -o -name __pycache__ -type d -exec rm -rf {} +
+
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; sys.exit("holdfast needs Python 3.11 or later") if sys.version_info < (3, 11) else None'
+	$(PYTHON) -m venv $(VENV)
+
+$(INSTALLED): pyproject.toml constraints.txt | $(BIN)/python
+	@echo 'Installing holdfast and what it needs into $(VENV) ...'
+	$(INSTALL) -e .
+	@touch $@
+
+$(INSTALLED_DEV): pyproject.toml constraints.txt | $(BIN)/python
+	@echo 'Installing holdfast and its tools into $(VENV) ...'
+	$(INSTALL) -e '.[dev]'
+	@touch $@ $(INSTALLED)

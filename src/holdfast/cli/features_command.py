@@ -1,0 +1,62 @@
+"""``holdfast features``: the numbered faces of a part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from holdfast.cli.options import (
+    JoinToleranceOption,
+    LayerOption,
+    PartArgument,
+    PartNumberOption,
+    UnitOption,
+    load_part,
+)
+from holdfast.cli.values import optional_length, picture_ending
+from holdfast.errors import InputError
+
+__all__ = ["features"]
+
+
+def features(
+    part: PartArgument,
+    draw: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
+    ] = None,
+    peg_radius: Annotated[
+        str | None, typer.Option(metavar="MM", help="Draw also where the centres of pegs of this radius can be.")
+    ] = None,
+    unit: UnitOption = None,
+    layer: LayerOption = None,
+    part_number: PartNumberOption = None,
+    join_tolerance: JoinToleranceOption = "0.001",
+) -> None:
+    """List the numbered faces of PART, as pictures and result files name them.
+
+    Example: [cyan]holdfast features part.dxf --draw faces.svg[/cyan]
+    """
+    from holdfast.files.atomic import refuse_unwritable, write_bytes
+
+    radius = optional_length("--peg-radius", peg_radius)
+    if radius is not None and radius < 0:
+        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more, in mm.")
+    ending = None
+    if draw is not None:
+        ending = picture_ending(draw)
+        refuse_unwritable(draw)
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance).workpiece
+
+    from holdfast.cli.tables import face_table, plural, print_tables
+
+    x0, y0, x1, y1 = workpiece.bounds
+    faces = plural(len(workpiece.faces), "face")
+    print_tables(f"{workpiece.name}: {x1 - x0:.3f} x {y1 - y0:.3f} mm, {faces}", face_table(workpiece))
+    if draw is not None and ending is not None:
+        from holdfast.drawing.features_picture import draw_features
+        from holdfast.drawing.render import render
+
+        write_bytes(draw, render(draw_features(workpiece, peg_radius=radius), ending))
+        print_tables(f"Drawn in {draw}.")

@@ -1,0 +1,57 @@
+"""The pictures of a design: the best fixtures one by one, and a sheet of thumbnails."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from holdfast.errors import InputError
+
+if TYPE_CHECKING:
+    from holdfast.model.result import Result
+
+__all__ = ["BEST_DRAWN", "draw_best"]
+
+BEST_DRAWN = 12
+ENDINGS = (".svg", ".png")
+
+
+def draw_best(result: Result, folder: Path) -> list[Path]:
+    """Draw the best twelve fixtures and the thumbnails into a folder, as SVG and PNG; returns the files written.
+
+    The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
+    fewer fixtures; nothing else in the folder is touched.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from holdfast.drawing.fixture_picture import draw_fixture
+    from holdfast.drawing.render import render
+    from holdfast.drawing.thumbnails import draw_thumbnails
+    from holdfast.files.atomic import write_bytes
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in ["thumbnails", *(f"fixture-{rank:02d}" for rank in range(1, BEST_DRAWN + 1))]:
+            for ending in ENDINGS:
+                (folder / f"{old}{ending}").unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    fixtures = result[:BEST_DRAWN]
+    if not fixtures:
+        return []
+    pictures = {}
+    for rank, fixture in enumerate(fixtures, 1):
+        title = f"Fixture {rank}"
+        pictures[f"fixture-{rank:02d}"] = draw_fixture(fixture, result.workpiece, result.vise, title=title)
+    titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
+    pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles)
+    written = []
+    for name, svg in pictures.items():
+        for ending in ENDINGS:
+            path = folder / f"{name}{ending}"
+            write_bytes(path, render(svg, ending))
+            written.append(path)
+    return written

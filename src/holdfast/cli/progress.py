@@ -1,0 +1,83 @@
+"""What happens on the terminal while a search runs: a progress bar, and Ctrl-C.
+
+The first Ctrl-C asks the search to stop and hand over what it has; the second ends the program at once.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+__all__ = ["ask_to_stop", "search_progress"]
+
+INTERRUPTED = 130
+
+
+@contextmanager
+def search_progress(first_run: bool) -> Iterator[Callable[[float, int], None]]:
+    """A progress bar on stderr, as a function of the fraction done and the fixtures found; quiet in a pipe."""
+    if not sys.stderr.isatty():
+        yield lambda fraction, found: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[found]} found"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        words = "Compiling the kernels, on the first run only" if first_run else "Searching"
+        task = bar.add_task(words, total=1.0, found=0)
+
+        def progress(fraction: float, found: int) -> None:
+            bar.update(task, completed=fraction, found=found, description="Searching")
+
+        running.append(bar)
+        try:
+            yield progress
+        finally:
+            running.remove(bar)
+
+
+# Bars on the terminal now; an abrupt end must give the cursor back.
+running: list[Progress] = []
+
+
+@contextmanager
+def ask_to_stop() -> Iterator[threading.Event]:
+    """An event that the first Ctrl-C within the block sets; another one ends the program."""
+    event = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield event
+        return
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if event.is_set():
+            for bar in running:
+                bar.stop()
+            os.write(2, b"holdfast: interrupted; nothing was written.\n")
+            # Threads of the search may be deep in compiled code: no orderly end waits for them.
+            os._exit(INTERRUPTED)
+        event.set()
+        os.write(2, b"\nholdfast: stopping; what was found so far is kept (Ctrl-C again ends at once).\n")
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield event
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,58 @@
+"""``holdfast show``: how to set up one fixture of a result file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from holdfast.cli.values import picture_ending, whole_number
+from holdfast.errors import InputError
+
+__all__ = ["show"]
+
+
+def show(
+    result_file: Annotated[
+        Path, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
+    ],
+    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    draw: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
+    ] = None,
+) -> None:
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose.
+
+    A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
+
+    Example: [cyan]holdfast show part.json 1 --draw setup.png[/cyan]
+    """
+    from holdfast.files.atomic import refuse_unwritable, write_bytes
+    from holdfast.files.result_file import read_result
+
+    rank = whole_number("fixture", number)
+    if rank < 1:
+        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    ending = None
+    if draw is not None:
+        ending = picture_ending(draw)
+        refuse_unwritable(draw)
+    result = read_result(result_file)
+    if rank > len(result):
+        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    fixture = result[rank - 1]
+
+    from holdfast.cli.tables import fixture_tables, print_tables
+
+    print_tables(*fixture_tables(fixture, rank, len(result)))
+    if not result.complete:
+        typer.echo("holdfast: the search for this result was interrupted; there may be better fixtures.", err=True)
+    if draw is not None and ending is not None:
+        from holdfast.drawing.fixture_picture import draw_fixture
+        from holdfast.drawing.render import render
+
+        title = f"Fixture {rank}"
+        svg = draw_fixture(fixture, result.workpiece, result.vise, title=title)
+        write_bytes(draw, render(svg, ending))
+        print_tables(f"Drawn in {draw}.")

@@ -1,0 +1,138 @@
+"""Tables and sentences for the terminal."""
+
+from __future__ import annotations
+
+import sys
+from math import degrees, hypot, pi
+from typing import TYPE_CHECKING, TextIO
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from holdfast.geometry.face import Face
+    from holdfast.model.fixture import Fixture
+    from holdfast.model.result import Result
+    from holdfast.model.workpiece import Workpiece
+
+__all__ = ["counts_sentence", "face_table", "fixture_tables", "new_table", "plural", "print_tables", "result_table"]
+
+# Where nobody looks at a terminal, lines are as long as they need to be.
+WIDTH_OF_A_FILE = 200
+
+
+class Terminal(Console):
+    """A console that leaves a broken pipe to the command line's one place for it."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise what happened."""
+        raise BrokenPipeError
+
+
+def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
+    """Print tables and sentences to a stream, stdout by default."""
+    stream = stream or sys.stdout
+    console = Terminal(file=stream, highlight=False, markup=False, width=None if stream.isatty() else WIDTH_OF_A_FILE)
+    for part in parts:
+        if isinstance(part, str):
+            stream.write(part + "\n")
+        else:
+            console.print(part)
+    stream.flush()
+
+
+def new_table(*columns: str, title: str | None = None) -> Table:
+    """An empty table; a column whose name begins with ``>`` has its content on the right."""
+    table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False, show_edge=False)
+    for column in columns:
+        right = column.startswith(">")
+        table.add_column(column.lstrip(">"), justify="right" if right else "left", overflow="fold")
+    return table
+
+
+def plural(count: int, word: str) -> str:
+    """A number and its noun.
+
+    >>> plural(1, "fixture"), plural(2, "fixture")
+    ('1 fixture', '2 fixtures')
+    """
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def counts_sentence(result: Result) -> str:
+    """How many fixtures there are, of which type, and how many differ under the part's symmetry."""
+    total = sum(result.found.values())
+    kinds = ", ".join(f"{result.found[kind]} of type {kind}" for kind in ("I", "II"))
+    sentence = (
+        f"{plural(total, 'fixture')}: {kinds}; {sum(result.distinct.values())} distinct under the part's symmetry"
+    )
+    if len(result) < total:
+        sentence += f"; the best {len(result)} are kept"
+    return sentence
+
+
+def result_table(result: Result, count: int) -> Table:
+    """The best fixtures, one line each."""
+    table = new_table(">rank", "type", "left holes", "right holes", ">opening mm", ">angle deg", ">closure margin")
+    for rank, fixture in enumerate(result[:count], 1):
+        holes = {jaw: " ".join(peg.hole for peg in fixture.pegs if peg.jaw == jaw) for jaw in ("left", "right")}
+        table.add_row(
+            str(rank),
+            fixture.type,
+            holes["left"],
+            holes["right"],
+            f"{fixture.jaw_separation:.3f}",
+            f"{fixture.pose.theta_deg:.3f}",
+            f"{fixture.quality['closure_margin']:.4f}",
+        )
+    return table
+
+
+def fixture_tables(fixture: Fixture, rank: int, total: int) -> tuple[Table | str, ...]:
+    """How to set up one fixture: what to turn, and where each peg goes."""
+    pegs = new_table("hole", "jaw", ">x mm", ">y mm", ">face", ">force per jaw force")
+    for peg in fixture.pegs:
+        pegs.add_row(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.segment), f"{peg.force:.3f}")
+    pose = fixture.pose
+    return (
+        f"Fixture {rank} of {total}, type {fixture.type}",
+        f"Jaw separation {fixture.jaw_separation:.3f} mm, closure margin {fixture.quality['closure_margin']:.4f}",
+        f"The part is turned by {pose.theta_deg:.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm from "
+        "the left jaw's hole L-A1",
+        pegs,
+    )
+
+
+def face_table(workpiece: Workpiece) -> Table:
+    """The numbered faces of a part."""
+    table = new_table(">face", "kind", "size mm", "from", "to", "loop")
+    first = 0
+    loop_of = {}
+    for index, loop in enumerate(workpiece.loops):
+        loop_of.update(dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}"))
+        first += len(loop)
+    for face in workpiece.faces:
+        table.add_row(str(face.number), *face_words(face), loop_of[face.number])
+    return table
+
+
+def face_words(face: Face) -> tuple[str, str, str, str]:
+    """Kind, size, start and end of a face."""
+    from holdfast.geometry.segment import Arc
+
+    segment = face.segment
+    start, end = place(segment.start), place(segment.end)
+    if not isinstance(segment, Arc):
+        length = hypot(segment.end[0] - segment.start[0], segment.end[1] - segment.start[1])
+        return "line", f"length {length:.3f}", start, end
+    kind = "arc, convex" if segment.sign > 0 else "arc, concave"
+    if segment.half_sweep > pi - 1e-9:
+        return kind, f"radius {segment.radius:.3f}, full circle", f"about {place(segment.center)}", ""
+    return kind, f"radius {segment.radius:.3f}, sweep {degrees(2 * segment.half_sweep):.2f} deg", start, end
+
+
+def place(point: tuple[float, float]) -> str:
+    """A point's coordinates in mm, without negative zeros."""
+    x, y = (round(value, 3) + 0.0 for value in point)
+    return f"({x:.3f}, {y:.3f})"

@@ -1,0 +1,95 @@
+"""``holdfast verify``: proof or refutation of every fixture of a result file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from holdfast.cli.values import whole_number
+
+if TYPE_CHECKING:
+    from holdfast.verification import Verification
+
+__all__ = ["verify"]
+
+REFUTED = 2
+
+
+def verify(
+    result_file: Annotated[
+        Path, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
+    ],
+    list_: Annotated[
+        str,
+        typer.Option("--list", metavar="N", help="How many fixtures that are not proven to list on the terminal."),
+    ] = "5",
+) -> None:
+    """Prove or refute every fixture of a result, and every number written with it.
+
+    Each fixture is derived again from workpiece, vise, pegs and faces alone, in arithmetic whose rounding errors are
+    bounded, with nothing of the search. What an exact coincidence leaves open, such as a jaw separation of just the
+    smallest gap, is undecided. The exit code is 0 when nothing is refuted and 2 otherwise.
+
+    Example: [cyan]holdfast verify part.json[/cyan]
+    """
+    listed = whole_number("--list", list_)
+
+    from holdfast.cli.tables import print_tables
+    from holdfast.verification import verify_file
+
+    start = perf_counter()
+    with verifying_progress() as progress:
+        outcome = verify_file(result_file, progress)
+    seconds = perf_counter() - start
+    print_tables(*unproven_sentences(outcome, listed), f"{summary(outcome)}; {seconds:.1f} s")
+    if not outcome.holds:
+        raise typer.Exit(REFUTED)
+
+
+def summary(outcome: Verification) -> str:
+    """How many fixtures are proven, refuted and undecided."""
+    from holdfast.cli.tables import plural
+
+    return (
+        f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
+        f"{outcome.undecided} undecided at {outcome.bits} bits"
+    )
+
+
+def unproven_sentences(outcome: Verification, count: int) -> list[str]:
+    """What is wrong with the file, and with the first fixtures that are not proven, the refuted ones first."""
+    sentences = [f"The file: {fault}." for fault in outcome.faults]
+    unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
+    for fixture in unproven[: max(count, 0)]:
+        what = "Twin" if fixture.twin else "Fixture"
+        sentences.append(f"{what} {fixture.index + 1} is {fixture.verdict}: {fixture.reason}.")
+    return sentences
+
+
+@contextmanager
+def verifying_progress() -> Iterator[Callable[[float, int], None]]:
+    """A progress bar on stderr, as a function of the fraction done and the fixtures not proven; quiet in a pipe."""
+    if not sys.stderr.isatty():
+        yield lambda fraction, unproven: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("Verifying"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[unproven]} not proven"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("", total=1.0, unproven=0)
+        yield lambda fraction, unproven: bar.update(task, completed=fraction, unproven=unproven)

@@ -1,0 +1,64 @@
+"""A search made up of prepared results, so that the command line can be tried without a search."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import attrs
+import pytest
+from typer.testing import CliRunner
+from typer.testing import Result as Outcome
+
+from fakes import fake_result
+from holdfast.cli.main import app
+from holdfast.model.result import Result
+
+Run = Callable[..., Outcome]
+
+
+@pytest.fixture
+def run() -> Run:
+    """Run the command line within this process; the outcome has ``exit_code``, ``stdout`` and ``stderr``."""
+
+    def invoke(*arguments: object) -> Outcome:
+        return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+    return invoke
+
+
+@pytest.fixture
+def searched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Replace the search; set ``result`` to what it shall return, find in ``asked`` what it was asked."""
+    memory: dict[str, Any] = {"result": fake_result(7), "asked": None}
+
+    def design(workpiece: object, vise: object, **options: object) -> Result:
+        memory["asked"] = {"workpiece": workpiece, "vise": vise, **options}
+        options["progress"](0.5, 3)  # type: ignore[operator]
+        result: Result = memory["result"]
+        best = options["best"]
+        return attrs.evolve(result, table=result.table.take(slice(0, best)))  # type: ignore[arg-type]
+
+    module = ModuleType("holdfast.search.design")
+    module.design = design  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "holdfast.search.design", module)
+    return memory
+
+
+@pytest.fixture
+def process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run the command line in a process of its own, in the test's folder."""
+
+    def started(*arguments: object, **options: Any) -> subprocess.CompletedProcess[str]:
+        command: Sequence[str] = [sys.executable, "-m", "holdfast", *(str(argument) for argument in arguments)]
+        environment = {**os.environ, "COLUMNS": "100", **options.pop("environment", {})}
+        return subprocess.run(
+            command, capture_output=True, text=True, timeout=60, cwd=tmp_path, env=environment, check=False, **options
+        )
+
+    return started

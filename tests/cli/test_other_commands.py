@@ -1,0 +1,110 @@
+"""``holdfast show``, ``features`` and ``parts``, and the help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fakes import fake_result
+from holdfast import __version__
+from holdfast.files.result_file import write_result
+
+
+@pytest.fixture
+def result_file(tmp_path: Path) -> Path:
+    """A result file of six fixtures."""
+    write_result(fake_result(6), tmp_path / "r.json")
+    return tmp_path / "r.json"
+
+
+def test_show_tells_all_that_has_to_be_set(run: Any, result_file: Path) -> None:
+    outcome = run("show", result_file, 2)
+    assert outcome.exit_code == 0
+    fixture = fake_result(6)[1]
+    assert f"Fixture 2 of 6, type {fixture.type}" in outcome.stdout
+    assert f"Jaw separation {fixture.jaw_separation:.3f} mm" in outcome.stdout
+    assert f"turned by {fixture.pose.theta_deg:.3f} degrees" in outcome.stdout
+    for peg in fixture.pegs:
+        row = next(line for line in outcome.stdout.splitlines() if line.split()[:1] == [peg.hole])
+        assert row.split() == [
+            *(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.segment), f"{peg.force:.3f}")
+        ]
+
+
+@pytest.mark.parametrize(("name", "start"), [("a.svg", b"<"), ("a.PNG", b"\x89PNG")])
+def test_show_draws(run: Any, result_file: Path, tmp_path: Path, name: str, start: bytes) -> None:
+    outcome = run("show", result_file, 1, "--draw", tmp_path / name)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert (tmp_path / name).read_bytes().startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("r.json", "0"), "there is no fixture 0: fixtures are counted from 1"),
+        (("r.json", "7"), "lists 6 fixtures: there is no fixture 7"),
+        (("r.json", "best"), "fixture 'best' is not a whole number"),
+        (("none.json", "1"), "none.json cannot be read: No such file"),
+        ((".", "1"), "cannot be read: Is a directory"),
+        (("r.json", "1", "--draw", "a.pdf"), "let the name end in .svg or .png"),
+        (("r.json", "1", "--draw", "missing/a.svg"), "there is no folder missing"),
+        (("r.json",), "Missing argument 'N'"),
+    ],
+)
+def test_show_refuses(
+    run: Any, result_file: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], message: str
+) -> None:
+    monkeypatch.chdir(result_file.parent)
+    outcome = run("show", *arguments)
+    assert outcome.exit_code == 2
+    assert message in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+
+
+def test_features_lists_every_face(run: Any, tmp_path: Path) -> None:
+    part = tmp_path / "plate.json"
+    part.write_text(
+        '{"name": "plate", "units": "mm", "loops": [[[0,0,0],[60,0,0.1],[60,40,0],[0,40,-0.2]],'
+        " [[20,20,-1],[30,20,-1]]]}"
+    )
+    outcome = run("features", part, "--draw", tmp_path / "f.svg", "--peg-radius", 3)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "5 faces" in outcome.stdout
+    words = [line.split() for line in outcome.stdout.splitlines()]
+    assert ["0", "line", "length", "60.000", "(0.000,", "0.000)", "(60.000,", "0.000)", "outer"] in words
+    assert any(row[:3] == ["1", "arc,", "convex"] for row in words)
+    assert any(row[:3] == ["3", "arc,", "concave"] for row in words)
+    circle = next(row for row in words if row[:1] == ["4"])
+    assert "full circle about (25.000, 20.000)" in " ".join(circle)
+    assert circle[-2:] == ["hole", "1"]
+    assert (tmp_path / "f.svg").exists()
+
+
+def test_parts_lists_the_built_in_parts(run: Any) -> None:
+    outcome = run("parts")
+    assert outcome.exit_code == 0
+    names = [line.split()[0] for line in outcome.stdout.splitlines()[2:]]
+    assert names == ["8Handle", "flange", "large4Handle", "oblongPart", "small4Handle", "thin4Handle", "widget"]
+
+
+def test_version_and_help(run: Any) -> None:
+    assert run("--version").stdout == f"holdfast {__version__}\n"
+    outcome = run("--help")
+    assert outcome.exit_code == 0
+    for word in ("design", "show", "features", "parts", "Examples", "millimetres"):
+        assert word in outcome.stdout
+    for command in ("design", "show", "features", "parts"):
+        outcome = run(command, "--help")
+        assert outcome.exit_code == 0
+        assert "Example: holdfast" in outcome.stdout
+
+
+def test_no_command_and_an_unknown_one(run: Any) -> None:
+    outcome = run()
+    assert outcome.exit_code == 2
+    assert "Examples" in outcome.output
+    outcome = run("desing")
+    assert outcome.exit_code == 2
+    assert outcome.stderr == "holdfast: error: No such command 'desing'. Did you mean 'design'?; see holdfast --help.\n"
