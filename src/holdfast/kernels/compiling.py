@@ -28,9 +28,9 @@ FOLDERS_KEPT = 3
 
 
 def source_hash() -> str:
-    """Hash of the package's sources and of the versions that compile them."""
-    digest = sha256(f"{sys.version} numba {numba.__version__}".encode())
+    """Hash of the package's sources, of where they are, and of the versions that compile them."""
     package = Path(__file__).resolve().parent
+    digest = sha256(f"{sys.version} numba {numba.__version__} {package}".encode())
     for path in sorted(package.glob("*.py")):
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
