@@ -17,16 +17,31 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-__all__ = ["ask_to_stop", "search_progress"]
+__all__ = ["ask_to_stop", "progress_bar", "search_progress"]
 
 INTERRUPTED = 130
 
 
 @contextmanager
 def search_progress(first_run: bool) -> Iterator[Callable[[float, int], None]]:
-    """A progress bar on stderr, as a function of the fraction done and the fixtures found; quiet in a pipe."""
+    """The progress bar of a search, as a function of the fraction done and the fixtures found."""
+    first = "Compiling the kernels, on the first run only" if first_run else "Searching"
+    with progress_bar("Searching", "found", first) as progress:
+        yield progress
+
+
+@contextmanager
+def progress_bar(doing: str, counted: str, first: str | None = None) -> Iterator[Callable[[float, int], None]]:
+    """A progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
+
+    Parameters
+    ----------
+    doing : what is being done.
+    counted : what the count is of, the word behind the number.
+    first : what is said until the first progress, if something else.
+    """
     if not sys.stderr.isatty():
-        yield lambda fraction, found: None
+        yield lambda fraction, count: None
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
@@ -35,17 +50,16 @@ def search_progress(first_run: bool) -> Iterator[Callable[[float, int], None]]:
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
-        TextColumn("{task.fields[found]} found"),
+        TextColumn(f"{{task.fields[count]}} {counted}"),
         TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
     )
     with bar:
-        words = "Compiling the kernels, on the first run only" if first_run else "Searching"
-        task = bar.add_task(words, total=1.0, found=0)
+        task = bar.add_task(first or doing, total=1.0, count=0)
 
-        def progress(fraction: float, found: int) -> None:
-            bar.update(task, completed=fraction, found=found, description="Searching")
+        def progress(fraction: float, count: int) -> None:
+            bar.update(task, completed=fraction, count=count, description=doing)
 
         running.append(bar)
         try:

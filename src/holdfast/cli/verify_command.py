@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from holdfast.cli.progress import progress_bar
 from holdfast.cli.values import whole_number
 
 if TYPE_CHECKING:
@@ -44,7 +42,7 @@ def verify(
     from holdfast.verification import verify_file
 
     start = perf_counter()
-    with verifying_progress() as progress:
+    with progress_bar("Verifying", "not proven") as progress:
         outcome = verify_file(result_file, progress)
     seconds = perf_counter() - start
     print_tables(*unproven_sentences(outcome, listed), f"{summary(outcome)}; {seconds:.1f} s")
@@ -70,26 +68,3 @@ def unproven_sentences(outcome: Verification, count: int) -> list[str]:
         what = "Twin" if fixture.twin else "Fixture"
         sentences.append(f"{what} {fixture.index + 1} is {fixture.verdict}: {fixture.reason}.")
     return sentences
-
-
-@contextmanager
-def verifying_progress() -> Iterator[Callable[[float, int], None]]:
-    """A progress bar on stderr, as a function of the fraction done and the fixtures not proven; quiet in a pipe."""
-    if not sys.stderr.isatty():
-        yield lambda fraction, unproven: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
-    bar = Progress(
-        TextColumn("Verifying"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[unproven]} not proven"),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task("", total=1.0, unproven=0)
-        yield lambda fraction, unproven: bar.update(task, completed=fraction, unproven=unproven)

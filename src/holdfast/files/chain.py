@@ -21,7 +21,7 @@ from holdfast.errors import InputError
 from holdfast.geometry.loop import SHORTEST
 from holdfast.geometry.segment import Point
 
-__all__ = ["Chain", "Drawing", "arc_bulges", "circle_chain", "cleaned", "listed", "rebulged"]
+__all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
 
 # Ends nearer than this, in mm, are the same point: the rounding of computed arc ends and of placed blocks.
 SAME_POINT = 1e-9
@@ -84,12 +84,6 @@ def arc_bulges(sweep: float) -> list[float]:
     if abs(sweep) == pi:
         return [copysign(1.0, sweep)]
     return [tan(sweep / 4)] if abs(sweep) < 1.95 * pi else [tan(sweep / 8)] * 2
-
-
-def circle_chain(center: Point, radius: float, label: str) -> Chain:
-    """A circle, counter-clockwise, as two halves."""
-    (x, y) = center
-    return Chain(((x + radius, y), (x - radius, y), (x + radius, y)), (1.0, 1.0), (label, label))
 
 
 def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:

@@ -125,8 +125,8 @@ def refuse_loops_across(part: Part, others: Sequence[Part]) -> None:
                     refuse_meeting_loops(
                         LoopShape.of(loop_segments(ours.loop.vertices)),
                         LoopShape.of(loop_segments(theirs.loop.vertices)),
-                        lambda k, labels=ours.loop.labels: labels[k],  # type: ignore[misc]
-                        lambda k, labels=theirs.loop.labels: labels[k],  # type: ignore[misc]
+                        ours.loop.labels.__getitem__,
+                        theirs.loop.labels.__getitem__,
                     )
 
 

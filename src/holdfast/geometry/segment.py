@@ -12,7 +12,7 @@ row : the eight numbers that describe a segment to the compiled kernels, see :fu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan, atan2, cos, hypot, pi, sin, tau
+from math import atan, atan2, cos, hypot, pi, sin
 
 import numpy as np
 from attrs import frozen
@@ -189,8 +189,3 @@ def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
     rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, ROW_LENGTH)
     rows.setflags(write=False)
     return rows
-
-
-def normalized_angle(angle: float) -> float:
-    """The same direction in [0, 2 pi)."""
-    return angle % tau
