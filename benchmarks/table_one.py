@@ -2,7 +2,9 @@
 
 The parts are models of the paper's, whose dimensions were never published, so counts can only be of the same order.
 Every row runs in a process of its own, so that its memory is its own; the seconds are those of the search alone, with
-kernels compiled and loaded. With ``--first-run``, also how long a first run takes, compilation included.
+kernels compiled and loaded. With ``--unproven``, also what the proof costs: the same code with all error bounds set to zero
+and candidates taken at their word, measured beside the proven run. With ``--first-run``, also how long a first run takes,
+compilation included.
 """
 
 from __future__ import annotations
@@ -33,10 +35,35 @@ ROWS = (
 )
 
 
-def measure(part: str, pitch: float, columns: int, warm: bool = True) -> dict[str, float]:
+def without_proof() -> None:
+    """Take the proof out of the search of this process, before its kernels are compiled."""
+    import numpy as np
+
+    from holdfast.kernels import chord, chord_intervals, crossing
+    from holdfast.listing import deciding, finish
+
+    for module in (chord, chord_intervals, crossing):
+        module.ROUNDINGS = 0.0
+
+    def taken(records: np.ndarray, problem: deciding.Problem) -> tuple[np.ndarray, deciding.Account]:
+        """Polished records whose middles keep all rules."""
+        records = records[records[:, 0] > 0.0]
+        features = problem.rows[deciding.peg_integers(records)[0], :8]
+        places = deciding.peg_places(records, problem.vise)
+        contacts = deciding.polish(features, *deciding.unknowns(records), *places, problem.wrench_length)
+        lower, _ = deciding.slacks(contacts, np.zeros(len(records)), deciding.rules_of(records, problem))
+        kept = deciding.solved(records, contacts)[(lower > 0.0).all(axis=0)]
+        return kept, deciding.Account(len(records), len(kept), 0, ())
+
+    finish.decided = taken
+
+
+def measure(part: str, pitch: float, columns: int, warm: bool = True, proven: bool = True) -> dict[str, float]:
     """Counts, seconds and peak memory in MiB of one design in this process."""
     import holdfast
 
+    if not proven:
+        without_proof()
     if warm:
         holdfast.design(holdfast.load("oblongPart"), holdfast.Vise(pitch=10, columns=1, peg_radius=PEG_RADIUS))
     workpiece = holdfast.load(part)
@@ -47,9 +74,11 @@ def measure(part: str, pitch: float, columns: int, warm: bool = True) -> dict[st
     return {**result.counts, "seconds": seconds, "memory": memory}
 
 
-def apart(part: str, pitch: float, columns: int, warm: bool = True, **environment: str) -> dict[str, float]:
+def apart(
+    part: str, pitch: float, columns: int, warm: bool = True, proven: bool = True, **environment: str
+) -> dict[str, float]:
     """Measure one design in a process of its own."""
-    command = [sys.executable, __file__, "--measure", part, str(pitch), str(columns), str(int(warm))]
+    command = [sys.executable, __file__, "--measure", part, str(pitch), str(columns), str(int(warm)), str(int(proven))]
     done = subprocess.run(command, stdout=subprocess.PIPE, check=True, text=True, env={**os.environ, **environment})
     figures: dict[str, float] = json.loads(done.stdout)
     return figures
@@ -73,13 +102,37 @@ def table() -> None:
     say(f"{paper_total / total:12,.0f}\n")
 
 
+def cost_of_proof() -> None:
+    """Print what the proof costs, row by row: best of three proven and three unproven runs, in turn."""
+    say = sys.stdout.write
+    say(
+        f"\n{'part':12} {'pitch':>5} {'c':>3} | {'unproven':>8} {'proven':>8} {'ratio':>6} | {'I':>6} {'II':>6} unproven\n"
+    )
+    totals = [0.0, 0.0]
+    with tempfile.TemporaryDirectory() as folder:
+        apart("oblongPart", 10, 1, proven=False, HOLDFAST_CACHE_DIR=folder)
+        for part, pitch, columns, *_ in ROWS:
+            plain, proven = [], []
+            for _ in range(3):
+                plain.append(apart(part, pitch, columns, proven=False, HOLDFAST_CACHE_DIR=folder))
+                proven.append(apart(part, pitch, columns))
+            best = [min(run["seconds"] for run in runs) for runs in (plain, proven)]
+            totals = [total + seconds for total, seconds in zip(totals, best, strict=True)]
+            say(f"{part:12} {pitch:5} {columns:3} | {best[0]:8.2f} {best[1]:8.2f} {best[1] / best[0]:6.2f} | ")
+            say(f"{plain[0]['I']:6} {plain[0]['II']:6}\n")
+            sys.stdout.flush()
+    say(f"{'together':12} {'':5} {'':3} | {totals[0]:8.2f} {totals[1]:8.2f} {totals[1] / totals[0]:6.2f} |\n")
+
+
 def main() -> None:
     """Run as a script."""
     if sys.argv[1:2] == ["--measure"]:
-        part, pitch, columns, warm = sys.argv[2:]
-        sys.stdout.write(json.dumps(measure(part, float(pitch), int(columns), warm == "1")))
+        part, pitch, columns, warm, proven = sys.argv[2:]
+        sys.stdout.write(json.dumps(measure(part, float(pitch), int(columns), warm == "1", proven == "1")))
         return
     table()
+    if "--unproven" in sys.argv[1:]:
+        cost_of_proof()
     if "--first-run" in sys.argv[1:]:
         with tempfile.TemporaryDirectory() as folder:
             first = apart("oblongPart", 10, 1, warm=False, HOLDFAST_CACHE_DIR=folder)

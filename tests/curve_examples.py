@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from chord_examples import KINDS, random_chord
 from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table
 from holdfast.kernels.chord import HEIGHT, POSITION
-from holdfast.kernels.crossing import MOST_ROOTS, STACK_DEPTH, crossings, value_at
+from holdfast.kernels.crossing import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
 from holdfast.kernels.pieces import cell_pieces
 from strategies import random_row
 
@@ -47,21 +47,20 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     return cell_pieces(low, high, members, features, table.integers, table.reals, mode, flatness)
 
 
-def cross(first, second, features, table, mode, offset, period) -> tuple[Array, int]:
-    """Roots and number of touches of two pieces."""
-    stack, roots = np.empty((STACK_DEPTH, 10)), np.empty(MOST_ROOTS)
-    number, touches = crossings(
-        first, second, features, table.integers, table.reals, mode, offset, period, stack, roots
-    )
-    return roots[:number].copy(), touches
+def cross(first, second, features, table, mode, offset, period) -> Array:
+    """Roots (N, 3) of two pieces: orientation, radius and multiple of the period."""
+    stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
+    number = crossings(first, second, features, table.integers, table.reals, mode, offset, period, stack, roots)
+    assert number >= 0
+    return roots[:number].copy()
 
 
 @numba.njit
 def sampled(psis, curve, features, integers, reals, mode):
-    """Values and slopes of a curve at many orientations, shape (N, 2)."""
-    out = np.empty((psis.shape[0], 2))
+    """Values and slopes of a curve at many orientations, and bounds of their errors, shape (N, 4)."""
+    out = np.empty((psis.shape[0], 4))
     for k in range(psis.shape[0]):
-        out[k, 0], out[k, 1] = value_at(psis[k], curve, features, integers, reals, mode)
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value_at(psis[k], curve, features, integers, reals, mode)
     return out
 
 

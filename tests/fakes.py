@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from holdfast.model.proof import Proof, Undecided
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
@@ -41,3 +42,14 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
     for name, value in changes.items():
         object.__setattr__(result, name, value)
     return result
+
+
+def fake_proof(undecided: int, **changes: int) -> Proof:
+    """An account that adds up, with so many undecided candidates on faces of the plate."""
+    lost = tuple(
+        Undecided("II" if k % 2 else "I", (0, 1, 2, 4), (0, 1, 0, -k), (0, -3, 1, k), 7.25 * k, f"reason {k}")
+        for k in range(undecided)
+    )
+    counts = {"cells": 288, "discarded_by_bound": 81_440, "verified": 1324, "escalated": 32 + undecided} | changes
+    candidates = counts["discarded_by_bound"] + counts["verified"] + undecided
+    return Proof(candidates=candidates, undecided=lost, **counts)

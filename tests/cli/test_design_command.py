@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from fakes import fake_result
+from fakes import fake_proof, fake_result
 from holdfast.errors import InputError
 from holdfast.files.result_file import read_result
 
@@ -94,6 +94,58 @@ def test_notes_and_remarks_go_to_stderr(run: Any, searched: dict[str, Any]) -> N
     outcome = run("design", "widget", *VISE)
     assert "Two things could not be decided." in outcome.stderr
     assert "decided" not in outcome.stdout
+
+
+def told(outcome: Any) -> list[str]:
+    """The lines behind the counts."""
+    lines = outcome.stdout.splitlines()
+    return lines[next(k for k, line in enumerate(lines) if " distinct under " in line) + 1 :]
+
+
+def test_the_account_of_the_search_is_one_line(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+    searched["result"] = fake_result(7, proof=fake_proof(0))
+    outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
+    assert told(outcome) == [
+        "Proven: 82,764 candidates, 1,324 verified, 32 decided in ball arithmetic, none undecided.",
+        f"Written to {tmp_path / 'r.json'}.",
+    ]
+    assert outcome.stderr == ""
+    # Where standard output carries the file, the line goes with the other words.
+    outcome = run("design", "widget", *VISE, "--out", "-")
+    assert json.loads(outcome.stdout)["proof"]["candidates"] == 82_764
+    assert "\nProven: 82,764 candidates" in outcome.stderr
+
+
+def test_the_algebra_goes_through_no_cells(run: Any, searched: dict[str, Any]) -> None:
+    """Its candidates come from polynomials, and each is proven by itself."""
+    searched["result"] = fake_result(7, proof=fake_proof(0, cells=0, discarded_by_bound=0, verified=1))
+    assert told(run("design", "widget", *VISE)) == [
+        "Proven one by one: 1 candidate of the polynomials, 1 verified, 32 decided in ball arithmetic, none undecided."
+    ]
+
+
+@pytest.mark.parametrize(("count", "rest"), [(1, None), (3, None), (4, "The other one is"), (9, "The other 6 are")])
+def test_what_is_undecided_is_said_plainly(
+    run: Any, searched: dict[str, Any], tmp_path: Path, count: int, rest: str | None
+) -> None:
+    """The first few with their reasons, and where to find the others."""
+    searched["result"] = fake_result(7, proof=fake_proof(count))
+    lines = told(run("design", "widget", *VISE, "--out", tmp_path / "r.json"))
+    total = f"{82_764 + count:,} candidates, 1,324 verified, 32 decided in ball arithmetic, {count} undecided:"
+    assert lines[0] == f"Not proven throughout: {total}"
+    named = [f"  Type {'I' * (k % 2 + 1)} on faces 0, 1, 2, 4 at {7.25 * k:.6f} degrees: reason {k}." for k in range(3)]
+    assert lines[1 : 1 + min(count, 3)] == named[:count]
+    if rest:
+        assert lines[4] == f'  {rest} under "proof" in {tmp_path / "r.json"}.'
+    assert lines[-1] == f"Written to {tmp_path / 'r.json'}."
+    if rest:
+        lines = told(run("design", "widget", *VISE, "--out", tmp_path / "r.csv"))
+        assert lines[4] == f'  {rest} under "proof" in a JSON file written with --out.'
+
+
+def test_an_interrupted_search_is_proven_so_far(run: Any, searched: dict[str, Any]) -> None:
+    searched["result"] = fake_result(3, complete=False, proof=fake_proof(0))
+    assert told(run("design", "widget", *VISE))[0].startswith("Proven so far: 82,764 candidates")
 
 
 def test_an_incomplete_result_is_written_and_marked(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
@@ -236,5 +288,7 @@ def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:
         done = run(*arguments, "--engine", engine, "--out", str(out))
         assert done.exit_code == 0, done.stderr
         counts.append(json.loads(out.read_text())["counts"])
+        head = "Proven: " if engine == "curves" else "Proven one by one: "
+        assert [line for line in told(done) if line.startswith(head) and line.endswith(", none undecided.")]
     assert counts[0] == counts[1]
     assert run(*arguments, "--engine", "luck").exit_code == 2

@@ -10,11 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fakes import fake_result
-from holdfast import Vise, Workpiece, design
+from holdfast import Result, Vise, Workpiece, design
 from holdfast.files.result_file import write_result
+from holdfast.model.result import FixtureTable
 
 
 @pytest.fixture(scope="module")
@@ -77,12 +79,57 @@ def test_only_the_first_are_listed(run: Any, tmp_path: Path) -> None:
     assert "is refuted: " not in run("verify", tmp_path / "r.json", "--list", 0).stdout
 
 
-def test_undecided_fixtures_are_no_fault(run: Any, tmp_path: Path) -> None:
+def on_the_edge(hair: float) -> Result:
+    """One Type II fixture whose second peg touches its face ``hair`` mm from the convex corner at (5, -hair).
+
+    Pegs of radius 5 in whole millimetres touch faces of slope 3/4 and two upright ones: every contact is exact, and the
+    forces follow from the balance of the wrenches.
+    """
+    outline = [[35, -19.5], [35, 25], [7, 21], [1, 13], [5, 8], [5, -hair], [9, -8], [-1, -13], [7, -19]]
+    part = Workpiece.from_loops("part", [[[x, y, 0.0] for x, y in outline]])
+    vise = Vise(pitch=20, columns=1, peg_radius=5, row_offset=3)
+    middle = 2.6 / 5.6
+    low = (1 - middle) / (4 / 3 * 0.8 + 0.6)
+    force = np.array([[low, middle, low * 4 / 3, 1.0]])
+    table = FixtureTable(
+        type=np.array([2], np.int8),
+        jaw=np.array([[0, 0, 0, 1]], np.int8),
+        column=np.zeros((1, 4), np.int32),
+        row=np.array([[0, 1, 2, 1]], np.int32),
+        segment=np.array([[7, 4, 2, 0]], np.int32),
+        theta=np.zeros(1),
+        position=np.array([[0.0, 20.0]]),
+        jaw_separation=np.array([40.0]),
+        null_vector=force / force.sum(),
+        force=force,
+    )
+    counts = {"I": 0, "II": 1}
+    return Result(part, vise, table, counts, counts)
+
+
+@pytest.mark.parametrize(("hair", "verdict"), [(1e-9, "undecided"), (2e-9, "proven"), (5e-10, "refuted")])
+def test_undecided_fixtures_are_no_fault(run: Any, tmp_path: Path, hair: float, verdict: str) -> None:
+    """A contact must lie more than 1e-9 mm from a corner. One that lies exactly there, on the very edge of the rule, is
+    neither proven nor refuted at any precision; a little to either side it is decided."""
+    write_result(on_the_edge(hair), tmp_path / "r.json")
+    outcome = run("verify", tmp_path / "r.json")
+    counts = {"proven": 0, "refuted": 0, "undecided": 0} | {verdict: 1}
+    words = ", ".join(f"{count} {name}" for name, count in counts.items())
+    assert f"1 fixture: {words} at {512 if verdict == 'undecided' else 128} bits" in outcome.stdout
+    assert outcome.exit_code == (2 if verdict == "refuted" else 0)
+    told = f"Fixture 1 is {verdict}: peg 2 touches face 4 exactly at its end."
+    assert (told in outcome.stdout) == (verdict != "proven")
+
+
+def test_a_rectangle_on_the_lattice_is_proven_throughout(run: Any, tmp_path: Path) -> None:
+    """Two faces exactly as far apart as two holes: the edges of the rules stand off what drawings meet exactly."""
     rectangle = Workpiece.from_loops("rectangle", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
-    write_result(design(rectangle, Vise(pitch=10, columns=2, peg_radius=3)), tmp_path / "r.json")
+    result = design(rectangle, Vise(pitch=10, columns=2, peg_radius=3))
+    write_result(result, tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     assert outcome.exit_code == 0
-    assert "is undecided: the jaw separation is exactly the smallest gap." in outcome.stdout
+    count = len(result) + len(result.twins)
+    assert outcome.stdout.startswith(f"{count} fixtures: {count} proven, 0 refuted, 0 undecided at 128 bits")
 
 
 def test_an_empty_result(run: Any, result_file: Path) -> None:

@@ -14,11 +14,13 @@ import attrs
 import numpy as np
 import pytest
 
-from fakes import fake_result
+import check_result
+from fakes import fake_proof, fake_result
 from holdfast import Vise, design, load
 from holdfast.errors import InputError
 from holdfast.files import result_file
 from holdfast.files.result_file import read_result, write_result, write_result_to
+from holdfast.model.proof import Undecided
 from holdfast.model.result import FixtureTable
 
 
@@ -224,6 +226,115 @@ def test_every_truncation_is_refused(tmp_path: Path) -> None:
         (tmp_path / "t.json").write_bytes(whole[:length])
         with pytest.raises(InputError):
             read_result(tmp_path / "t.json")
+
+
+def test_the_account_of_the_search_survives_the_round_trip(tmp_path: Path) -> None:
+    """``proof`` is written key for key as documented and read back as the same object."""
+    result = fake_result(3, proof=fake_proof(2))
+    write_result(result, tmp_path / "a.json")
+    assert json.loads((tmp_path / "a.json").read_text())["proof"] == {
+        "cells": 288,
+        "candidates": 82_766,
+        "discarded_by_bound": 81_440,
+        "verified": 1324,
+        "escalated": 34,
+        "undecided": [
+            {
+                "type": kind,
+                "segments": [0, 1, 2, 4],
+                "columns": [0, 1, 0, -k],
+                "rows": [0, -3, 1, k],
+                "theta_deg": 7.25 * k,
+                "reason": f"reason {k}",
+            }
+            for k, kind in enumerate(("I", "II"))
+        ],
+    }
+    again = read_result(tmp_path / "a.json")
+    assert again.proof == result.proof
+    write_result(again, tmp_path / "b.json")
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def test_a_file_may_come_without_an_account(tmp_path: Path, document: dict[str, Any]) -> None:
+    assert "proof" not in document
+    for data in (document, document | {"proof": None}):
+        (tmp_path / "a.json").write_text(json.dumps(data))
+        assert read_result(tmp_path / "a.json").proof is None
+
+
+@pytest.mark.parametrize("angle", [360.0, -1e-14, 359.99999999999])
+def test_an_undecided_orientation_is_written_below_a_whole_turn(tmp_path: Path, angle: float) -> None:
+    lost = Undecided("I", (0, 1, 2, 4), (0, 1, 0, 1), (0, 0, 1, 1), angle, "reason")
+    proof = attrs.evolve(fake_proof(1), undecided=(lost,))
+    write_result(fake_result(1, proof=proof), tmp_path / "a.json")
+    again = read_result(tmp_path / "a.json").proof
+    assert again is not None
+    assert again.undecided[0].theta_deg == 0.0
+
+
+DAMAGED_PROOFS: list[tuple[Damage, str]] = [
+    (lambda p: p.pop("cells"), r"the key proof\.cells is missing"),
+    (lambda p: p.pop("undecided"), r"the key proof\.undecided is missing"),
+    (lambda p: p.update(cells=-1), r"proof\.cells cannot be used"),
+    (lambda p: p.update(verified=1.5), r"proof\.verified cannot be used"),
+    (lambda p: p.update(escalated=True), r"proof\.escalated cannot be used"),
+    (lambda p: p.update(candidates="82766"), r"proof\.candidates cannot be used"),
+    (lambda p: p.update(candidates=82_767), "says 82767 candidates, but 82766 are discarded, verified or undecided"),
+    (lambda p: p.update(undecided=[]), "says 82766 candidates, but 82764 are discarded, verified or undecided"),
+    (lambda p: p.update(undecided={}), r"proof\.undecided cannot be used"),
+    (lambda p: p["undecided"][1].pop("reason"), r"the key proof\.undecided\.1\.reason is missing"),
+    (lambda p: p["undecided"][1].update(reason=""), r"proof\.undecided\.1\.reason cannot be used"),
+    (lambda p: p["undecided"][1].update(type="III"), r"proof\.undecided\.1\.type cannot be used"),
+    (lambda p: p["undecided"][1]["rows"].pop(), r"proof\.undecided\.1\.rows cannot be used"),
+    (lambda p: p["undecided"][1]["columns"].append(0), r"proof\.undecided\.1\.columns cannot be used"),
+    (lambda p: p["undecided"][0].update(theta_deg=360), r"proof\.undecided\.0\.theta_deg cannot be used"),
+    (
+        lambda p: p["undecided"][1]["segments"].__setitem__(0, 77),
+        "undecided candidate 2 .* names a segment that is no face",
+    ),
+]
+
+
+@pytest.mark.parametrize(("damage", "message"), DAMAGED_PROOFS)
+def test_a_damaged_account_is_refused_with_its_place(tmp_path: Path, damage: Damage, message: str) -> None:
+    write_result(fake_result(3, proof=fake_proof(2)), tmp_path / "d.json")
+    data = json.loads((tmp_path / "d.json").read_text())
+    damage(data["proof"])
+    (tmp_path / "d.json").write_text(json.dumps(data))
+    with pytest.raises(InputError, match=message) as caught:
+        read_result(tmp_path / "d.json")
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).endswith(".")
+    assert str(caught.value).count(". ") == 0
+
+
+@pytest.mark.parametrize("account", [3, [], "proof", True])
+def test_what_is_no_account_is_refused(tmp_path: Path, document: dict[str, Any], account: object) -> None:
+    (tmp_path / "d.json").write_text(json.dumps(document | {"proof": account}))
+    with pytest.raises(InputError, match="proof cannot be used"):
+        read_result(tmp_path / "d.json")
+
+
+def test_the_bytes_do_not_depend_on_the_threads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The account's counts, and everything else, are the same on any number of threads; the independent checker, which
+    knows nothing of the account, reads the file all the same."""
+    part, vise = load("small4Handle"), Vise(pitch=10, columns=2, peg_radius=3)
+    files = []
+    for threads in (1, 2, 5):
+        result = design(part, vise, threads=threads)
+        assert result.proof is not None
+        assert result.proof.candidates > result.proof.verified > 0
+        files.append(tmp_path / f"{threads}.json")
+        write_result(result, files[-1])
+    assert len({path.read_bytes() for path in files}) == 1
+    monkeypatch.setattr("sys.argv", ["check_result.py", str(files[0])])
+    with pytest.raises(SystemExit) as ended:
+        check_result.main()
+    assert ended.value.code == 0
+    assert capsys.readouterr().out.endswith(" fixtures, 0 faulty\n")
 
 
 def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ def test_extremes_at_multiples_of_half_a_turn_are_inside():
 
 
 def test_bounds_are_tight():
-    """Enclosures of thin intervals are thin: a few units in the last place."""
+    """Enclosures of thin intervals are thin: a few units in the last place, those of the angle (up to 9) included."""
     random = Random(3)
     for _ in range(500):
         x, y = random.uniform(-9, 9), random.uniform(0.1, 9)
@@ -111,7 +111,7 @@ def test_bounds_are_tight():
             isin((x, x)),
             isqrt((y, y)),
         ):
-            assert high - low <= 2e-14 * max(1.0, abs(low))
+            assert high - low <= 3e-14 * max(1.0, abs(low))
 
 
 @given(intervals, intervals, intervals, intervals, st.lists(st.floats(0, 1), min_size=4, max_size=4))

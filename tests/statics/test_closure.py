@@ -9,7 +9,8 @@ from random import Random
 import numpy as np
 import pytest
 
-from holdfast.kernels.closure import null_vector
+from holdfast.kernels.closure import minors
+from holdfast.kernels.vise_checks import LEAST_SPAN
 from holdfast.statics.wrenches import clamping_force, null_vectors, outward_normals
 
 
@@ -27,9 +28,11 @@ def wrenches(points, normals, length):
 
 
 def solved(points, normals, length):
-    """Smallest entry and null vector from the kernel."""
+    """Smallest entry of the kernel's null vector, scaled to sum 1, and that vector."""
     out = np.empty(4)
-    return null_vector(points, normals, length, out), out
+    assert minors(points, normals, length, out) == np.abs(out).sum()
+    null = out / out.sum()
+    return null.min(), null
 
 
 def close_by_separation(matrix) -> bool:
@@ -59,7 +62,7 @@ def test_the_null_vector_is_null_and_sums_to_one():
 
 
 def test_compiled_and_array_forms_agree():
-    """kernels.closure.null_vector and statics.wrenches.null_vectors are one function."""
+    """kernels.closure.minors, scaled, and statics.wrenches.null_vectors are one function."""
     random = Random(2)
     many = [contacts(random) for _ in range(300)]
     points, normals = (np.array(column) for column in zip(*many, strict=True))
@@ -114,7 +117,7 @@ def test_concurrent_normals_do_not_close():
         points = np.array([3.0, -2.0]) + normals * np.array([[random.uniform(1, 30)] for _ in range(4)])
         matrix = wrenches(points - [3.0, -2.0], normals, 40.0)
         assert np.linalg.matrix_rank(matrix, tol=1e-9) < 3
-        assert solved(points - [3.0, -2.0], normals, 40.0)[0] == -1.0
+        assert minors(points - [3.0, -2.0], normals, 40.0, np.empty(4)) < LEAST_SPAN * 1e-6
 
 
 def test_three_concurrent_normals_leave_the_fourth_without_force():

@@ -41,7 +41,7 @@ def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: 
 
 
 @given(outlines(), seeds)
-def test_slack_is_the_way_to_the_nearer_end(workpiece: Workpiece, seed: int) -> None:
+def test_slacks_are_the_ways_to_the_ends(workpiece: Workpiece, seed: int) -> None:
     """On a face moved out by an offset, also past its ends."""
     random = Random(seed)
     outline = Outline.of(workpiece)
@@ -50,19 +50,19 @@ def test_slack_is_the_way_to_the_nearer_end(workpiece: Workpiece, seed: int) -> 
         parameter = random.uniform(-1.1, 1.1) * segment.half_extent
         nx, ny = segment.normal(parameter)
         x, y = segment.at(parameter)
-        slack = side.slack(exact_point(x + offset * nx, y + offset * ny), arb(offset))
+        slacks = side.slacks(exact_point(x + offset * nx, y + offset * ny), arb(offset))
+        scale = 1.0
         if isinstance(segment, Arc):
-            reach = segment.radius + segment.sign * offset
+            scale = segment.radius + segment.sign * offset
             if segment.is_full:
-                assert slack is None
+                assert slacks == ()
                 continue
-            if reach < 1e-3 or abs(parameter) > pi - 1e-3:
+            if scale < 1e-3 or abs(parameter) > pi - 1e-3:
                 continue
-            assert slack is not None
-            assert holds(slack, reach * (segment.half_extent - abs(parameter)), 1e-7)
-        else:
-            assert slack is not None
-            assert holds(slack, segment.half_extent - abs(parameter), 1e-7)
+        # A segment's parameter runs counter-clockwise, a concave arc's face clockwise.
+        signed = parameter * getattr(segment, "sign", 1)
+        for slack, along in zip(slacks, (signed, -signed), strict=True):
+            assert holds(slack, scale * (segment.half_extent + along), 1e-7)
 
 
 @pytest.mark.parametrize(("bulge", "center"), [(1.0, (0, 0)), (-1.0, (0, 0)), (0.5, (0, 3)), (-2.0, (0, 3))])
@@ -85,8 +85,9 @@ def test_a_point_beside_and_past_a_line() -> None:
     assert side.distance((arb(10, 1e-20), arb(-3))).contains(3)
     assert side.gap(exact_point(4, -3)).contains(3)
     assert side.gap(exact_point(4, 3)).contains(-3)
-    assert side.is_past_ends(exact_point(-1e-15, 1))
-    assert not side.is_past_ends(exact_point(0, 1))
+    assert side.away(exact_point(-1e-15, 1)) == exact_point(-1e-15, 1)
+    assert side.away(exact_point(1e-15, 1)) == exact_point(0, -1)
+    assert side.away(exact_point(0, 1)) is None
 
 
 def test_a_circle_of_two_halves_is_one_face_without_ends() -> None:
@@ -95,7 +96,7 @@ def test_a_circle_of_two_halves_is_one_face_without_ends() -> None:
     side = Outline.of(workpiece).faces[4]
     assert isinstance(side, ArcSide)
     assert side.whole
-    assert side.slack(exact_point(5, 0), arb(2)) is None
+    assert side.slacks(exact_point(5, 0), arb(2)) == ()
     for angle in (0.0, 1.0, pi, -2.0):
         assert holds(side.distance(exact_point(5 * cos(angle), 5 * sin(angle))), 2.0)
 
@@ -103,7 +104,6 @@ def test_a_circle_of_two_halves_is_one_face_without_ends() -> None:
 def test_lines_that_continue_each_other_are_one_face() -> None:
     workpiece = Workpiece.from_loops("bar", [[[0, 0, 0], [20, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
     outline = Outline.of(workpiece)
-    slack = outline.faces[0].slack(exact_point(20, -3), arb(3))
-    assert slack is not None
-    assert slack.contains(20)
+    slacks = outline.faces[0].slacks(exact_point(20, -3), arb(3))
+    assert [slack.contains(far) for slack, far in zip(slacks, (20, 40), strict=True)] == [True, True]
     assert {index for index, _ in outline.others(0)} == {2, 3, 4}

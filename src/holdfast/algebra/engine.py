@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from threading import Event
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from holdfast.algebra.conditions import Held, fourth_pegs, records_of
@@ -16,6 +16,7 @@ from holdfast.algebra.poses import peg_centers, poses_at
 from holdfast.algebra.quartets import Systems, are_parallel, type_one_systems, type_two_systems
 from holdfast.algebra.roots import orientations
 from holdfast.algebra.slides import alike, alike_orientations, slides_of, type_one_slides, type_two_slides
+from holdfast.algebra.undecided import undecided_notes
 from holdfast.algebra.wedges import peg_pairs
 from holdfast.listing.listed import listed_result
 from holdfast.listing.problem import TYPES, Problem, Progress, check_options
@@ -44,7 +45,7 @@ class Solver:
     margin : smallest distance in mm from a contact to the end of its feature.
     diameter : largest distance in mm between two peg centres: lengths are measured in it.
     counts : how many systems, orientations and simultaneous contacts there were.
-    undecided : features of systems that their resultants leave undecided.
+    undecided : systems that their resultants leave undecided.
     """
 
     rows: Array
@@ -54,7 +55,7 @@ class Solver:
     counts: dict[str, int] = field(
         factory=lambda: dict.fromkeys(("systems", "orientations", "simultaneous_contacts"), 0)
     )
-    undecided: list[list[int]] = field(factory=list)
+    undecided: list[Systems] = field(factory=list)
 
     def offsets(self, systems: Systems) -> NDArray[np.complex128]:
         """Pegs from the first peg, right pegs with the jaw separation left out, in mm, (N, K)."""
@@ -76,7 +77,7 @@ class Solver:
         chosen = systems.take(poses.owner)
         lefts = 2 if systems.feature.shape[1] == 4 else 3
         center = peg_centers(contacts, poses) * self.diameter
-        return Held(lefts, chosen.feature, chosen.column, chosen.row, poses.psi, center)
+        return Held(lefts, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
 
     def orientations(self, contacts: Contacts, case: Case, systems: Systems) -> tuple[IntArray, Array]:
         """Indices of systems and their orientations in radians."""
@@ -84,13 +85,13 @@ class Solver:
         plain, other = np.flatnonzero(~special), np.flatnonzero(special)
         owner, psi, undecided = orientations(contacts.take(plain), case, systems.sectors[plain])
         mirrored, level = alike_orientations(contacts.take(other))
-        self.undecided.extend(systems.take(plain[undecided]).feature.tolist())
+        self.undecided.append(systems.take(plain[undecided]))
         return np.concatenate([plain[owner], other[mirrored]]), np.concatenate([psi, level])
 
     def fixtures(self, held: Held) -> Array:
         """Records of the fixtures among simultaneous contacts; three pegs are completed by a fourth first."""
         if held.feature.shape[1] == 3:
-            held = fourth_pegs(held, self.rows, self.vise, self.margin)
+            held = fourth_pegs(held, self.rows, self.vise, self.margin, self.diameter / 2)
         self.counts["simultaneous_contacts"] += len(held.psi)
         return records_of(held, self.rows, self.vise, self.margin, self.diameter / 2)
 
@@ -189,7 +190,8 @@ def design_by_algebra(
     -------
     Result
         As ``holdfast.design`` lists them; ``statistics`` counts features, systems solved, orientations, simultaneous
-        contacts, and systems that their resultants leave undecided (none in any part tried).
+        contacts, and systems that their resultants leave undecided (none in any part tried). Of these, ``notes`` name
+        faces and holes.
 
     Raises
     ------
@@ -208,5 +210,6 @@ def design_by_algebra(
         if cancel is not None and cancel.is_set():
             complete = False
             break
-    statistics = {"features": len(problem.rows), **solver.counts, "undecided": len(solver.undecided)}
-    return listed_result(problem, records, complete=complete, best=best, statistics=statistics)
+    statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
+    result = listed_result(problem, records, complete=complete, best=best, statistics=statistics)
+    return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from holdfast.algebra.constraints import Contacts
 
-__all__ = ["Laurent", "exact_resultant", "exact_roots"]
+__all__ = ["TOLERANCE", "Laurent", "exact_resultant", "exact_roots"]
 
 # Bits; roots are spread by a quarter of them.
 PRECISIONS = (512, 1024)
+# Roots are isolated and then refined to this.
+TOLERANCE = 1e-12
 
 
 @frozen
@@ -40,15 +42,19 @@ class Laurent:
     def __mul__(self, other: Laurent) -> Laurent:
         return Laurent(self.polynomial * other.polynomial, self.low + other.low)
 
+    def times(self, factor: int) -> Laurent:
+        """A whole multiple."""
+        return Laurent(self.polynomial * factor, self.low)
+
     def raised(self, by: int) -> acb_poly:
         """The polynomial times z^by, by >= 0."""
-        return self.polynomial * acb_poly([0] * by + [1])
+        return self.polynomial.left_shift(by) if by else self.polynomial
 
-    def power(self, exponent: int) -> Laurent:
-        """A power, exponent >= 0."""
-        out = constant(1.0)
-        for _ in range(exponent):
-            out = out * self
+    def powers(self, most: int) -> list[Laurent]:
+        """The powers from 0 to ``most``."""
+        out = [constant(1.0)]
+        for _ in range(most):
+            out.append(out[-1] * self)
         return out
 
 
@@ -144,7 +150,8 @@ class System:
         (one, one_bar), (two, two_bar) = self.start(k), self.start(m)
         middle = constant(0.5) * (e * (one_bar + two_bar) + e_bar * (one + two))
         if (k, m) not in self.sliding:
-            middle = middle + constant(self.radius[k]).power(2) - constant(self.radius[m]).power(2)
+            one_radius, two_radius = constant(self.radius[k]), constant(self.radius[m])
+            middle = middle + one_radius * one_radius - two_radius * two_radius
         radius = constant(self.radius[0])
         z, inverse = binomial(0.0, 0, 1.0, 1), binomial(1.0, -1, 0.0, 0)
         return inverse * e + z * e_bar, (radius * e_bar, middle, radius * e)
@@ -153,7 +160,8 @@ class System:
 def of_rings(one: Ring, two: Ring) -> Laurent:
     """Resultant in w of two rings."""
     (a, b, c), (d, e, f) = one, two
-    return (a * f - c * d).power(2) - (a * e - b * d) * (b * f - c * e)
+    across = a * f - c * d
+    return across * across - (a * e - b * d) * (b * f - c * e)
 
 
 def product(one: Ring, two: Ring) -> list[Laurent]:
@@ -174,21 +182,19 @@ def without_sigma(factor: Laurent, rest: Ring, linear: Ring, last: Ring) -> list
 def with_square(ring: Ring, double: list[Laurent]) -> Laurent:
     """Resultant in w of a ring and a polynomial with coefficients of w^2 ... w^-2 (see ``resultants``)."""
     a, b, low = ring
-    both = a * low
-    two, three, four = constant(2.0), constant(3.0), constant(4.0)
-    square, cube = b * b, b * b * b
+    both, square = a * low, b * b
     powers = [
-        constant(1.0),
         -b,
-        square - two * both,
-        three * b * both - cube,
-        square * square - four * square * both + two * both * both,
+        square - both.times(2),
+        (both.times(3) - square) * b,
+        square * (square - both.times(4)) + both * both.times(2),
     ]
+    ups, downs = a.powers(4), low.powers(4)
     total = constant(0.0)
     for j in range(-2, 3):
         for k in range(-2, j + 1):
-            term = double[2 - j] * double[2 - k] * a.power(2 - j) * low.power(2 + k)
-            total = total + term * powers[j - k]
+            term = double[2 - j] * double[2 - k] * (ups[2 - j] * downs[2 + k])
+            total = total + (term if j == k else term * powers[j - k - 1])
     return total
 
 
@@ -210,12 +216,15 @@ def exact_resultant(contacts: Contacts, case: tuple[int, int], sigma_free: bool 
 
 
 def spread(polynomial: acb_poly, precision: int) -> acb_poly:
-    """A polynomial without the outermost coefficients that vanish, the others changed in their later binary digits.
+    """A polynomial without the outermost coefficients that vanish, the others changed in their later binary digits; nothing
+    when all may vanish.
 
     Symmetric parts have poses in pairs at one orientation: double roots, which no precision isolates. Coefficients changed
     by a part 2^(-precision / 4) of the largest have single roots, and even eightfold ones move by no more than some 2^-16.
     """
     values = list(polynomial.coeffs())
+    if not any(value.abs_lower() > 0 for value in values):
+        return acb_poly([])
     sizes = [float(value.abs_upper()) for value in values]
     change = max(sizes, default=0.0) * 2.0 ** (-precision / 4)
     kept = [k for k, size in enumerate(sizes) if size > change]
@@ -234,7 +243,7 @@ def exact_roots(contacts: Contacts, case: tuple[int, int], sigma_free: bool = Fa
             if polynomial.degree() < 1:
                 return None
             try:
-                return np.array([complex(root) for root in polynomial.roots()], np.complex128)
+                return np.array([complex(root) for root in polynomial.roots(TOLERANCE)], np.complex128)
             except ValueError:
                 continue
     finally:

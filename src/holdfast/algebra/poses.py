@@ -22,7 +22,14 @@ IntArray = NDArray[np.int64]
 NEARLY = 0.02
 # Refined poses meet every contact to this many mm, for a part of size 1.
 MET = 1e-10
-ROUNDS = 16
+ROUNDS = 24
+# At a double solution the Jacobian vanishes: its determinant is the clamping force times the span of the wrenches, so
+# nothing clamps there. Rounding moves such a pose by some 1e-8, and leaves a determinant of that order.
+DOUBLE = 1e-7
+# A refined pose may be off by this many of the last steps, and by this much at least. At a double solution steps halve and
+# are all that is left; elsewhere the last ones are rounding.
+LAST_STEPS = 16.0
+LEAST_REACH = 1e-11
 
 
 @define(frozen=True, eq=False)
@@ -35,16 +42,18 @@ class Poses:
     psi : (N,) orientation in radians.
     place : (N,) where the first peg is in the workpiece's frame, a complex number in mm.
     sigma : (N,) x distance in mm from the first left to the first right peg (0 for three left pegs).
+    reach : (N,) how far off the others may be, in radians and in parts of the part's size.
     """
 
     owner: IntArray
     psi: Array
     place: Complex
     sigma: Array
+    reach: Array
 
     def take(self, which: NDArray[np.bool_] | IntArray) -> Poses:
         """The poses of an index array or mask."""
-        return Poses(self.owner[which], self.psi[which], self.place[which], self.sigma[which])
+        return Poses(self.owner[which], self.psi[which], self.place[which], self.sigma[which], self.reach[which])
 
 
 def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
@@ -71,26 +80,33 @@ def residuals(contacts: Contacts, poses: Poses) -> Array:
 
 
 def refined(contacts: Contacts, poses: Poses) -> Poses:
-    """Newton's method on the contact equations; poses that do not settle are dropped.
+    """Newton's method on the contact equations; poses that do not settle, and double solutions, are dropped.
 
     Lengths are in parts of the part's size.
     """
     pegs = contacts.rows.shape[1]
     for _ in range(ROUNDS):
-        off, across, center = distances(contacts, poses)
-        turn = (np.conj(across) * 1j * (center - poses.place[:, None])).real
-        columns = [turn, across.real, across.imag]
-        if pegs == 4:
-            slide = (np.conj(across) * np.exp(1j * poses.psi)[:, None]).real * (np.arange(4) >= 2)
-            columns.append(slide)
-        matrix = np.stack(columns, axis=-1)
+        off, matrix = linearized(contacts, poses)
         regular = np.abs(np.linalg.det(matrix)) > 1e-13
         poses, off, matrix = poses.take(regular), off[regular], matrix[regular]
         step = np.linalg.solve(matrix, off[..., None])[..., 0]
         step = np.clip(step, -0.25, 0.25)
         sigma = poses.sigma - step[:, 3] if pegs == 4 else poses.sigma
-        poses = Poses(poses.owner, poses.psi - step[:, 0], poses.place - step[:, 1] - 1j * step[:, 2], sigma)
-    return poses.take(residuals(contacts, poses) <= MET)
+        place = poses.place - step[:, 1] - 1j * step[:, 2]
+        reach = LAST_STEPS * np.abs(step).max(axis=1, initial=0.0) + LEAST_REACH
+        poses = Poses(poses.owner, poses.psi - step[:, 0], place, sigma, reach)
+    off, matrix = linearized(contacts, poses)
+    return poses.take((np.abs(off).max(axis=1, initial=0.0) <= MET) & (np.abs(np.linalg.det(matrix)) > DOUBLE))
+
+
+def linearized(contacts: Contacts, poses: Poses) -> tuple[Array, Array]:
+    """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, the place, and sigma."""
+    pegs = contacts.rows.shape[1]
+    off, across, center = distances(contacts, poses)
+    columns = [(np.conj(across) * 1j * (center - poses.place[:, None])).real, across.real, across.imag]
+    if pegs == 4:
+        columns.append((np.conj(across) * np.exp(1j * poses.psi)[:, None]).real * (np.arange(4) >= 2))
+    return off, np.stack(columns, axis=-1)
 
 
 def angles_of(ring: Ring) -> tuple[Complex, Complex]:
@@ -128,7 +144,7 @@ def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
     matrix = np.stack(columns, axis=-1)
     solution = -(np.linalg.pinv(matrix) @ rest[..., None])[..., 0]
     sigma = solution[:, 2] if pegs == 4 else np.zeros(len(owner))
-    return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], sigma)
+    return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], sigma, np.zeros(len(owner)))
 
 
 def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
@@ -140,7 +156,7 @@ def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Ar
     owner, psi : (M,) which system and which orientation in radians.
     """
     if len(owner) == 0:
-        return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0))
+        return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0))
     if case[0] == 0:
         return refined(contacts, straight_poses(contacts, owner, psi))
     chosen, column = contacts.take(owner), psi[:, None]
@@ -148,11 +164,12 @@ def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Ar
     for w in angles_of(pair_constraint(chosen, 1, column)):
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
         for sigma in separations(chosen, case, column, w):
-            found.append(Poses(owner, psi, place[:, 0], sigma[:, 0]))
+            found.append(Poses(owner, psi, place[:, 0], sigma[:, 0], np.zeros(len(owner))))
     everything = Poses(
         np.concatenate([p.owner for p in found]),
         np.concatenate([p.psi for p in found]),
         np.concatenate([p.place for p in found]),
         np.concatenate([p.sigma for p in found]),
+        np.concatenate([p.reach for p in found]),
     )
     return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY))

@@ -15,7 +15,7 @@ from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
 from holdfast.algebra.constraints import Contacts
-from holdfast.algebra.exact import exact_roots
+from holdfast.algebra.exact import TOLERANCE, exact_roots
 from holdfast.algebra.resultants import coefficients, have_no_sigma
 from holdfast.algebra.wedges import CENTERS, HALF_SECTOR, sector_of
 
@@ -29,8 +29,11 @@ IntArray = NDArray[np.int64]
 # A root this near to the unit circle may be real: coefficients are off by some 1e-14, which moves roots that are alone by
 # as little, and the fourfold ones of symmetric parts by up to 1e-3. Newton's method settles it.
 NEAR = 1e-2
-# Outermost coefficients below this part of the largest are taken for rounding, and trimmed.
+# Outermost coefficients below this part of the largest are taken for rounding, and trimmed: where features are parallel,
+# concentric or equal, degrees are lower. On the unit circle that changes the polynomial by no more than the rounding does.
 VANISHING = 1e-13
+# Arcs of a larger radius, in diameters, spread the coefficients so far that small ones are not rounding.
+NEARLY_STRAIGHT = 3.0
 # Polynomials with smaller outermost coefficients than this part of the largest are solved in ball arithmetic.
 ILL_CONDITIONED = 1e-6
 # Where a polynomial is below this part of its largest coefficient, or of its terms, roots are crowded.
@@ -78,7 +81,7 @@ def ball_roots(values: Complex) -> Complex:
         for precision in PRECISIONS:
             ctx.prec = precision
             try:
-                return np.array([complex(root) for root in polynomial.roots()], np.complex128)
+                return np.array([complex(root) for root in polynomial.roots(TOLERANCE)], np.complex128)
             except ValueError:
                 continue
     finally:
@@ -94,6 +97,13 @@ def companion_roots(values: Complex) -> Complex:
     matrix[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
     matrix[:, :, -1] = -values[:, :-1] / values[:, -1:]
     return np.asarray(np.linalg.eigvals(matrix))
+
+
+def vanishing_ends(values: Complex, largest: Array) -> IntArray:
+    """How many coefficients vanish at either end of polynomials (N, 2 d + 1), (N,); both ends are conjugates."""
+    bound = values.shape[1] // 2
+    size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
+    return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
 
 
 def near_circle(roots: Complex) -> BoolArray:
@@ -126,19 +136,28 @@ def orientations(contacts: Contacts, case: tuple[int, int], sectors: BoolArray) 
     vanishing = largest <= IDENTICALLY_ZERO * size
     possible, crowded = sectors_with_roots(values, size)
     index = np.flatnonzero(~vanishing & (sectors & possible).any(axis=1))
-    hard = (np.abs(values[index, -1]) <= ILL_CONDITIONED * largest[index]) | (sectors & crowded)[index].any(axis=1)
-    steady = index[~hard]
-    roots = companion_roots(values[steady])
-    owners, found = [np.repeat(steady, roots.shape[1])], [roots.ravel()]
-    undecided = np.flatnonzero(vanishing).tolist()
-    for k in index[hard]:
-        several = hard_roots(contacts.take(np.array([k])), case, values[k])
+    trimmed = vanishing_ends(values[index], largest[index])
+    outermost = np.abs(values[index, values.shape[1] - 1 - trimmed])
+    flat = contacts.rows[index][..., 6].max(axis=1, initial=0.0) > NEARLY_STRAIGHT
+    hard = (outermost <= ILL_CONDITIONED * largest[index]) | (sectors & crowded)[index].any(axis=1) | flat
+    owners, found = [], []
+    for cut in np.unique(trimmed[~hard]):
+        steady = index[~hard & (trimmed == cut)]
+        roots = companion_roots(values[steady, cut : values.shape[1] - cut])
+        owners.append(np.repeat(steady, roots.shape[1]))
+        found.append(roots.ravel())
+    undecided: list[int] = []
+    for k in [*np.flatnonzero(vanishing), *index[hard]]:
+        # Without arcs there is no exact form: what vanishes in double precision is left.
+        unknown = vanishing[k] and case[0] == 0
+        several = None if unknown else hard_roots(contacts.take(np.array([k])), case, values[k])
         if several is None:
             undecided.append(int(k))
             continue
         owners.append(np.full(len(several), k))
         found.append(several)
-    owner, root = np.concatenate(owners), np.concatenate(found)
+    owner = np.concatenate([np.zeros(0, np.int64), *owners])
+    root = np.concatenate([np.zeros(0, np.complex128), *found])
     keep = near_circle(root)
     owner, psi = owner[keep], np.mod(np.angle(root[keep]), tau)
     # A root may have been moved across the edge of a sector.

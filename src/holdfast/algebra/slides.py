@@ -31,6 +31,9 @@ __all__ = ["Slide", "alike", "alike_orientations", "meets", "slides_of", "type_o
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# Orientations of slides may be off by this, in radians: lines are parallel and steps equal to rounding only.
+REACH = 1e-9
+
 
 @define(frozen=True)
 class Slide:
@@ -135,6 +138,7 @@ def type_one_slides(pairs: PegPairs, slides: list[Slide], rows: Array, vise: Vis
                         np.stack([zero, zero + pairs.column[i], zero, zero + pairs.column[j]], axis=1),
                         np.stack([zero, zero + pairs.row[i], line, line + pairs.row[j]], axis=1),
                         np.full(len(line), slide.psi),
+                        np.full(len(line), REACH),
                         center,
                     )
                 )
@@ -153,7 +157,7 @@ def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray
     first = ceil((height - vise.row_offset - middle - reach) / pitch - 1e-9)
     last = floor((height - vise.row_offset - middle + reach) / pitch + 1e-9)
     line = np.arange(first, last + 1)
-    index, point = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
+    index, point, _ = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
     return line[index], point
 
 
@@ -177,6 +181,7 @@ def type_two_slides(pairs: PegPairs, slides: list[Slide], rows: Array, vise: Vis
                         np.array([[0, pairs.column[i], column]]),
                         np.array([[0, pairs.row[i], row]]),
                         np.array([slide.psi]),
+                        np.array([REACH]),
                         np.array([[point, point + z * step, point + third]]),
                     )
                 )

@@ -3,7 +3,7 @@
 The degree in t = tan(psi / 2) is read off the coefficients themselves, which are taken over a longer span than the formulas
 can fill. A resultant whose degree equals the number of complex solutions of a general system has no spurious root: no
 elimination can be of lower degree. Those numbers (``resultants.TRUE_DEGREES``) are known from Groebner bases over finite
-fields.
+fields. Every complex root is isolated in ball arithmetic, and every real one must lead to one pose.
 """
 
 from __future__ import annotations
@@ -15,14 +15,18 @@ from attrs import frozen
 
 from holdfast.algebra.constraints import Contacts
 from holdfast.algebra.poses import Poses, poses_at
-from holdfast.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients, degree_bound
-from holdfast.algebra.roots import companion_roots, near_circle
+from holdfast.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
+from holdfast.algebra.roots import hard_roots
 
 __all__ = ["Row", "random_contacts", "table_two"]
 
 # Spans of coefficients, and what of the largest counts as nothing.
 SPAN = 12
 NOTHING = 1e-11
+# Roots this near to the unit circle are real.
+REAL = 1e-9
+# Poses nearer than this are one.
+SAME = 1e-6
 
 
 @frozen
@@ -36,8 +40,10 @@ class Row:
     paper : the paper's degree.
     ours : the largest degree found.
     general : number of complex solutions of general systems.
-    real : mean number of real roots.
-    poses : mean number of poses found from the real roots.
+    systems : how many random systems were looked at; in all of them together there are
+    roots : isolated complex roots of the resultants,
+    real : real roots among them,
+    poses : poses that the real roots lead to.
     """
 
     type: str
@@ -46,8 +52,10 @@ class Row:
     paper: int
     ours: int
     general: int
-    real: float
-    poses: float
+    systems: int
+    roots: int
+    real: int
+    poses: int
 
 
 def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
@@ -76,8 +84,10 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
 
 def distinct_poses(poses: Poses) -> int:
     """How many poses there are, those counted once that several starting values lead to."""
-    values = [poses.owner, *np.round([np.cos(poses.psi), np.sin(poses.psi), poses.place.real, poses.place.imag], 6)]
-    return len(np.unique(np.stack([*values, np.round(poses.sigma, 6)], axis=1), axis=0))
+    place = [poses.place.real, poses.place.imag, poses.sigma]
+    values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
+    same = (np.abs(values[:, None] - values[None]) <= SAME).all(axis=2)
+    return int((same.argmax(axis=1) == np.arange(len(values))).sum())
 
 
 def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
@@ -92,21 +102,23 @@ def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
         contacts = random_contacts(case, count, seed)
         wide = np.abs(coefficients(contacts, case, SPAN)[0])
         filled = (wide > NOTHING * wide.max(axis=1, keepdims=True)).any(axis=0)
-        degree = int(np.flatnonzero(filled).max() - np.flatnonzero(filled).min())
-        roots = companion_roots(coefficients(contacts, case)[0])
-        assert roots.shape[1] == 2 * degree_bound(case)
-        owner, which = np.nonzero(near_circle(roots) & (np.abs(np.abs(roots) - 1.0) < 1e-6))
-        poses = poses_at(contacts, case, owner, np.angle(roots[owner, which]))
+        values = coefficients(contacts, case)[0]
+        found = [hard_roots(contacts.take(np.array([k])), case, values[k]) for k in range(count)]
+        roots = [np.zeros(0, np.complex128) if several is None else several for several in found]
+        root, owner = np.concatenate(roots), np.repeat(np.arange(count), [len(several) for several in roots])
+        real = np.abs(np.abs(root) - 1.0) <= REAL
         rows.append(
             Row(
                 type="II" if case[1] < 0 else "I",
                 left=case[0],
                 right=max(case[1], 0),
                 paper=PAPER_DEGREES[case],
-                ours=degree,
+                ours=int(np.flatnonzero(filled).max() - np.flatnonzero(filled).min()),
                 general=TRUE_DEGREES[case],
-                real=len(owner) / count,
-                poses=distinct_poses(poses) / count,
+                systems=count,
+                roots=len(root),
+                real=int(real.sum()),
+                poses=distinct_poses(poses_at(contacts, case, owner[real], np.angle(root[real]))),
             )
         )
     return rows

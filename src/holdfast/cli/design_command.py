@@ -243,7 +243,7 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 def report(result: Result, spent: str, out: str | None, form: str, listed: int) -> None:
     """Write the result and tell about it; the words go to stderr where stdout carries the file."""
-    from holdfast.cli.tables import counts_sentence, print_tables, result_table
+    from holdfast.cli.tables import counts_sentence, print_tables, proof_sentences, result_table
 
     if out is not None:
         write_output(result, out, form)
@@ -256,8 +256,9 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int) 
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"
         sentence = f"No fixture {found} for {result.workpiece.name} in this vise: the count is 0"
-    print_tables(f"{sentence}; {spent}.", stream=stream)
     written = out is not None and out != STANDARD_OUTPUT
+    proof = proof_sentences(result, out if written and form == "json" else None)
+    print_tables(f"{sentence}; {spent}.", *proof, stream=stream)
     if written:
         print_tables(f"Written to {out}.", stream=stream)
     if not result.complete:

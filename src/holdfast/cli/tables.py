@@ -13,13 +13,25 @@ from rich.table import Table
 if TYPE_CHECKING:
     from holdfast.geometry.face import Face
     from holdfast.model.fixture import Fixture
+    from holdfast.model.proof import Proof, Undecided
     from holdfast.model.result import Result
     from holdfast.model.workpiece import Workpiece
 
-__all__ = ["counts_sentence", "face_table", "fixture_tables", "new_table", "plural", "print_tables", "result_table"]
+__all__ = [
+    "counts_sentence",
+    "face_table",
+    "fixture_tables",
+    "new_table",
+    "plural",
+    "print_tables",
+    "proof_sentences",
+    "result_table",
+]
 
 # Where nobody looks at a terminal, lines are as long as they need to be.
 WIDTH_OF_A_FILE = 200
+# Undecided candidates that are named on the terminal.
+MOST_NAMED = 3
 
 
 class Terminal(Console):
@@ -70,6 +82,53 @@ def counts_sentence(result: Result) -> str:
     if len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
+
+
+def proof_sentences(result: Result, written: str | None = None) -> list[str]:
+    """The account of the search in a line, and below it the first candidates that are undecided.
+
+    Parameters
+    ----------
+    written : the name of the JSON file that lists all of them, if there is one.
+    """
+    proof = result.proof
+    if proof is None:
+        return []
+    lost = len(proof.undecided)
+    sentence = f"{proof_head(proof, result.complete)}: {proof_counts(proof)}"
+    if lost == 0:
+        return [f"{sentence}, none undecided."]
+    named = [f"  {undecided_words(item)}." for item in proof.undecided[:MOST_NAMED]]
+    if lost > MOST_NAMED:
+        others = "The other one is" if lost == MOST_NAMED + 1 else f"The other {lost - MOST_NAMED} are"
+        where = f'under "proof" in {written}' if written else 'under "proof" in a JSON file written with --out'
+        named.append(f"  {others} {where}.")
+    return [f"{sentence}, {lost} undecided:", *named]
+
+
+def proof_head(proof: Proof, complete: bool) -> str:
+    """What the account proves: that all fixtures are listed, or only that those listed are fixtures."""
+    if proof.cells == 0:
+        # The paper's algebra does not go through ranges of orientation: its candidates come from polynomials.
+        return "Proven one by one"
+    if not complete:
+        return "Proven so far"
+    return "Not proven throughout" if proof.undecided else "Proven"
+
+
+def proof_counts(proof: Proof) -> str:
+    """How many candidates there were, and what became of them."""
+    settled = max(proof.escalated - len(proof.undecided), 0)
+    candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
+    if proof.cells == 0:
+        candidates += " of the polynomials"
+    return f"{candidates}, {proof.verified:,} verified, {settled:,} decided in ball arithmetic"
+
+
+def undecided_words(item: Undecided) -> str:
+    """One undecided candidate: where it is and why."""
+    faces = ", ".join(str(face) for face in item.segments)
+    return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
 
 
 def result_table(result: Result, count: int) -> Table:

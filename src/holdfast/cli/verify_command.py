@@ -31,8 +31,9 @@ def verify(
     """Prove or refute every fixture of a result, and every number written with it.
 
     Each fixture is derived again from workpiece, vise, pegs and faces alone, in arithmetic whose rounding errors are
-    bounded, with nothing of the search. What an exact coincidence leaves open, such as a jaw separation of just the
-    smallest gap, is undecided. The exit code is 0 when nothing is refuted and 2 otherwise.
+    bounded, with nothing of the search. Coincidences such as a jaw separation of just the smallest gap are decided: the
+    edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. The exit code is 0 when
+    nothing is refuted and 2 otherwise.
 
     Example: [cyan]holdfast verify part.json[/cyan]
     """

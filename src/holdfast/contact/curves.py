@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import are_concentric
 from holdfast.kernels.curve_table import tail_curves
 
-__all__ = ["CurveTable", "LatticeSteps", "curve_table", "loosened"]
+__all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "loosened"]
 
-# Ends of features are moved out by this much, in mm, for the search, so that a contact exactly at a joint is not lost to
-# rounding between the two features that share it.
-LOOSE = 1e-9
+# Ends of features are moved out by this much, in mm, for the search, far more than rounding: what is found past an end is
+# discarded when the contacts are examined.
+LOOSE = 1e-6
 
 
 @define(frozen=True, eq=False)

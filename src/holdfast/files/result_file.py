@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from holdfast.files.atomic import text_file
 from holdfast.files.result_reader import FORMAT, read_result
+from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 
@@ -103,7 +104,34 @@ def head(result: Result) -> dict[str, Any]:
         "complete": bool(result.complete),
         "notes": list(result.notes),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
+    } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def proof_entry(proof: Proof) -> dict[str, Any]:
+    """The account of the search as it is written."""
+    return {
+        "cells": int(proof.cells),
+        "candidates": int(proof.candidates),
+        "discarded_by_bound": int(proof.discarded_by_bound),
+        "verified": int(proof.verified),
+        "escalated": int(proof.escalated),
+        "undecided": [
+            {
+                "type": item.type,
+                "segments": [int(face) for face in item.segments],
+                "columns": [int(column) for column in item.columns],
+                "rows": [int(row) for row in item.rows],
+                "theta_deg": rounded_degrees(item.theta_deg),
+                "reason": item.reason,
+            }
+            for item in proof.undecided
+        ],
     }
+
+
+def rounded_degrees(angle: float) -> float:
+    """An angle in degrees as it is written, in [0, 360)."""
+    return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
 
 
 def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:

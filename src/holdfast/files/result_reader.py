@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from holdfast.errors import InputError
+from holdfast.model.proof import Proof, Undecided
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
@@ -71,6 +72,38 @@ class Counts(Part):
         return {"I": self.type_one, "II": self.type_two}
 
 
+class UndecidedPart(Part):
+    """One entry of the proof's list of what is not decided; columns and rows may be negative."""
+
+    type: Literal["I", "II"]
+    segments: list[int] = Field(min_length=4, max_length=4)
+    columns: list[int] = Field(min_length=4, max_length=4)
+    rows: list[int] = Field(min_length=4, max_length=4)
+    theta_deg: float = Field(ge=0, lt=360)
+    reason: str = Field(min_length=1)
+
+    def undecided(self) -> Undecided:
+        """The entry as the model has it."""
+        segments, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
+        return Undecided(self.type, segments, columns, rows, self.theta_deg, self.reason)
+
+
+class ProofPart(Part):
+    """The account of the search."""
+
+    cells: int = Field(ge=0)
+    candidates: int = Field(ge=0)
+    discarded_by_bound: int = Field(ge=0)
+    verified: int = Field(ge=0)
+    escalated: int = Field(ge=0)
+    undecided: list[UndecidedPart]
+
+    def proof(self) -> Proof:
+        """The account as the model has it."""
+        counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
+        return Proof(*counts, tuple(item.undecided() for item in self.undecided))
+
+
 class Head(Part):
     """Everything in the file but the fixtures."""
 
@@ -84,6 +117,7 @@ class Head(Part):
     complete: bool = True
     notes: list[str] = []
     statistics: dict[str, int] = {}
+    proof: ProofPart | None = None
     twins: list[Any] = []
 
 
@@ -142,6 +176,7 @@ def read_result(path: str | Path) -> Result:
         notes=tuple(head.notes),
         twins=twins,
         statistics=head.statistics,
+        proof=None if head.proof is None else checked_proof(head.proof, workpiece, path),
     )
     for name, count in head.counts.by_type().items():
         if count != result.counts[name]:
@@ -237,6 +272,26 @@ def checked_head(data: Any, path: Path) -> Head:
             raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
         reason = first["msg"][:1].lower() + first["msg"][1:]
         raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
+
+
+def checked_proof(part: ProofPart, workpiece: Workpiece, path: Path) -> Proof:
+    """The account of the search.
+
+    Raises
+    ------
+    InputError
+        When its counts do not add up, or an undecided candidate names a segment that is no face.
+    """
+    accounted = part.discarded_by_bound + part.verified + len(part.undecided)
+    if accounted != part.candidates:
+        raise InputError(
+            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
+        )
+    faces = {face.number for face in workpiece.faces}
+    for number, item in enumerate(part.undecided, 1):
+        if not faces.issuperset(item.segments):
+            raise InputError(f"{path}: undecided candidate {number} of the proof names a segment that is no face.")
+    return part.proof()
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:

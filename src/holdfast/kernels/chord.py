@@ -13,38 +13,49 @@ P : the chord's instant centre, where the lines of action through both contacts 
 height : h = y . u, with x = (cos psi, sin psi) and y = J x the vise's axes. From u' follows h' = -x . P.
 position : s, the parameter of u on feature a. s' = -p on a line, -p / R on an arc of radius R.
 A tangency of the chord (X = 0) is where its two branches meet and both derivatives are infinite.
+blur : eta, a bound in mm of how far the computed contacts are off their features, from rounding alone.
+
+Errors of computed chords
+-------------------------
+Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail satisfies
+\|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its determinant is X, and its
+Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b. The Newton-Kantorovich theorem says that when 64 kappa eta <= X^2
+there is exactly one chord within 4 eta / \|X\| of the computed one, on the same branch. The bounds of ``curve_errors``
+follow by the chain rule from h' = -x . (u + p r_a) and p = cross(w, r_b) / X.
+Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
 """
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, sin, sqrt
+from math import atan2, cos, hypot, inf, isfinite, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.through_motion import motion
+from holdfast.kernels.through_motion import EXACT, motion
 
 Array = NDArray[np.float64]
+Errors = tuple[float, float]
 Chord = tuple[float, float, float, float, float, float]
 
 # Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these are not.)
 HEIGHT = 0.0
 POSITION = 1.0
 
-# Arcs whose radii, and whose centres' distance and the chord's length, agree to this many mm count as equal arcs exactly
-# one chord apart: beside the sliding family (see uprights) they allow a smooth motion through the coincidence.
-COINCIDENT = 1e-9
 # Centres nearer than this, in mm, make arcs concentric.
 CONCENTRIC = 1e-9
+# Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously counted: those
+# of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
+ROUNDINGS = 32.0 * 1.2e-16
 
 
 @compiled
 def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
     """Whether two features are arcs of equal radius with centres one chord length apart."""
-    if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > COINCIDENT:
+    if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
         return False
-    return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= COINCIDENT
+    return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= EXACT
 
 
 @compiled
@@ -132,9 +143,73 @@ def parameter_on(row: Array, x: float, y: float) -> float:
 
 
 @compiled
+def blur(a: Array, b: Array, d: float) -> float:
+    """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
+    size = abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d
+    spread = 1.0
+    if a[0] != 0.0 and b[0] != 0.0:
+        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.
+        spread = max(a[6] / b[6], b[6] / a[6])
+        if are_concentric(a, b):
+            return ROUNDINGS * size * spread + hypot(a[1] - b[1], a[2] - b[2])
+    return ROUNDINGS * size * spread
+
+
+@compiled
+def curvature(row: Array) -> float:
+    """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its feature."""
+    return 0.0 if row[0] == 0.0 else 1.0 / row[6]
+
+
+@compiled
+def curve_errors(a: Array, b: Array, d: float, turn: float, p: float, mode: float) -> Errors:
+    """Bounds of the errors of a computed value and slope.
+
+    Parameters
+    ----------
+    turn, p : computed X and p (see the conventions above).
+
+    Returns
+    -------
+    (error of the value, error of the slope), infinite too near a tangency
+    """
+    eta = blur(a, b, d)
+    kappa = curvature(a) + curvature(b)
+    square = turn * turn
+    if square < 64.0 * kappa * eta or square == 0.0:
+        return (inf, inf)
+    value, slope = 6.0 * eta / abs(turn), 8.0 * eta / square * (1.0 + kappa * (d + 2.0 * abs(p)))
+    if mode != HEIGHT and a[0] != 0.0:
+        return (value / a[6] + 1e-15, slope / a[6])
+    return (value, slope)
+
+
+@compiled
+def tail_radius(a: Array, b: Array, d: float, c: Chord, reach: float) -> float:
+    """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians off.
+
+    The tail moves at a speed of at most d / |X|, and X^2 changes at a rate of at most 4 d kappa. Infinite where this does
+    not bound it, too near a tangency.
+    """
+    eta = blur(a, b, d)
+    kappa = curvature(a) + curvature(b)
+    turn = abs(c[2] * c[5] - c[3] * c[4])
+    square = turn * turn
+    if square < 64.0 * kappa * eta or square < 16.0 * d * kappa * reach or turn == 0.0:
+        return inf
+    return 5.0 * eta / turn + 1.3 * d / turn * reach
+
+
+@compiled
+def regular_error(a: Array, b: Array, d: float) -> float:
+    """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
+    return 8.0 * blur(a, b, d) + 4.0 * EXACT
+
+
+@compiled
 def curve_value(
     a: Array, b: Array, d: float, alpha: float, branch: float, shift: float, mode: float
-) -> tuple[float, float]:
+) -> tuple[float, float, float, float]:
     """Value and derivative over psi of a chord curve.
 
     Parameters
@@ -144,23 +219,30 @@ def curve_value(
 
     Returns
     -------
-    (value, derivative)
+    (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite where these
+    formulas do not bound them, too near a tangency
     """
     psi = alpha - shift
     x, y = cos(psi), sin(psi)
     regular, u = motion(a, b, d, alpha, branch)
     if regular:
+        error = regular_error(a, b, d)
+        slope_error = error * (1.0 + d * (curvature(a) + curvature(b)))
         if mode == HEIGHT:
-            return (x * u[1] - y * u[0], -(x * u[0] + y * u[1]) + x * u[3] - y * u[2])
+            return (x * u[1] - y * u[0], -(x * u[0] + y * u[1]) + x * u[3] - y * u[2], error, slope_error)
         s = parameter_on(a, u[0], u[1])
         if a[0] == 0.0:
-            return (s, a[3] * u[2] + a[4] * u[3])
-        return (s, (u[4] * u[3] - u[5] * u[2]) / (a[6] * a[6]))
+            return (s, a[3] * u[2] + a[4] * u[3], error, slope_error)
+        return (s, (u[4] * u[3] - u[5] * u[2]) / (a[6] * a[6]), error / a[6], slope_error / a[6])
     c = chord(a, b, d, alpha, branch)
     p = -a[6] if are_concentric(a, b) else tail_distance(c, d, alpha)
+    if not isfinite(p):
+        p = 0.0
+    errors = curve_errors(a, b, d, c[2] * c[5] - c[3] * c[4], p, mode)
     if mode == HEIGHT:
-        return (x * c[1] - y * c[0], -(x * (c[0] + p * c[2]) + y * (c[1] + p * c[3])))
+        slope = -(x * (c[0] + p * c[2]) + y * (c[1] + p * c[3]))
+        return (x * c[1] - y * c[0], slope, errors[0], errors[1])
     s = parameter_on(a, c[0], c[1])
     if a[0] == 0.0:
-        return (s, -p)
-    return (s, -p / a[6])
+        return (s, -p, errors[0], errors[1])
+    return (s, -p / a[6], errors[0], errors[1])

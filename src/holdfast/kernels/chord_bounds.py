@@ -11,18 +11,35 @@ and with h' = -x . P and s' = -p (times k_a on an arc)
     X^3 s'' = (C_b X + k_a C_b^2) r_a . r_b - (C_a X + k_b C_a^2)      (times k_a on an arc).
 
 The right-hand sides stay finite at a tangency, where X = 0, so the sign of a second derivative is bounded there too.
+
+Between two arcs of nearly equal radii R_a and R_b whose centres are nearly one chord apart, r_a and r_b nearly agree, and
+the terms on the right nearly cancel. With g = c - w, c from centre to centre, R_a r_a - R_b r_b = g gives the same without
+cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w, c), E = C_a - G, rho = R_a / R_b
+
+    R_b X^3 P' = (1 - rho^2) C_a E r_a + rho C_a E g / R_b
+                 + (rho C_a W / R_a + (W / R_b) (E - W / R_a)) (rho r_a - g / R_b).
 """
 
 from __future__ import annotations
 
-from math import inf
+from math import cos, hypot, inf, isfinite, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import HEIGHT, are_concentric, are_one_chord_apart
+from holdfast.kernels.chord import (
+    HEIGHT,
+    are_concentric,
+    are_one_chord_apart,
+    blur,
+    chord,
+    parameter_on,
+    regular_error,
+    tail_radius,
+)
 from holdfast.kernels.compiling import compiled
 from holdfast.kernels.interval import (
+    TURN,
     Interval,
     iadd,
     icos,
@@ -38,9 +55,13 @@ from holdfast.kernels.interval import (
     isquare,
     isub,
 )
-from holdfast.kernels.through_motion import MotionBox, motion_box
+from holdfast.kernels.through_motion import MotionBox, motion, motion_box
 
 Array = NDArray[np.float64]
+# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.
+NEAR = 0.5
+# A range of directions in radians over which the regular formulas of a coincidence are linear for all purposes.
+SHORT = 1e-6
 ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 
@@ -106,6 +127,47 @@ def chord_box(a: Array, b: Array, d: float, wx: Interval, wy: Interval, branch: 
 
 
 @compiled
+def tail_disc(a: Array, b: Array, d: float, alpha: float, branch: float, reach: float) -> tuple[float, float, float]:
+    """A disc (x, y, radius in mm) that holds the tails of a branch for all directions within ``reach`` of alpha."""
+    angles = (alpha - reach - 1e-15, alpha + reach + 1e-15)
+    wx, wy = iscale(d, icos(angles)), iscale(d, isin(angles))
+    ux, uy, _, _, _, _ = chord_box(a, b, d, wx, wy, branch)
+    eta = blur(a, b, d)
+    half_width, half_height = (ux[1] - ux[0]) / 2.0, (uy[1] - uy[0]) / 2.0
+    return ((ux[0] + ux[1]) / 2.0, (uy[0] + uy[1]) / 2.0, 1.1 * hypot(half_width, half_height) + 4.0 * eta)
+
+
+@compiled
+def chord_tail(a: Array, b: Array, d: float, alpha: float, branch: float, reach: float) -> tuple[float, float, float]:
+    """The tail of a chord, and how far in mm the exact one may be from it when alpha is off by up to ``reach``."""
+    regular, u = motion(a, b, d, alpha, branch)
+    if regular and reach <= SHORT:
+        # The second derivative is bounded by a few d (1 + d / R): no matter over so short a reach.
+        return (u[0], u[1], regular_error(a, b, d) + 2.0 * (hypot(u[2], u[3]) + d) * reach)
+    c = chord(a, b, d, alpha, branch)
+    radius = tail_radius(a, b, d, c, reach)
+    if isfinite(radius):
+        return (c[0], c[1], radius)
+    x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
+    return (c[0], c[1], radius + hypot(c[0] - x, c[1] - y))
+
+
+@compiled
+def value_disc(
+    a: Array, b: Array, d: float, alpha: float, branch: float, reach: float, shift: float, mode: float
+) -> tuple[float, float]:
+    """A middle value of a branch for directions within ``reach`` of alpha, and how far its values may be from it."""
+    x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
+    psi = alpha - shift
+    if mode == HEIGHT:
+        return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
+    if a[0] == 0.0:
+        return (parameter_on(a, x, y), radius)
+    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either side.
+    return (parameter_on(a, x, y), 1.1 * radius / a[6] if radius <= 0.5 * a[6] else TURN)
+
+
+@compiled
 def over_cube(numerator: Interval, turn: Interval) -> Interval:
     """numerator / turn^3; when turn reaches 0 from one side, a one-signed quotient is still bounded on one side."""
     cube = imul(turn, isquare(turn))
@@ -145,6 +207,39 @@ def regular_bend(a: Array, u: MotionBox, r: MotionBox, psi: Interval, mode: floa
 
 
 @compiled
+def arcs_bend(
+    a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, psi: Interval, mode: float, turn_sign: float
+) -> Interval:
+    """Enclosure of the second derivative between arcs of which each contact direction is nearly the other."""
+    ux, uy, rx, ry, _, _ = chord
+    cx, cy = b[1] - a[1], b[2] - a[2]
+    gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
+    rho, inverse = a[6] / b[6], 1.0 / b[6]
+    swing = icross(rx, ry, gx, gy)
+    turn = one_sided(iscale(-inverse, swing), turn_sign)
+    cross_a = icross(wx, wy, rx, ry)
+    across = icross(wx, wy, (cx, cx), (cy, cy))
+    rest = isub(cross_a, swing)
+    unequal = -(a[6] - b[6]) * (a[6] + b[6]) * inverse * inverse
+    product = imul(cross_a, rest)
+    last = iadd(
+        iscale(rho / a[6], imul(cross_a, across)), iscale(inverse, imul(across, isub(rest, iscale(1.0 / a[6], across))))
+    )
+    hx, hy = isub(iscale(rho, rx), iscale(inverse, gx)), isub(iscale(rho, ry), iscale(inverse, gy))
+    # R_b X^3 P' is along * r_a + product * rho g / R_b + last * h.
+    along, beside = iscale(unequal, product), iscale(rho * inverse, product)
+    nx = iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx)))
+    ny = iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy)))
+    if mode != HEIGHT:
+        return iscale(1.0 / a[6], over_cube(iscale(-inverse, idot(nx, ny, rx, ry)), turn))
+    x, y = icos(psi), isin(psi)
+    cross_b = isub(iscale(rho, cross_a), iscale(inverse, across))
+    pull = imul(imul(isquare(turn), cross_b), isub(imul(x, ry), imul(y, rx)))
+    swung = ineg(iadd(iscale(inverse, idot(x, y, nx, ny)), pull))
+    return iadd(over_cube(swung, turn), isub(imul(y, ux), imul(x, uy)))
+
+
+@compiled
 def curve_bend(
     a: Array, b: Array, d: float, low: float, high: float, branch: float, shift: float, mode: float, turn_sign: float
 ) -> Interval:
@@ -169,7 +264,12 @@ def curve_bend(
     if regular:
         return regular_bend(a, u, r, isub(alpha, (shift, shift)), mode)
     wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
-    ux, uy, rax, ray, rbx, rby = chord_box(a, b, d, wx, wy, branch)
+    box = chord_box(a, b, d, wx, wy, branch)
+    if a[0] != 0.0 and b[0] != 0.0:
+        gap = hypot(b[1] - a[1] - (wx[0] + wx[1]) / 2.0, b[2] - a[2] - (wy[0] + wy[1]) / 2.0)
+        if gap < NEAR * min(a[6], b[6]):
+            return arcs_bend(a, b, wx, wy, box, isub(alpha, (shift, shift)), mode, turn_sign)
+    ux, uy, rax, ray, rbx, rby = box
     turn = one_sided(icross(rax, ray, rbx, rby), turn_sign)
     cross_a, cross_b = icross(wx, wy, rax, ray), icross(wx, wy, rbx, rby)
     bend_a = 0.0 if a[0] == 0.0 else 1.0 / a[6]

@@ -24,20 +24,20 @@ def cross(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @compiled
-def null_vector(points: Array, normals: Array, length: float, out: Array) -> float:
-    """Null vector of the four wrenches.
+def minors(points: Array, normals: Array, length: float, out: Array) -> float:
+    """Null vector of the four wrenches, not scaled: their signed 3x3 minors.
 
     Parameters
     ----------
     points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c, in mm.
     normals : (4, 2) outward unit normals.
     length : L in mm.
-    out : (4,) receives the null vector scaled to sum 1, when its entries do not cancel.
+    out : (4,) receives the minors.
 
     Returns
     -------
     float
-        The smallest entry, or -1 when the wrenches have no null vector with a non-zero sum.
+        The sum of their sizes; 0 when the wrenches do not span the space.
     """
     t0 = cross(points[0, 0], points[0, 1], normals[0, 0], normals[0, 1]) / length
     t1 = cross(points[1, 0], points[1, 1], normals[1, 0], normals[1, 1]) / length
@@ -53,12 +53,7 @@ def null_vector(points: Array, normals: Array, length: float, out: Array) -> flo
     out[1] = -(t0 * m23 - t2 * m03 + t3 * m02)
     out[2] = t0 * m13 - t1 * m03 + t3 * m01
     out[3] = -(t0 * m12 - t1 * m02 + t2 * m01)
-    total = out[0] + out[1] + out[2] + out[3]
-    if abs(total) < 1e-13:
-        return -1.0
-    for k in range(4):
-        out[k] /= total
-    return min(out[0], out[1], out[2], out[3])
+    return abs(out[0]) + abs(out[1]) + abs(out[2]) + abs(out[3])
 
 
 @compiled

@@ -15,6 +15,9 @@ from holdfast.kernels.uprights import UPRIGHT_REALS, uprights_between
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# Rounding of distances in mm, generously counted.
+ROUNDING = 1e-9
+
 
 @compiled
 def reach(row: Array) -> float:
@@ -64,7 +67,7 @@ def tail_curves(
         center = centers[tail] if centers[tail] == centers[head] else -1
         for length in range(lengths.shape[0]):
             d = lengths[length]
-            if d > apart + play or d < apart - play:
+            if d > apart + play + ROUNDING or d < apart - play - ROUNDING:
                 continue
             ranges = chord_intervals(a, b, d)
             standing = uprights_between(a, b, d)

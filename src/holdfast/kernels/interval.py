@@ -1,8 +1,8 @@
 """Interval arithmetic on pairs (low, high) with outward rounding.
 
-Every operation widens its result by a little more than half a unit in the last place of each bound, which covers the
-rounding of the operation itself (sine and cosine: one unit). Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud,
-*Introduction to Interval Analysis*, SIAM 2009, chapters 2 and 3.
+Every operation widens its result by a few units in the last place of each bound, which covers the rounding of the operation
+itself and that of a number that enters it as a coefficient (sine and cosine: also that of the angle).
+Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009, chapters 2 and 3.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from holdfast.kernels.compiling import compiled
 
 Interval = tuple[float, float]
 
-ROUNDING = 2.3e-16
+ROUNDING = 6e-16
 SMALLEST = 1e-300
 TURN = 2.0 * pi
 
@@ -60,7 +60,8 @@ def iscale(c: float, a: Interval) -> Interval:
 @compiled
 def ishift(c: float, a: Interval) -> Interval:
     """c + a for a number c."""
-    return outward(c + a[0], c + a[1])
+    low, high = outward(c + a[0], c + a[1])
+    return (low - ROUNDING * abs(c), high + ROUNDING * abs(c))
 
 
 @compiled
@@ -96,9 +97,9 @@ def icos(a: Interval) -> Interval:
     low, high = cos(a[0]), cos(a[1])
     if low > high:
         low, high = high, low
-    low, high = low - 2.0 * ROUNDING, high + 2.0 * ROUNDING
     # Extremes inside, with slack for the rounding of the angles themselves.
-    slack = 4.0 * ROUNDING * max(abs(a[0]), abs(a[1]))
+    slack = ROUNDING * max(abs(a[0]), abs(a[1]), 1.0)
+    low, high = low - ROUNDING - slack, high + ROUNDING + slack
     if floor((a[1] + slack) / TURN) >= ceil((a[0] - slack) / TURN):
         high = 1.0
     if floor((a[1] + slack - pi) / TURN) >= ceil((a[0] - slack - pi) / TURN):

@@ -7,7 +7,9 @@ piece : a chord curve over a range inside one cell, with value and derivative at
     derivative ("bend") over the whole range. The bend keeps one sign, or the derivative it allows varies little; so the
     derivative over any part of the piece is bounded by its values at that part's ends.
 
-Columns of a piece: LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, BEND_LOW, BEND_HIGH, CURVE (index).
+
+Columns of a piece: LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, BEND_LOW, BEND_HIGH, CURVE (index), and the
+bounds VALUE_ERROR and SLOPE_ERROR of the errors at both ends.
 """
 
 from __future__ import annotations
@@ -18,14 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import POSITION, chord, curve_value
-from holdfast.kernels.chord_bounds import curve_bend
+from holdfast.kernels.chord_bounds import curve_bend, value_disc
 from holdfast.kernels.compiling import compiled
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 LOW, HIGH, VALUE_LOW, SLOPE_LOW, VALUE_HIGH, SLOPE_HIGH, BEND_LOW, BEND_HIGH, CURVE = range(9)
-PIECE_LENGTH = 9
+VALUE_ERROR_LOW, SLOPE_ERROR_LOW, VALUE_ERROR_HIGH, SLOPE_ERROR_HIGH = range(9, 13)
+PIECE_LENGTH = 13
 
 # Columns of a curve's whole numbers and of its real numbers.
 TAIL, HEAD, COLUMN_STEP, ROW_STEP, CENTER = range(5)
@@ -71,8 +74,8 @@ def add_pieces(
     curve: int,
     low: float,
     high: float,
-    tangent_low: bool,
-    tangent_high: bool,
+    tangent_low: float,
+    tangent_high: float,
     mode: float,
     flatness: float,
 ) -> tuple[Array, int]:
@@ -81,7 +84,8 @@ def add_pieces(
     Parameters
     ----------
     low, high : psi in radians, inside the curve's range and inside one cell.
-    tangent_low, tangent_high : whether the chord is a tangency (infinite slope) at that end.
+    tangent_low, tangent_high : bound of the error in radians of that end where the chord is a tangency (infinite slope)
+        there, 0 where it is not.
     flatness : how much the slope of a piece without a one-signed bend may vary, in mm per radian.
     """
     a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
@@ -98,12 +102,18 @@ def add_pieces(
         bends = curve_bend(a, b, d, shift + left, shift + right, branch, shift, mode, sign)
         width = right - left
         settled = bends[0] >= 0.0 or bends[1] <= 0.0 or (bends[1] - bends[0]) * width <= flatness
-        if not settled and width > NARROWEST and depth < 199:
+        # Nothing is learnt of a range no longer than the error of its end.
+        smallest = NARROWEST
+        if left == low:
+            smallest = max(smallest, 4.0 * tangent_low)
+        if right == high:
+            smallest = max(smallest, 4.0 * tangent_high)
+        if not settled and width > smallest and depth < 199:
             stack[depth] = right
             depth += 1
-            if tangent_low and left == low:
+            if tangent_low > 0.0 and left == low:
                 right = left + width / 8.0
-            elif tangent_high and right == high:
+            elif tangent_high > 0.0 and right == high:
                 right = right - width / 8.0
             else:
                 right = left + width / 2.0
@@ -112,15 +122,18 @@ def add_pieces(
             out = grown(out)
         row = out[count]
         count += 1
-        value_low, slope_low = curve_value(a, b, d, shift + left, branch, shift, mode)
-        value_high, slope_high = curve_value(a, b, d, shift + right, branch, shift, mode)
-        # Branch 0 stands for the point at which both branches meet: they must agree there to the last digit.
-        if tangent_low and left == low:
-            value_low = curve_value(a, b, d, shift + left, 0.0, shift, mode)[0]
-            slope_low = end_slope(bends, -1.0)
-        if tangent_high and right == high:
-            value_high = curve_value(a, b, d, shift + right, 0.0, shift, mode)[0]
-            slope_high = end_slope(bends, 1.0)
+        value_low, slope_low, error_low, spread_low = curve_value(a, b, d, shift + left, branch, shift, mode)
+        value_high, slope_high, error_high, spread_high = curve_value(a, b, d, shift + right, branch, shift, mode)
+        # Where the branches meet, or nearly so, the value is bounded by a disc, a hair beyond the end included.
+        at_low, at_high = tangent_low > 0.0 and left == low, tangent_high > 0.0 and right == high
+        if at_low:
+            slope_low, spread_low = end_slope(bends, -1.0)
+        if at_high:
+            slope_high, spread_high = end_slope(bends, 1.0)
+        if at_low or not isfinite(error_low):
+            value_low, error_low = value_disc(a, b, d, shift + left, branch, tangent_low, shift, mode)
+        if at_high or not isfinite(error_high):
+            value_high, error_high = value_disc(a, b, d, shift + right, branch, tangent_high, shift, mode)
         if circles:
             middle = curve_value(a, b, d, shift + left + width / 64.0, branch, shift, mode)[0]
             value_low = unwrapped(value_low, middle)
@@ -129,6 +142,8 @@ def add_pieces(
         row[LOW], row[HIGH], row[CURVE] = left, right, curve
         row[VALUE_LOW], row[SLOPE_LOW] = value_low, slope_low
         row[VALUE_HIGH], row[SLOPE_HIGH] = value_high, slope_high
+        row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = error_low, spread_low
+        row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = error_high, spread_high
         row[BEND_LOW], row[BEND_HIGH] = bends[0], bends[1]
         if depth == 0:
             return out, count
@@ -138,13 +153,14 @@ def add_pieces(
 
 
 @compiled
-def end_slope(bends: tuple[float, float], side: float) -> float:
-    """Slope at a tangency: infinite, with the sign the bend gives it (side -1 at the low end, +1 at the high end)."""
+def end_slope(bends: tuple[float, float], side: float) -> tuple[float, float]:
+    """Slope at a tangency and its error: infinite, with the sign the bend gives it (side -1 at the low end, +1 at the high
+    end), or unknown."""
     if bends[0] >= 0.0:
-        return side * inf
+        return (side * inf, 0.0)
     if bends[1] <= 0.0:
-        return -side * inf
-    return np.nan
+        return (-side * inf, 0.0)
+    return (0.0, inf)
 
 
 @compiled
@@ -169,7 +185,7 @@ def cell_pieces(
 
     Returns
     -------
-    (N, 9) array
+    (N, 13) array
     """
     out = np.empty((64, PIECE_LENGTH))
     count = int(np.int64(0))
@@ -182,8 +198,8 @@ def cell_pieces(
             left, right = max(low, cell_low), min(high, cell_high)
             if right - left <= 0.0:
                 continue
-            tangent_low = left == low and reals[curve, TANGENT_FROM] != 0.0
-            tangent_high = right == high and reals[curve, TANGENT_TO] != 0.0
+            tangent_low = reals[curve, TANGENT_FROM] if left == low else 0.0
+            tangent_high = reals[curve, TANGENT_TO] if right == high else 0.0
             out, count = add_pieces(
                 out, count, features, integers, reals, curve, left, right, tangent_low, tangent_high, mode, flatness
             )

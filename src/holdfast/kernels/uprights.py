@@ -13,21 +13,28 @@ Columns of an upright: FROM and TO (parameter of the tail on its feature), DIREC
 
 from __future__ import annotations
 
-from math import acos, atan2, ceil, cos, floor, pi, sin
+from math import acos, atan2, ceil, cos, floor, hypot, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import HEIGHT, are_one_chord_apart, parameter_on
+from holdfast.kernels.chord import are_one_chord_apart, blur, parameter_on
 from holdfast.kernels.chord_intervals import PARALLEL
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.crossing import value_at
 from holdfast.kernels.pieces import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL, grown
 from holdfast.kernels.pieces import FROM as CURVE_FROM
 from holdfast.kernels.pieces import TO as CURVE_TO
-from holdfast.kernels.type_one import CONTACTS, FOUND, place_chord
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, place_chord
 from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
-from holdfast.kernels.vise_checks import RECORD_LENGTH, is_fixture, place_peg, share_a_jaw, write_record
+from holdfast.kernels.vise_checks import (
+    PEG_LENGTH,
+    RECORD_LENGTH,
+    WRENCH_LENGTH,
+    is_fixture,
+    place_peg,
+    share_a_jaw,
+    write_record,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -35,8 +42,11 @@ IntArray = NDArray[np.int64]
 FROM, TO, DIRECTION, STEP_LENGTH, ORIENTATION = range(5)
 UPRIGHT_REALS = 5
 TURN = 2.0 * pi
-# A chord square to its parallel lines, to within this cosine, has one line of action for both contacts.
-SQUARE = 1e-12
+# A chord square to its parallel lines, to within rounding of this cosine, has one line of action for both contacts.
+SQUARE = 4e-15
+# Rounding of an upright's orientation, and how far outside a curve's range it still counts as inside, in radians.
+ROUNDING = 4e-15
+INSIDE = 1e-12
 
 
 @compiled
@@ -73,7 +83,7 @@ def arc_uprights(a: Array, b: Array, d: float, out: Array) -> int:
     for lap in range(-1, 2):
         middle = turned + lap * TURN
         low, high = max(-a[5], middle - b[5]), min(a[5], middle + b[5])
-        if low < high:
+        if low <= high:
             out[count, FROM], out[count, TO], out[count, DIRECTION] = low, high, alpha
             count += 1
     return count
@@ -99,18 +109,43 @@ def uprights_between(a: Array, b: Array, d: float) -> Array:
 
 
 @compiled
-def orientation_inside(curve: int, psi: float, reals: Array) -> tuple[bool, float]:
-    """Whether a curve exists at an orientation, and psi moved by whole turns into its range."""
-    base = reals[curve, CURVE_FROM] - reals[curve, SHIFT]
-    inside = psi + TURN * ceil((base - psi) / TURN)
-    return (inside <= reals[curve, CURVE_TO] - reals[curve, SHIFT], inside)
+def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
+    """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its range."""
+    low, high = reals[curve, CURVE_FROM] - reals[curve, SHIFT], reals[curve, CURVE_TO] - reals[curve, SHIFT]
+    inside = psi + TURN * ceil((low - INSIDE - reach - psi) / TURN)
+    return (inside <= high + INSIDE + reach, min(max(inside, low), high))
 
 
 @compiled
-def place_upright(pegs: Array, x: float, y: float, line: float, whole: IntArray, upright: Array, psi: float) -> None:
-    """Write the pegs of an upright to (2, 5) places, with its tail at (x, y) in row ``line`` of column 0."""
+def upright_reach(a: Array, b: Array, upright: Array) -> float:
+    """How far in radians the orientation of an upright may be off.
+
+    Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by 1 / (d sin).
+    """
+    d = upright[STEP_LENGTH]
+    error = blur(a, b, d)
+    if a[0] == 0.0:
+        nx, ny = a[4], -a[3]
+        along = abs(cos(upright[DIRECTION]) * ny - sin(upright[DIRECTION]) * nx)
+        tilt = abs(a[3] * b[4] - a[4] * b[3]) + ROUNDING
+        return ROUNDING + (error + tilt * (a[5] + b[5] + d)) / (d * max(along, 1e-8))
+    return ROUNDING + (error + 4.0 * (abs(hypot(b[1] - a[1], b[2] - a[2]) - d) + abs(a[6] - b[6]))) / d
+
+
+@compiled
+def place_upright(
+    pegs: Array,
+    x: float,
+    y: float,
+    line: float,
+    whole: IntArray,
+    upright: Array,
+    radius: float,
+    reach: float,
+) -> None:
+    """Write the pegs of an upright to (2, 6) places, with its tail at (x, y) in row ``line`` of column 0."""
     alpha, d = upright[DIRECTION], upright[STEP_LENGTH]
-    place_peg(pegs[0], x, y, whole[TAIL], 0.0, line)
+    place_peg(pegs[0], x, y, whole[TAIL], 0.0, line, radius)
     place_peg(
         pegs[1],
         x + d * cos(alpha),
@@ -118,14 +153,18 @@ def place_upright(pegs: Array, x: float, y: float, line: float, whole: IntArray,
         whole[HEAD],
         float(whole[COLUMN_STEP]),
         line + whole[ROW_STEP],
+        radius + d * reach,
     )
 
 
 @compiled
-def tail_inside(row: Array, upright: Array, x: float, y: float) -> bool:
-    """Whether a tail lies in an upright's range on its feature."""
+def tail_inside(row: Array, upright: Array, x: float, y: float, radius: float) -> bool:
+    """Whether a tail known to a radius in mm may lie in an upright's range on its feature."""
+    spare = radius + 1e-10
+    if row[0] != 0.0:
+        spare = 1.2 * spare / row[6]
     s = parameter_on(row, x, y)
-    return upright[FROM] <= s <= upright[TO]
+    return upright[FROM] - spare <= s <= upright[TO] + spare
 
 
 @compiled
@@ -149,43 +188,50 @@ def upright_type_one(
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
-    pegs, work, null = np.empty((4, 5)), np.empty((8, 2)), np.empty(4)
+    pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
     for u in chosen:
         upright, psi = uprights[u], uprights[u, ORIENTATION]
         ax, ay = -sin(psi), cos(psi)
         row = loose[whole[u, TAIL]]
+        reach = upright_reach(row, loose[whole[u, HEAD]], upright)
         lowest, highest = height_range(row, ax, ay)
         for curve in members:
-            exists, inside = orientation_inside(curve, psi, reals)
+            exists, inside = orientation_inside(curve, psi, reach, reals)
             if not exists:
                 continue
-            height = value_at(inside, curve, loose, integers, reals, HEIGHT)[0]
+            place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
+            height = ax * pegs[0, 0] + ay * pegs[0, 1]
+            error = pegs[0, 5] + 4.0 * limits[WRENCH_LENGTH] * reach
+            slack = 1e-9 + error / pitch_y
             for order in range(2):
                 # The upright is on the left for order 0, on the right for order 1.
                 sign = 1.0 if order == 0 else -1.0
                 base = height - sign * row_offset
-                first = int(ceil((lowest - base) / pitch_y - 1e-9))
-                last = int(floor((highest - base) / pitch_y + 1e-9))
+                first = int(ceil((lowest - base) / pitch_y - slack))
+                last = int(floor((highest - base) / pitch_y + slack))
                 for line in range(first, last + 1):
                     for k in range(2):
-                        meets, x, y = row_meets(row, ax, ay, base + line * pitch_y, 1.0 - 2.0 * k)
-                        if not meets or not tail_inside(row, upright, x, y):
+                        meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
+                        if not meets or not tail_inside(row, upright, x, y, radius):
                             continue
                         if order == 0:
-                            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, psi)
-                            place_chord(pegs[2:], curve, psi, float(-line), features, integers, reals)
+                            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, radius, reach)
+                            place_chord(
+                                pegs[2:], curve, inside, 2.0 * reach + INSIDE, float(-line), features, integers, reals
+                            )
                         else:
-                            place_chord(pegs[:2], curve, psi, 0.0, features, integers, reals)
-                            place_upright(pegs[2:], x, y, float(line), whole[u], upright, psi)
-                        verdict, apart = is_fixture(pegs, 2.0, psi, features, limits, work, null)
+                            place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
+                            place_upright(pegs[2:], x, y, float(line), whole[u], upright, radius, reach)
+                        verdict, apart = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
+                        stats[CANDIDATES] += 1
                         if verdict > 0 and order == 0:
                             stats[CONTACTS] += 1
                         if verdict == 2:
                             if count == out.shape[0]:
                                 out = grown(out)
-                            write_record(out[count], 1.0, pegs, psi, apart, null)
+                            write_record(out[count], 1.0, pegs, psi, apart, reach)
                             count += 1
-    stats[FOUND] += count
+                            stats[FOUND] += 1
     return out[:count]
 
 
@@ -210,21 +256,23 @@ def upright_type_two(
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
-    pegs, work, null = np.empty((4, 5)), np.empty((8, 2)), np.empty(4)
+    pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
     for u in chosen:
         upright, psi = uprights[u], uprights[u, ORIENTATION]
         tail = whole[u, TAIL]
+        reach = upright_reach(loose[tail], loose[whole[u, HEAD]], upright)
         for curve in members:
             if integers[curve, TAIL] != tail:
                 continue
-            exists, inside = orientation_inside(curve, psi, reals)
+            exists, inside = orientation_inside(curve, psi, reach, reals)
             if not exists or not share_a_jaw(whole[u], integers[curve], limits):
                 continue
-            place_triple(pegs, curve, curve, inside, features, integers, reals)
-            x, y = pegs[0, 0], pegs[0, 1]
-            if not tail_inside(loose[tail], upright, x, y):
+            place_triple(pegs, curve, curve, inside, 2.0 * reach + INSIDE, features, integers, reals)
+            x, y, radius = pegs[0, 0], pegs[0, 1], pegs[0, 5]
+            if not tail_inside(loose[tail], upright, x, y, radius):
                 continue
-            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, psi)
-            out, count = add_right_pegs(out, count, pegs, psi, features, pitch_y, row_offset, limits, work, null, stats)
-    stats[FOUND] += count
+            place_upright(pegs[:2], x, y, 0.0, whole[u], upright, radius, reach)
+            out, count = add_right_pegs(
+                out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, work, null, stats
+            )
     return out[:count]

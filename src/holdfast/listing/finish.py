@@ -10,8 +10,8 @@ from attrs import define, evolve
 from numpy.typing import NDArray
 
 from holdfast.kernels import vise_checks as record
-from holdfast.kernels.distance import outline_distances
-from holdfast.listing.polish import Contacts, polish
+from holdfast.listing.deciding import Account, contacts_of, decided, is_left, peg_integers
+from holdfast.listing.problem import Problem
 from holdfast.model.result import FixtureTable
 from holdfast.model.vise import Vise
 from holdfast.statics.wrenches import clamping_force, null_vectors, outward_normals
@@ -25,11 +25,6 @@ IntArray = NDArray[np.int64]
 SAME_POSE = 1e-6
 # Places nearer than this, in mm, are one.
 SAME_PLACE = 1e-6
-# A peg may be this far, in mm, from touching its feature, or inside the part, after polishing.
-TOUCH = 1e-7
-# At an exact double root rounding leaves both the smallest force and the Jacobian's determinant of the order of the square
-# root of the rounding error, so their product, of the order of that error, tells it from a fixture.
-DOUBLE_ROOT = 1e-12
 BLOCK = 1 << 16
 
 
@@ -66,62 +61,18 @@ CANDIDATE_FIELDS = ("kind", "feature", "column", "row", "theta", "point", "openi
 PEG_FIELDS = ("feature", "column", "row", "point", "null", "force")
 
 
-def is_left(kind: IntArray) -> NDArray[np.bool_]:
-    """Which of the four pegs are on the left jaw, (N, 4)."""
-    return np.arange(4) < np.where(kind == 1, 2, 3)[:, None]
-
-
-def solve_block(
-    records: Array, features: Array, vise: Vise, length: float
-) -> tuple[Contacts, IntArray, IntArray, IntArray]:
-    """Polish one block of records; return the contacts and their (N, 4) features, columns and rows."""
-    whole = records[:, record.FEATURES : record.PSI].astype(np.int64)
-    feature, column, row = whole[:, :4], whole[:, 4:8], whole[:, 8:12]
-    right = ~is_left(records[:, record.KIND].astype(np.int64))
-    offsets = np.stack([column * vise.pitch[0], row * vise.pitch[1] + right * vise.row_offset], axis=-1)
-    contacts = polish(
-        features[feature],
-        records[:, record.PSI],
-        records[:, record.TAIL_X : record.TAIL_Y + 1],
-        records[:, record.APART],
-        offsets.astype(np.float64),
-        right.astype(np.float64),
-        length,
-    )
-    return contacts, feature, column, row
-
-
-def candidates_of(records: Array, features: Array, outline: Array, vise: Vise, length: float) -> Candidates:
-    """Polish records and check them once more: contact, clearance, closure, clamping, gap.
-
-    Parameters
-    ----------
-    records : (N, 21) from the kernels.
-    features, outline : (F, 8) contact features and (S, 8) faces about the centre of the part.
-    length : L of the wrenches in mm.
-    """
-    contacts, feature, column, row = solve_block(records, features, vise, length)
+def candidates_of(records: Array, problem: Problem) -> Candidates:
+    """Proven records as candidates."""
+    feature, column, row = peg_integers(records)
+    contacts = contacts_of(records, problem)
     kind = records[:, record.KIND].astype(np.int64)
-    left = is_left(kind)
-    theta = -contacts.psi
+    left, theta = is_left(kind), -contacts.psi
     normals = outward_normals(contacts.rows, contacts.points)
-    null = null_vectors(contacts.points, normals, length)
+    null = null_vectors(contacts.points, normals, problem.wrench_length)
     clamp = clamping_force(null, normals, theta, left)
     along = np.cos(theta)[:, None] * contacts.points[..., 0] - np.sin(theta)[:, None] * contacts.points[..., 1]
     opening = np.where(left, np.inf, along).min(axis=1) - np.where(left, along, -np.inf).max(axis=1)
-    clearance = outline_distances(contacts.points.reshape(-1, 2), outline).reshape(-1, 4).min(axis=1)
-    good = (
-        (contacts.residual <= TOUCH)
-        & (clearance >= vise.peg_radius - TOUCH)
-        & (null.min(axis=1) > record.LEAST_CLOSURE)
-        & (null.min(axis=1) * contacts.regularity > DOUBLE_ROOT)
-        & (clamp > record.LEAST_CLOSURE)
-        & (opening >= vise.min_gap - record.GAP_SLACK)
-    )
-    everything = Candidates(
-        kind, feature, column, row, theta, contacts.points, opening, null, null / np.where(good, clamp, 1.0)[:, None]
-    )
-    return everything.take(good)
+    return Candidates(kind, feature, column, row, theta, contacts.points, opening, null, null / clamp[:, None])
 
 
 def joined(parts: list[Candidates]) -> Candidates:
@@ -217,28 +168,29 @@ def twins(c: Candidates, face: IntArray) -> tuple[IntArray, IntArray]:
     return order[~other], order[other]
 
 
-def finish(records: list[Array], features: Array, outline: Array, vise: Vise, length: float) -> Candidates:
-    """Polish, check, bring to the listed form and list once.
+def finish(records: list[Array], problem: Problem) -> tuple[Candidates, Account]:
+    """Polish, decide, bring to the listed form and list once.
 
     Parameters
     ----------
-    records : (N, 21) arrays from the kernels.
-    features : (F, 8) contact features about the centre of the part.
-    outline : (S, 8) faces of the part about its centre.
-    length : L of the wrenches in mm.
+    records : (N, 19) arrays from the kernels.
+
+    Returns
+    -------
+    (the fixtures, an account of all records)
     """
-    parts = [
-        standing(candidates_of(block[k : k + BLOCK], features, outline, vise, length))
-        for block in merged_blocks(records)
-        for k in range(0, len(block), BLOCK)
-    ]
-    if not parts:
-        empty = np.zeros((0, record.RECORD_LENGTH))
-        parts = [candidates_of(empty, features, outline, vise, length)]
+    parts: list[Candidates] = []
+    accounts: list[Account] = []
+    for block in merged_blocks(records) or [np.zeros((0, record.RECORD_LENGTH))]:
+        for k in range(0, max(len(block), 1), BLOCK):
+            proven, account = decided(block[k : k + BLOCK], problem)
+            parts.append(standing(candidates_of(proven, problem)))
+            accounts.append(account)
     everything = joined(parts)
+    vise = problem.vise
     if vise.rows is not None:
         everything = everything.take(everything.row.max(axis=1, initial=0) < vise.rows)
-    return listed_once(everything.take(placement(everything, vise)[3]))
+    return listed_once(everything.take(placement(everything, vise)[3])), Account.together(accounts)
 
 
 def merged_blocks(records: list[Array]) -> list[Array]:

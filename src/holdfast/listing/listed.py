@@ -7,9 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from holdfast.listing.deciding import Account
 from holdfast.listing.distinct import count_distinct
 from holdfast.listing.finish import finish, placed, twins
 from holdfast.listing.problem import TYPES, Problem
+from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 
 __all__ = ["listed_result"]
@@ -22,18 +24,24 @@ def listed_result(
     complete: bool,
     best: int | None = None,
     statistics: Mapping[str, int],
+    cells: int = 0,
+    examined: int | None = None,
+    why_none: str = "",
 ) -> Result:
     """Check, list once, rank and count the fixtures that an engine found.
 
     Parameters
     ----------
     problem : what was searched.
-    records : (N, 21) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
+    records : (N, 19) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
     complete : whether the search came to its end.
     best : list only this many, the best ones.
     statistics : see ``Result.statistics``.
+    cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
+        than the records).
+    why_none : the reason to give when there is no fixture.
     """
-    candidates = finish(records, problem.rows, problem.outline, problem.vise, problem.wrench_length)
+    candidates, account = finish(records, problem)
     first, others = twins(candidates, problem.faces[candidates.feature])
     listed = candidates.take(first)
     center = problem.workpiece.center
@@ -48,10 +56,20 @@ def listed_result(
         distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
         complete=complete,
         contact_margin=problem.contact_margin,
-        notes=notes(len(kept_apart)),
+        notes=notes(len(kept_apart), len(account.undecided), why_none if complete and len(ranked) == 0 else ""),
         statistics=statistics,
         twins=kept_apart,
+        proof=proof_of(account, cells, examined),
     )
+
+
+def proof_of(account: Account, cells: int, examined: int | None) -> Proof:
+    """The account of a search for the result."""
+    # A pair of chords that was given up counts as one candidate.
+    lost = sum("pair of chords" in item.reason for item in account.undecided)
+    candidates = account.records if examined is None else examined + lost
+    discarded = candidates - account.verified - len(account.undecided)
+    return Proof(cells, candidates, discarded, account.verified, account.escalated, account.undecided)
 
 
 def rank(table: FixtureTable) -> NDArray[np.intp]:
@@ -61,9 +79,17 @@ def rank(table: FixtureTable) -> NDArray[np.intp]:
     return np.argsort(-np.round(table.null_vector.min(axis=1), 9), kind="stable")
 
 
-def notes(twin_count: int) -> tuple[str, ...]:
+def notes(twin_count: int, undecided_count: int, why_none: str) -> tuple[str, ...]:
     """Remarks on a search that a user should read."""
-    if twin_count == 0:
-        return ()
-    some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
-    return (f"{some}: the same holes, faces and orientation with the part in another place, kept apart from the list.",)
+    out = [why_none] if why_none and not undecided_count else []
+    if twin_count:
+        some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
+        out.append(
+            f"{some}: the same holes, faces and orientation with the part in another place, kept apart from the list."
+        )
+    if undecided_count:
+        some = "1 candidate is undecided" if undecided_count == 1 else f"{undecided_count} candidates are undecided"
+        out.append(
+            f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+        )
+    return tuple(out)

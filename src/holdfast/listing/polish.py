@@ -6,10 +6,13 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-__all__ = ["Contacts", "polish"]
+__all__ = ["Contacts", "contact_equations", "contacts_at", "newton_step", "polish"]
 
 Array = NDArray[np.float64]
 ROUNDS = 3
+# Determinants this small are singular; steps of more than this many mm lead to another contact.
+SINGULAR = 1e-300
+FARTHEST = 1.0
 
 
 @define(frozen=True, eq=False)
@@ -23,8 +26,8 @@ class Contacts:
     tail : (N, 2) centre of the first peg in mm.
     apart : (N,) x distance from the first left to the first right peg in mm.
     points : (N, 4, 2) peg centres in mm.
-    residual : (N,) largest distance in mm of a peg's centre from its feature's line or circle.
-    regularity : (N,) size of the Jacobian's determinant, with lengths in units of L; 0 at a double root.
+    off : (N, 4) signed distances in mm of the pegs' centres from their features' lines and circles.
+    jacobian : (N, 4, 4) of those distances over (L psi, tail x, tail y, apart).
     """
 
     rows: Array
@@ -32,8 +35,8 @@ class Contacts:
     tail: Array
     apart: Array
     points: Array
-    residual: Array
-    regularity: Array
+    off: Array
+    jacobian: Array
 
 
 def peg_points(psi: Array, tail: Array, apart: Array, offsets: Array, slides: Array) -> tuple[Array, Array, Array]:
@@ -83,7 +86,23 @@ def polish(
     """
     for _ in range(ROUNDS):
         _, off, jacobian = contact_equations(rows, psi, tail, apart, offsets, slides, length)
-        step = np.linalg.solve(jacobian, off[..., None])[..., 0]
+        step = newton_step(jacobian, off)
         psi, tail, apart = psi - step[:, 0] / length, tail - step[:, 1:3], apart - step[:, 3]
+    return contacts_at(rows, psi, tail, apart, offsets, slides, length)
+
+
+def contacts_at(
+    rows: Array, psi: Array, tail: Array, apart: Array, offsets: Array, slides: Array, length: float
+) -> Contacts:
+    """Four pegs in place; parameters as for :func:`polish`."""
     points, off, jacobian = contact_equations(rows, psi, tail, apart, offsets, slides, length)
-    return Contacts(rows, psi, tail, apart, points, np.abs(off).max(axis=1), np.abs(np.linalg.det(jacobian)))
+    return Contacts(rows, psi, tail, apart, points, off, jacobian)
+
+
+def newton_step(jacobian: Array, off: Array) -> Array:
+    """Solutions (N, 4) of the linearized equations; 0 where they are singular or would lead far away."""
+    with np.errstate(all="ignore"):
+        usable = np.abs(np.linalg.det(jacobian)) > SINGULAR
+    step = np.linalg.solve(np.where(usable[:, None, None], jacobian, np.eye(4)), off[..., None])[..., 0]
+    near = np.abs(step).max(axis=1, initial=0.0) <= FARTHEST
+    return np.asarray(np.where((usable & near)[:, None], step, 0.0))

@@ -19,6 +19,8 @@ __all__ = ["TYPES", "Problem", "Progress", "check_options"]
 
 Progress = Callable[[float, int], None]
 TYPES = ("I", "II")
+# Roundings of half a unit in the last place in a feature's row, generously counted.
+ROUNDINGS = 16.0 * 1.2e-16
 
 
 @define(frozen=True, eq=False)
@@ -73,6 +75,12 @@ class Problem:
     def wrench_length(self) -> float:
         """L of the wrenches: half the diameter of the peg-centre locus."""
         return self.diameter / 2
+
+    @property
+    def blur(self) -> float:
+        """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
+        center = self.workpiece.center
+        return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [1, 2, 6]]).max()))
 
 
 def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from holdfast.model.fixture import Fixture, Peg, Pose
+from holdfast.model.proof import Proof
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -94,8 +95,8 @@ class Result:
     notes : remarks a user should read, one sentence each.
     twins : fixtures with the same holes, faces and orientation as one listed, where the workpiece lies in another place.
     statistics : how much work the search was: numbers of contact features, chord curves, uprights, pairs of curves
-        compared, simultaneous contacts (all four inside their features, before closure, jaw order and clamping), and
-        touches (contacts without clamping force, which are passed over).
+        compared, and simultaneous contacts (all four inside their features, before closure, jaw order and clamping).
+    proof : the account of the search, see :class:`holdfast.model.proof.Proof`; None for a result that came without.
     """
 
     workpiece: Workpiece
@@ -108,6 +109,7 @@ class Result:
     notes: tuple[str, ...] = field(default=())
     twins: FixtureTable = field(factory=FixtureTable.empty)
     statistics: Mapping[str, int] = field(factory=dict)
+    proof: Proof | None = None
 
     @property
     def counts(self) -> dict[str, int]:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from threading import Event
 
 import numpy as np
+from numpy.typing import NDArray
 
-from holdfast.contact.curves import CurveTable, curve_table, loosened
+from holdfast.contact.curves import CurveTable, center_numbers, curve_table, loosened
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, PAIRS, STATISTICS
 from holdfast.listing.listed import listed_result
 from holdfast.listing.problem import TYPES, Problem, Progress, check_options
 from holdfast.model.result import Result
@@ -69,17 +71,43 @@ def design(
     table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
     search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
     records, complete = run_blocks(search.blocks(types), thread_count(threads), progress, cancel)
-    return listed_result(problem, records, complete=complete, best=best, statistics=statistics(search, table))
+    work = np.array(search.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0)
+    return listed_result(
+        problem,
+        records,
+        complete=complete,
+        best=best,
+        statistics=statistics(search, table, work),
+        cells=len(search.stats),
+        examined=int(work[CANDIDATES]),
+        why_none=why_none(problem, table, int(work[CONTACTS])),
+    )
 
 
-def statistics(search: ViseSearch, table: CurveTable) -> dict[str, int]:
+def why_none(problem: Problem, table: CurveTable, contacts: int) -> str:
+    """The reason when a search finds no fixture, in one sentence."""
+    arcs = problem.rows[:, 0] != 0.0
+    if arcs.all() and len(set(center_numbers(problem.rows).tolist())) == 1:
+        return (
+            "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
+            "from turning."
+        )
+    if len(table) + len(table.upright_integers) == 0:
+        return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
+    if contacts == 0:
+        return "No four pegs of the two jaws can touch the part at the same time inside their faces."
+    return (
+        f"Of {contacts:,} sets of four pegs that touch the part at the same time none keeps the smallest gap, closes and "
+        "clamps."
+    )
+
+
+def statistics(search: ViseSearch, table: CurveTable, work: NDArray[np.int64]) -> dict[str, int]:
     """Counts that tell how much work a search was (see ``Result.statistics``)."""
-    total = np.sum(search.stats, axis=0) if search.stats else np.zeros(4, np.int64)
     return {
         "features": len(search.features),
         "chord_curves": len(table),
         "uprights": len(table.upright_integers),
-        "curve_pairs": int(total[0]),
-        "simultaneous_contacts": int(total[1]),
-        "touches": int(total[3]),
+        "curve_pairs": int(work[PAIRS]),
+        "simultaneous_contacts": int(work[CONTACTS]),
     }

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from holdfast.contact.curves import CurveTable, LatticeSteps
 from holdfast.kernels.chord import HEIGHT, POSITION
 from holdfast.kernels.pieces import cell_pieces
-from holdfast.kernels.type_one import type_one_cell
+from holdfast.kernels.type_one import STATISTICS, type_one_cell
 from holdfast.kernels.type_two import type_two_cell
 from holdfast.kernels.uprights import upright_type_one, upright_type_two
 from holdfast.model.vise import Vise
@@ -105,14 +105,14 @@ class ViseSearch:
         members = members_of_cell(self.table, low, high)
         blocks = []
         if len(members) > 1:
-            stats = np.zeros(4, np.int64)
+            stats = np.zeros(STATISTICS, np.int64)
             self.stats.append(stats)
             kernel = type_one_cell if name == "I" else type_two_cell
             mode = HEIGHT if name == "I" else POSITION
             work = partial(self.cross, kernel, mode, low, high, members, stats)
             blocks.append(Block(work, 1.0 + (1.0 if name == "I" else 0.2) * len(members) ** 2))
         if len(members) and len(uprights):
-            stats = np.zeros(4, np.int64)
+            stats = np.zeros(STATISTICS, np.int64)
             self.stats.append(stats)
             upright_kernel = upright_type_one if name == "I" else upright_type_two
             work = partial(self.meet_uprights, upright_kernel, uprights, members, stats)

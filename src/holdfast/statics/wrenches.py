@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["clamping_force", "null_vectors", "outward_normals"]
+from holdfast.kernels.vise_checks import LEAST_SPAN
+
+__all__ = ["clamping_force", "null_vectors", "outward_normals", "wrench_minors"]
 
 Array = NDArray[np.float64]
-
-# Minors whose sum is no larger are rounding: the four lines of action meet in one point, or two pairs coincide. A pose at
-# such a double root is known only to the square root of the rounding error.
-LEAST_SPAN = 1e-7
 
 
 def outward_normals(rows: Array, points: Array) -> Array:
@@ -31,8 +29,8 @@ def outward_normals(rows: Array, points: Array) -> Array:
     return np.where(rows[..., :1] == 0.0, straight, radial)
 
 
-def null_vectors(points: Array, normals: Array, length: float) -> Array:
-    """Null vectors of four contacts' wrenches (n, (q - c) x n / L), scaled to sum 1.
+def wrench_minors(points: Array, normals: Array, length: float) -> Array:
+    """Null vectors of four contacts' wrenches (n, (q - c) x n / L), not scaled: their signed 3x3 minors (Cramer's rule).
 
     Parameters
     ----------
@@ -43,13 +41,23 @@ def null_vectors(points: Array, normals: Array, length: float) -> Array:
     Returns
     -------
     (N, 4) array
-        Signed 3x3 minors (Cramer's rule) over their sum; all -1 where the wrenches do not span the space.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
-    wrenches = np.concatenate([normals, moments[..., None]], axis=-1)
-    out = np.empty(wrenches.shape[:2])
+    out = np.empty(moments.shape)
     for k in range(4):
-        out[:, k] = (-1) ** k * np.linalg.det(np.delete(wrenches, k, axis=1))
+        a, b, c = (i for i in range(4) if i != k)
+        minor = sum(
+            sign * moments[:, i] * (normals[:, j, 0] * normals[:, m, 1] - normals[:, j, 1] * normals[:, m, 0])
+            for sign, i, j, m in ((1.0, a, b, c), (-1.0, b, a, c), (1.0, c, a, b))
+        )
+        out[:, k] = (-1) ** k * np.asarray(minor)
+    return out
+
+
+def null_vectors(points: Array, normals: Array, length: float) -> Array:
+    """Null vectors scaled to sum 1, (N, 4); all -1 where the wrenches do not span the space. Parameters as for
+    :func:`wrench_minors`."""
+    out = wrench_minors(points, normals, length)
     total = out.sum(axis=1, keepdims=True)
     spans = np.abs(total) > LEAST_SPAN
     return np.asarray(np.where(spans, out / np.where(spans, total, 1.0), -1.0))

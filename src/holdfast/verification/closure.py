@@ -17,10 +17,14 @@ from holdfast.verification.findings import AGREEMENT, Finding, number, rule
 
 __all__ = ["closure_findings", "minors"]
 
-# Numbers of the null vector and the clamping force at or below this are no closure (model: condition 4).
-LEAST = 1e-9
-# Rounding of those numbers in double precision.
-ROUNDING = 1e-12
+# The least share of a peg in the closure, and the least clamping force, the shares scaled to sum 1 (model: conditions 4, 5).
+# The natural coincidences are 0: three normals through one point, and a double solution of the contact equations, where the
+# rounding of a drawing alone leaves a clamping force of up to 1e-7 or so. The edges stand off them.
+LEAST_SHARE = 1e-9
+LEAST_CLAMPING = 1e-6
+# The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one point or are
+# parallel up to the rounding of the drawing, and four such contacts close nothing.
+LEAST_SPAN = 1e-7
 
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
@@ -38,12 +42,20 @@ def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
     return vector
 
 
-def closure_findings(fixture: Fixture, contacts: Sequence[Contact], pose: Pose) -> Iterator[Finding]:
-    """Whether the four contacts close, whether closing the vise clamps, and whether the file tells the right forces."""
+def closure_findings(
+    fixture: Fixture, contacts: Sequence[Contact], pose: Pose, wrench_length: float
+) -> Iterator[Finding]:
+    """Whether the four contacts close, whether closing the vise clamps, and whether the file tells the right forces.
+
+    ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm.
+    """
     points = [contact.in_part(pose) for contact in contacts]
     normals = [contact.side.outward(point) for contact, point in zip(contacts, points, strict=True)]
     vector = minors(points, normals)
     total = sum(vector, arb(0))
+    span = sum((abs(entry) for entry in vector), arb(0)) / wrench_length
+    words = f"the contacts do not hold the part: their wrenches span only {number(span)}"
+    yield from rule(span - LEAST_SPAN, words, words)
     if not (total > 0 or total < 0):
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
         yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
@@ -51,10 +63,9 @@ def closure_findings(fixture: Fixture, contacts: Sequence[Contact], pose: Pose) 
     null = [entry / total for entry in vector]
     for position, entry in enumerate(null, 1):
         yield from rule(
-            entry - LEAST,
+            entry - LEAST_SHARE,
             f"the contacts do not hold the part: the share of peg {position} in the closure is {number(entry)}",
             f"the share of peg {position} in the closure is exactly at its limit",
-            ROUNDING,
         )
     # The push of a left peg along the vise's x axis is -n turned into the vise frame.
     across = pose.cosine, -pose.sine
@@ -62,10 +73,9 @@ def closure_findings(fixture: Fixture, contacts: Sequence[Contact], pose: Pose) 
     clamp = -sum((null[k] * dot(across, normals[k]) for k in lefts), arb(0))
     loose = list(
         rule(
-            clamp - LEAST,
+            clamp - LEAST_CLAMPING,
             f"closing the vise does not clamp: the clamping force is {number(clamp)}",
             "the clamping force is exactly at its limit",
-            ROUNDING,
         )
     )
     yield from loose

@@ -3,11 +3,20 @@
 Glossary
 --------
 slack : a number that a rule wants to be positive.
-definite : the slack's ball lies so far on the wrong side that the rounding of the file's own numbers cannot be the cause.
+hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coincidence.
 
-A proof needs the whole ball of the slack on the right side, without any tolerance. A refutation needs it on the wrong side
-by more than a tolerance: an exact coincidence, such as a contact at a tangent joint, is spoilt by the rounding of the
-drawing's coordinates, and whether it holds is nothing that more digits decide. What is neither is undecided.
+Drawings are made with round numbers, so that two faces are often exactly as far apart as two holes, or a contact is
+exactly at the joint of two faces; and the coordinates of a drawing are rounded, which spoils such a coincidence by some
+1e-13 mm in one direction or the other. A rule with its edge at the coincidence would be decided by that rounding. Therefore
+
+- a gap or an opening is met when it is missed by no more than a hair;
+- a contact at a tangent joint may lie up to a hair past that end of its face, at any other end it lies more than a hair
+  inside;
+- a peg may enter a face that runs alongside its own by no more than a hair.
+
+The hair is part of the rule: an exact number, the same at every precision. With it in the slack, a rule holds when the whole
+ball of the slack is positive, and is broken when the whole ball is negative. What is neither at the highest precision is
+undecided.
 """
 
 from __future__ import annotations
@@ -17,10 +26,10 @@ from collections.abc import Iterator
 from attrs import frozen
 from flint import arb
 
-__all__ = ["AGREEMENT", "COINCIDENCE", "Finding", "number", "rule"]
+__all__ = ["AGREEMENT", "HAIR", "Finding", "number", "rule"]
 
-# Lengths in mm by which rounding may spoil an exact coincidence.
-COINCIDENCE = 1e-9
+# Lengths in mm; the double nearest to 1e-9, taken as the rational number it is.
+HAIR = 1e-9
 # Numbers written in a file agree with the derived ones to this: mm, degrees, or a part of the force.
 AGREEMENT = 1e-6
 
@@ -33,12 +42,11 @@ class Finding:
     reason: str
 
 
-def rule(slack: arb, broken: str, edge: str, tolerance: float = COINCIDENCE) -> Iterator[Finding]:
+def rule(slack: arb, broken: str, edge: str) -> Iterator[Finding]:
     """Nothing when a slack is certainly positive, otherwise the finding in the words for its case."""
-    if slack > 0:
-        return
-    definite = bool(slack < -tolerance)
-    yield Finding(definite, broken if definite else edge)
+    if not slack > 0:
+        definite = bool(slack < 0)
+        yield Finding(definite, broken if definite else edge)
 
 
 def number(value: arb) -> str:

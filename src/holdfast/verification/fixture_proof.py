@@ -10,6 +10,7 @@ from typing import Literal
 from attrs import field, frozen
 from flint import arb, ctx
 
+from holdfast.model.diameter import outline_diameter
 from holdfast.model.fixture import Fixture
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
@@ -21,7 +22,7 @@ from holdfast.verification.holes import hole_findings, hole_place, jaw_findings
 from holdfast.verification.krawczyk import certified_zero
 from holdfast.verification.outline import Outline
 from holdfast.verification.sides import ArcSide
-from holdfast.verification.touching import margin_findings, touching_findings
+from holdfast.verification.touching import touching_findings
 
 __all__ = ["Judge", "Ruling", "Verdict", "verify_fixture"]
 
@@ -63,6 +64,12 @@ class Judge:
     vise: Vise
     contact_margin: float = 0.0
     outlines: dict[int, Outline] = field(factory=dict, init=False)
+    wrench_length: float = field(init=False)
+
+    @wrench_length.default
+    def half_the_locus(self) -> float:
+        """L of the wrenches in mm: half the diameter of the peg-centre locus."""
+        return outline_diameter(self.workpiece) / 2 + self.vise.peg_radius
 
     def rule_on(self, fixture: Fixture) -> Ruling:
         """The ruling on one fixture, at the lowest precision that decides it."""
@@ -107,10 +114,8 @@ class Judge:
             return
         yield from jaw_findings(fixture, self.vise, solution.separation)
         for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
-            name = f"peg {position}"
-            yield from touching_findings(name, contact, face, solution, outline)
-            yield from margin_findings(name, contact, face, solution, outline, self.contact_margin)
-        yield from closure_findings(fixture, contacts, solution)
+            yield from touching_findings(f"peg {position}", contact, face, solution, outline, self.contact_margin)
+        yield from closure_findings(fixture, contacts, solution, self.wrench_length)
 
 
 def degree() -> arb:

@@ -9,7 +9,7 @@ from flint import arb
 from holdfast.model.fixture import Fixture, Peg
 from holdfast.model.vise import Vise
 from holdfast.verification.balls import Point
-from holdfast.verification.findings import AGREEMENT, Finding, number, rule
+from holdfast.verification.findings import AGREEMENT, HAIR, Finding, number, rule
 
 __all__ = ["hole_findings", "hole_place", "jaw_findings"]
 
@@ -49,19 +49,19 @@ def hole_findings(fixture: Fixture, vise: Vise) -> Iterator[Finding]:
 
 
 def jaw_findings(fixture: Fixture, vise: Vise, separation: arb) -> Iterator[Finding]:
-    """Whether the jaws can stand at a proven separation in mm.
+    """Whether the jaws can stand at a proven separation in mm, met to a hair (see ``findings``).
 
     The separation is the gap between the columns next to the opening, so no right peg is nearer to a left one.
     """
     gap, limit = arb(vise.min_gap), vise.max_opening
     yield from rule(
-        separation - gap,
+        separation - gap + HAIR,
         f"the jaw separation of {number(separation)} mm is below the smallest gap of {vise.min_gap:g} mm",
-        "the jaw separation is exactly the smallest gap",
+        "the jaw separation is exactly at the edge of the smallest gap",
     )
     if limit is not None:
         yield from rule(
-            limit - separation,
+            limit - separation + HAIR,
             f"the jaw separation of {number(separation)} mm is above the largest opening of {limit:g} mm",
-            "the jaw separation is exactly the largest opening",
+            "the jaw separation is exactly at the edge of the largest opening",
         )

@@ -4,7 +4,7 @@ Glossary
 --------
 side : one segment of the outline, or a whole face of several, with material on its left.
 gap : distance of a point from the line or circle that carries a side, positive on the outer side.
-slack : distance along a contact feature from its nearer untrimmed end, negative beyond it.
+slacks : distances along a contact feature from its untrimmed start and end, negative beyond that end.
 
 A bulge b is a rational number, so cosine and sine of half the sweep 4 atan(b) are the rational numbers (1 - b²)/(1 + b²) and
 2b/(1 + b²); centre and radius of an arc need no trigonometry.
@@ -69,15 +69,18 @@ class LineSide:
             return norm(from_end)
         return abs(cross(self.tangent, from_start)).union(norm(from_start).min(norm(from_end)))
 
-    def is_past_ends(self, point: Point) -> bool:
-        """Whether the point of the side nearest to a point is certainly one of its ends."""
+    def away(self, point: Point) -> Point | None:
+        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
         along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
-        return bool(along < 0 or along > self.length)
+        if along > 0 and along < self.length:
+            return self.normal
+        end = self.start if along < 0 else self.end if along > self.length else None
+        return None if end is None else (point[0] - end[0], point[1] - end[1])
 
-    def slack(self, point: Point, offset: arb) -> arb:
-        """Slack in mm of a peg's centre on the side moved out by ``offset``."""
+    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Slacks in mm of a peg's centre on the side moved out by ``offset``."""
         along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
-        return along.min(self.length - along)
+        return along, self.length - along
 
     def outward(self, point: Point) -> Point:
         """Outward unit normal at the foot of a point."""
@@ -130,21 +133,30 @@ class ArcSide:
         from_ends = norm((point[0] - start[0], point[1] - start[1])).min(norm((point[0] - end[0], point[1] - end[1])))
         return from_ends if within < 0 else from_circle.union(from_ends)
 
-    def is_past_ends(self, point: Point) -> bool:
-        """Whether the point of the side nearest to a point is certainly one of its ends."""
-        return not self.whole and bool(self.within(self.from_center(point)) < 0)
+    def away(self, point: Point) -> Point | None:
+        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
+        ray = self.from_center(point)
+        within = self.within(ray)
+        if self.whole or within > 0:
+            return ray
+        ways = [(point[0] - end[0], point[1] - end[1]) for end in (self.start, self.end)]
+        one, two = (dot(way, way) for way in ways)
+        if not within < 0:
+            return None
+        return ways[0] if one < two else ways[1] if two < one else None
 
     def within(self, ray: Point) -> arb:
         """Positive for a ray from the centre through the arc, negative beside it."""
         return dot(self.middle, ray) - norm(ray) * self.half_sweep.cos()
 
-    def slack(self, point: Point, offset: arb) -> arb | None:
-        """Slack in mm of a peg's centre on the arc moved out by ``offset``; None on a whole circle."""
+    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Slacks in mm of a peg's centre on the arc moved out by ``offset``; none on a whole circle."""
         if self.whole:
-            return None
+            return ()
         ray = self.from_center(point)
-        angle = arb.atan2(cross(self.middle, ray), dot(self.middle, ray))
-        return (self.half_sweep - abs(angle)) * self.reach(offset)
+        angle = self.sign * arb.atan2(cross(self.middle, ray), dot(self.middle, ray))
+        reach = self.reach(offset)
+        return (self.half_sweep + angle) * reach, (self.half_sweep - angle) * reach
 
     def outward(self, point: Point) -> Point:
         """Outward unit normal at the foot of a point."""

@@ -1,0 +1,51 @@
+"""What a proven search shows of itself: what was examined, and what could not be decided."""
+
+from __future__ import annotations
+
+from attrs import field, frozen
+
+__all__ = ["Proof", "Undecided"]
+
+
+@frozen
+class Undecided:
+    """Four contacts, or a pair of chords, of which it is not decided whether they make a fixture.
+
+    Parameters
+    ----------
+    type : "I" or "II".
+    segments : the four faces (a pair of chords names the tail and the head of each).
+    columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg.
+    theta_deg : orientation of the workpiece in degrees, about which it would be.
+    reason : why it is not decided, in one sentence without a full stop.
+    """
+
+    type: str
+    segments: tuple[int, int, int, int]
+    columns: tuple[int, int, int, int]
+    rows: tuple[int, int, int, int]
+    theta_deg: float
+    reason: str
+
+
+@frozen
+class Proof:
+    """The account of a proven search; ``candidates`` is the sum of what was discarded, verified and left undecided.
+
+    Parameters
+    ----------
+    cells : ranges of orientation examined, for each type apart.
+    candidates : sets of four contacts that the bounds of the chord curves allow.
+    discarded_by_bound : candidates that break a rule everywhere within their error.
+    verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from two sides, as
+        at a joint, counts twice.
+    escalated : candidates that double precision could not decide: they went on to ball arithmetic, or were given up.
+    undecided : what that could not decide either.
+    """
+
+    cells: int
+    candidates: int
+    discarded_by_bound: int
+    verified: int
+    escalated: int
+    undecided: tuple[Undecided, ...] = field(default=())

@@ -1,0 +1,74 @@
+"""The account of a search adds up, and nothing is left undecided on the paper's parts."""
+
+from __future__ import annotations
+
+import pytest
+
+from holdfast import Vise, Workpiece, design, load
+from holdfast.algebra.engine import design_by_algebra
+from holdfast.model.result import Result
+
+PARTS = [
+    ("widget", Vise(pitch=8, columns=2, peg_radius=3)),
+    ("oblongPart", Vise(pitch=10, columns=2, peg_radius=3)),
+    ("small4Handle", Vise(pitch=10, columns=2, peg_radius=3)),
+    ("flange", Vise(pitch=8, columns=1, peg_radius=3, rows=9, max_opening=20, row_offset=1.5)),
+]
+
+
+def check_account(result: Result) -> None:
+    """candidates = discarded + verified + undecided, none undecided, and every fixture listed is a verified candidate."""
+    proof = result.proof
+    assert proof is not None
+    assert proof.undecided == ()
+    assert min(proof.discarded_by_bound, proof.verified, proof.escalated) >= 0
+    assert proof.candidates == proof.discarded_by_bound + proof.verified + len(proof.undecided)
+    assert proof.verified >= sum(result.found.values()) + len(result.twins)
+    assert proof.escalated <= proof.candidates
+
+
+@pytest.mark.parametrize(("name", "vise"), PARTS)
+def test_the_account_of_the_papers_parts(name: str, vise: Vise) -> None:
+    result = design(load(name), vise)
+    check_account(result)
+    assert result.proof is not None
+    assert result.proof.cells > 96
+    assert result.proof.candidates > result.proof.verified > 0
+    assert not result.notes or all("undecided" not in note for note in result.notes)
+
+
+def test_the_account_of_each_type() -> None:
+    """Both types' cells, candidates and fixtures are those of each alone, added."""
+    part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+    both, one, two = (design(part, vise, types=types).proof for types in (("I", "II"), ("I",), ("II",)))
+    assert both is not None and one is not None and two is not None
+    for name in ("cells", "candidates", "discarded_by_bound", "verified", "escalated"):
+        assert getattr(both, name) == getattr(one, name) + getattr(two, name)
+
+
+def test_keeping_only_the_best_changes_nothing_in_the_account() -> None:
+    part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+    assert design(part, vise, best=3).proof == design(part, vise).proof
+
+
+def test_a_part_without_fixtures_has_an_account() -> None:
+    disc = Workpiece.from_loops("disc", [[[20.0, 0.0, 1.0], [-20.0, 0.0, 1.0]]])
+    result = design(disc, Vise(pitch=13, columns=2, peg_radius=3))
+    check_account(result)
+    assert result.proof is not None
+    assert result.proof.verified == 0
+
+
+def test_what_double_precision_leaves_open_is_decided_by_balls() -> None:
+    """Contacts that merge at a fold, as the arcs of this part have, are escalated, and none is left undecided."""
+    result = design(load("oblongPart"), Vise(pitch=10, columns=2, peg_radius=3))
+    check_account(result)
+    assert result.proof is not None
+    assert result.proof.escalated > 0
+
+
+def test_the_algebra_has_an_account_without_cells() -> None:
+    result = design_by_algebra(load("oblongPart"), Vise(pitch=12, columns=1, peg_radius=3))
+    check_account(result)
+    assert result.proof is not None
+    assert result.proof.cells == 0
