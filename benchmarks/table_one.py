@@ -103,7 +103,7 @@ def table() -> None:
 
 
 def cost_of_proof() -> None:
-    """Print what the proof costs, row by row: best of three proven and three unproven runs, in turn."""
+    """Print what the proof costs, row by row: best of two proven and two unproven runs, in turn."""
     say = sys.stdout.write
     say(
         f"\n{'part':12} {'pitch':>5} {'c':>3} | {'unproven':>8} {'proven':>8} {'ratio':>6} | {'I':>6} {'II':>6} unproven\n"
@@ -113,7 +113,7 @@ def cost_of_proof() -> None:
         apart("oblongPart", 10, 1, proven=False, HOLDFAST_CACHE_DIR=folder)
         for part, pitch, columns, *_ in ROWS:
             plain, proven = [], []
-            for _ in range(3):
+            for _ in range(2):
                 plain.append(apart(part, pitch, columns, proven=False, HOLDFAST_CACHE_DIR=folder))
                 proven.append(apart(part, pitch, columns))
             best = [min(run["seconds"] for run in runs) for runs in (plain, proven)]

@@ -44,8 +44,11 @@ Array = NDArray[np.float64]
 Motion = tuple[float, float, float, float, float, float]
 MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
-# How exactly, in mm, lengths must agree to be a coincidence: the rounding of coordinates.
+# How exactly, in mm, lengths must agree to be a coincidence: the rounding of coordinates. Chords beside it are those of a
+# part in which they agree.
 EXACT = 1e-11
+# Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
+SHARED = 1e-10
 NONE, ARCS, LINE_FIRST, ARC_FIRST = 0.0, 1.0, 2.0, 3.0
 TURN = 2.0 * pi
 
@@ -93,6 +96,13 @@ def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
     if kind == ARCS:
         return d * abs(sin(gamma / 2.0)) <= 0.7 * radius
     return d * (1.0 - cos(gamma)) <= radius
+
+
+@compiled
+def shares_a_line(a: Array, b: Array, d: float, alpha: float) -> bool:
+    """Whether a chord is so near its coincidence that both contacts share one line of action."""
+    kind, middle, _ = coincidence(a, b, d)
+    return kind != NONE and abs(from_coincidence(alpha, middle)) <= SHARED
 
 
 @compiled

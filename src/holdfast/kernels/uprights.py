@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import are_one_chord_apart, blur, parameter_on
 from holdfast.kernels.chord_intervals import PARALLEL
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.pieces import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL, grown
+from holdfast.kernels.pieces import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, grown
 from holdfast.kernels.pieces import FROM as CURVE_FROM
 from holdfast.kernels.pieces import TO as CURVE_TO
+from holdfast.kernels.through_motion import shares_a_line
 from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, place_chord
 from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
 from holdfast.kernels.vise_checks import (
@@ -117,6 +118,16 @@ def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tu
 
 
 @compiled
+def shares_its_line(curve: int, psi: float, features: Array, integers: IntArray, reals: Array) -> bool:
+    """Whether the contacts of a curve's chord share one line of action at an orientation.
+
+    Their wrenches then agree up to sign, and the minors of the upright's contacts vanish: nothing closes.
+    """
+    a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
+    return shares_a_line(a, b, reals[curve, LENGTH], psi + reals[curve, SHIFT])
+
+
+@compiled
 def upright_reach(a: Array, b: Array, upright: Array) -> float:
     """How far in radians the orientation of an upright may be off.
 
@@ -197,7 +208,7 @@ def upright_type_one(
         lowest, highest = height_range(row, ax, ay)
         for curve in members:
             exists, inside = orientation_inside(curve, psi, reach, reals)
-            if not exists:
+            if not exists or shares_its_line(curve, inside, loose, integers, reals):
                 continue
             place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
             height = ax * pegs[0, 0] + ay * pegs[0, 1]
@@ -266,6 +277,8 @@ def upright_type_two(
                 continue
             exists, inside = orientation_inside(curve, psi, reach, reals)
             if not exists or not share_a_jaw(whole[u], integers[curve], limits):
+                continue
+            if shares_its_line(curve, inside, loose, integers, reals):
                 continue
             place_triple(pegs, curve, curve, inside, 2.0 * reach + INSIDE, features, integers, reals)
             x, y, radius = pegs[0, 0], pegs[0, 1], pegs[0, 5]

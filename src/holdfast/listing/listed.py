@@ -68,8 +68,10 @@ def proof_of(account: Account, cells: int, examined: int | None) -> Proof:
     # A pair of chords that was given up counts as one candidate.
     lost = sum("pair of chords" in item.reason for item in account.undecided)
     candidates = account.records if examined is None else examined + lost
-    discarded = candidates - account.verified - len(account.undecided)
-    return Proof(cells, candidates, discarded, account.verified, account.escalated, account.undecided)
+    kept = account.verified + len(account.undecided)
+    # One candidate may hold two solutions, which then count as two.
+    candidates = max(candidates, kept)
+    return Proof(cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
 
 
 def rank(table: FixtureTable) -> NDArray[np.intp]:

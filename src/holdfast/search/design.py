@@ -78,7 +78,7 @@ def design(
         complete=complete,
         best=best,
         statistics=statistics(search, table, work),
-        cells=len(search.stats),
+        cells=len(records),
         examined=int(work[CANDIDATES]),
         why_none=why_none(problem, table, int(work[CONTACTS])),
     )
