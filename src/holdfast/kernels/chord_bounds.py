@@ -146,10 +146,15 @@ def chord_tail(a: Array, b: Array, d: float, alpha: float, branch: float, reach:
         return (u[0], u[1], regular_error(a, b, d) + 2.0 * (hypot(u[2], u[3]) + d) * reach)
     c = chord(a, b, d, alpha, branch)
     radius = tail_radius(a, b, d, c, reach)
-    if isfinite(radius):
+    if not isfinite(radius):
+        x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
+        radius += hypot(c[0] - x, c[1] - y)
+    # A tail that counts is on its feature.
+    if a[0] != 0.0:
+        return (c[0], c[1], min(radius, 2.2 * a[6]))
+    if radius <= 2.2 * a[5]:
         return (c[0], c[1], radius)
-    x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
-    return (c[0], c[1], radius + hypot(c[0] - x, c[1] - y))
+    return (a[1], a[2], 1.1 * a[5])
 
 
 @compiled

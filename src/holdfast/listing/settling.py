@@ -69,10 +69,14 @@ class Settled:
 
 @frozen(eq=False)
 class Places:
-    """Contacts on a box of unknowns: centres, unit normals (outward), equations, their Jacobian, all as balls."""
+    """Contacts on a box of unknowns: centres, unit normals (outward), arms from the first peg to each, equations, their
+    Jacobian, all as balls."""
+
+    rows: Sequence[Sequence[float]]
 
     centers: list[tuple[arb, arb]]
     normals: list[tuple[arb, arb]]
+    arms: list[tuple[arb, arb]]
     values: list[arb]
     slopes: list[list[arb]]
     axis: tuple[arb, arb]
@@ -82,7 +86,7 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
     """Everything about the four contacts on a box of unknowns."""
     psi, x, y, apart = unknowns
     cosine, sine = psi.cos(), psi.sin()
-    centers, normals, values, slopes = [], [], [], []
+    centers, normals, arms, values, slopes = [], [], [], [], []
     for k, (row, (dx, dy)) in enumerate(zip(box.features, box.offsets, strict=True)):
         right = int(k >= box.lefts)
         reach = (dx + right * apart, arb(dy))
@@ -101,9 +105,10 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
         slope.append((gradient[0] * cosine + gradient[1] * sine) * right)
         centers.append(center)
         normals.append(normal)
+        arms.append(turned)
         values.append(value)
         slopes.append(slope)
-    return Places(centers, normals, values, slopes, (cosine, sine))
+    return Places(box.features, centers, normals, arms, values, slopes, (cosine, sine))
 
 
 def slacks(box: Box, here: Places, limits: Limits) -> list[arb]:
@@ -146,10 +151,18 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
 def wrench_minors(here: Places, length: float) -> list[arb]:
     """Signed 3 x 3 minors of the wrenches (n, q x n / L)."""
     n = here.normals
-    t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.centers, n, strict=True)]
+    # The minors do not depend on the point that moments are taken about; from the first peg the others are known best.
+    t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.arms, n, strict=True)]
 
     def cross(i: int, j: int) -> arb:
-        return n[i][0] * n[j][1] - n[i][1] * n[j][0]
+        one, two = here.rows[i], here.rows[j]
+        if one[0] == 0.0 or two[0] == 0.0:
+            return n[i][0] * n[j][1] - n[i][1] * n[j][0]
+        # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
+        # where both pegs are on one jaw: parallel normals stay so wherever the part slides.
+        x = here.arms[j][0] - here.arms[i][0] - (arb(two[1]) - one[1])
+        y = here.arms[j][1] - here.arms[i][1] - (arb(two[2]) - one[2])
+        return (n[i][0] * y - n[i][1] * x) * (two[7] / arb(two[6]))
 
     out = []
     for k in range(4):
