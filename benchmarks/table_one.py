@@ -2,9 +2,9 @@
 
 The parts are models of the paper's, whose dimensions were never published, so counts can only be of the same order.
 Every row runs in a process of its own, so that its memory is its own; the seconds are those of the search alone, with
-kernels compiled and loaded. With ``--unproven``, also what the proof costs: the same code with all error bounds set to zero
-and candidates taken at their word, measured beside the proven run. With ``--first-run``, also how long a first run takes,
-compilation included.
+kernels compiled and loaded. With ``--unproven``, also what the proof costs: the same code with the errors of chords and
+crossings set to zero and candidates taken at their word, measured beside the proven run. With ``--first-run``, also how long
+a first run takes, compilation included.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ def without_proof() -> None:
     """Take the proof out of the search of this process, before its kernels are compiled."""
     import numpy as np
 
-    from holdfast.kernels import chord, chord_intervals, crossing
+    from holdfast.kernels import chord, crossing
     from holdfast.listing import deciding, finish
 
-    for module in (chord, chord_intervals, crossing):
+    for module in (chord, crossing):
         module.ROUNDINGS = 0.0
 
     def taken(records: np.ndarray, problem: deciding.Problem) -> tuple[np.ndarray, deciding.Account]:
