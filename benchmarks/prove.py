@@ -80,8 +80,8 @@ class Outcome:
 
 def undecided(result: Result) -> int:
     """How many places of its search an engine leaves undecided."""
-    proof = getattr(result, "proof", None)
-    return result.statistics.get("undecided", 0) + len(getattr(proof, "undecided", ()))
+    named = () if result.proof is None else result.proof.undecided
+    return result.statistics.get("undecided", 0) + len(named)
 
 
 def described(words: str, fixture: Listed) -> str:

@@ -53,7 +53,7 @@ def without_proof() -> None:
         contacts = deciding.polish(features, *deciding.unknowns(records), *places, problem.wrench_length)
         lower, _ = deciding.slacks(contacts, np.zeros(len(records)), deciding.rules_of(records, problem))
         kept = deciding.solved(records, contacts)[(lower > 0.0).all(axis=0)]
-        return kept, deciding.Account(len(records), len(kept), 0, ())
+        return kept, deciding.Account(len(records), len(kept), 0, 0, ())
 
     finish.decided = taken
 

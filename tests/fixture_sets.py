@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import pi, radians, tau
 from typing import Any
 
 import numpy as np
 
 import check_result
-from holdfast import Result, Vise, Workpiece
+from holdfast import Vise, Workpiece
+from holdfast.model.fixture import Fixture
 
 Listed = dict[str, Any]
 
 
-def listed(result: Result) -> list[Listed]:
+def listed(fixtures: Iterable[Fixture]) -> list[Listed]:
     """Fixtures in the form of the result file."""
     return [
         {
@@ -26,7 +27,7 @@ def listed(result: Result) -> list[Listed]:
             "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
             "jaw_separation": f.jaw_separation,
         }
-        for f in result
+        for f in fixtures
     ]
 
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from holdfast.contact.features import contact_features, end_slacks, feature_rows, outline_diameter
+from holdfast.contact.features import contact_features, end_slacks, feature_rows
 from holdfast.geometry.segment import Arc, segment_rows
 from holdfast.kernels.distance import outline_distance, segment_distance
+from holdfast.model.diameter import outline_diameter
 from holdfast.model.workpiece import Workpiece
 from holdfast.statics.wrenches import outward_normals
 from strategies import outlines, vises

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from chord_examples import PAIRS, arc_row, line_row, off_carrier, random_ranges, turn_at
-from holdfast.kernels.chord import HEIGHT, POSITION, are_one_chord_apart, chord, curve_value, tail_distance
+from holdfast.kernels.chord import HEIGHT, POSITION, chord, curve_value, tail_distance
 from holdfast.kernels.chord_bounds import curve_bend, over_cube
+from holdfast.kernels.through_motion import are_one_chord_apart
 
 
 def difference(values: np.ndarray, step: float) -> float:

@@ -7,7 +7,7 @@ search. What is proven there must be listed, and what is listed must be proven.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from math import cos, pi, radians, sin
 
@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import stress_parts as parts
 
-from fixture_sets import Judge, Listed, assert_same, listed, mirrored, missing, near_an_end, turned
+from fixture_sets import Judge, assert_same, listed, mirrored, missing, near_an_end, turned
 from holdfast import Result, Vise, Workpiece, design
 from holdfast.algebra.engine import design_by_algebra
 from holdfast.contact.features import contact_features
@@ -31,22 +31,6 @@ BOTH_WAYS = [1e-6, 1e-9, 1e-12, -1e-6, -1e-9, -1e-12]
 def fixtures_of(family: Family, change: float, vise: Vise) -> Result:
     """The search's result for a member of a family."""
     return design(family(change), vise)
-
-
-def as_listed(fixtures: Sequence[Fixture]) -> list[Listed]:
-    """Fixtures in the form of the result file."""
-    return [
-        {
-            "type": f.type,
-            "pegs": [
-                {"jaw": p.jaw, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.segment}
-                for p in f.pegs
-            ],
-            "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
-            "jaw_separation": f.jaw_separation,
-        }
-        for f in fixtures
-    ]
 
 
 def resting_on(result: Result, *faces: int) -> int:
@@ -77,9 +61,9 @@ def assert_follows(family: Family, change: float, vise: Vise, stiffness: float =
     carried = parts.carried_over(exact, near.workpiece, vise)
     assert {c.verdict for c in carried} == {"proven"}
     assert max(c.moved for c in carried) < stiffness * abs(change) + 1e-9
-    assert missing(listed(near), as_listed([c.fixture for c in carried]), Judge(near.workpiece, vise)) == []
+    assert missing(listed(near), listed([c.fixture for c in carried]), Judge(near.workpiece, vise)) == []
     back = [c.fixture for c in parts.carried_over(near, exact.workpiece, vise) if c.verdict == "proven"]
-    assert missing(listed(exact), as_listed(back), Judge(exact.workpiece, vise)) == []
+    assert missing(listed(exact), listed(back), Judge(exact.workpiece, vise)) == []
     assert_holds(near)
     return near
 
@@ -151,7 +135,7 @@ def test_a_nearly_concentric_ring(off: float) -> None:
     near = design(parts.ring(distance), vise)
     assert_holds(near)
     assert len(held) == 10
-    assert missing(listed(near), as_listed(held), Judge(near.workpiece, vise)) == []
+    assert missing(listed(near), listed(held), Judge(near.workpiece, vise)) == []
     assert len(near) == len(held)
 
 
@@ -174,7 +158,7 @@ def test_a_concave_arc_a_hair_larger_or_smaller_than_a_peg(family: Family, play:
     stays = [f for f in open_wide if play > 1e-8 or not hidden & {peg.segment for peg in f.pegs}]
     carried = parts.carried_over(stays, part, vise)
     assert {c.verdict for c in carried} == {"proven"}
-    assert missing(listed(near), as_listed([c.fixture for c in carried]), Judge(part, vise)) == []
+    assert missing(listed(near), listed([c.fixture for c in carried]), Judge(part, vise)) == []
 
 
 def concave(part: Workpiece) -> set[int]:

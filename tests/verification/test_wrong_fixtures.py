@@ -144,5 +144,5 @@ def test_neighbours_of_fixtures(name: str) -> None:
 
 def listed_one(fixture: Fixture) -> dict[str, Any]:
     """One fixture in the form of the result file."""
-    one: dict[str, Any] = listed([fixture])[0]  # type: ignore[arg-type]
+    one: dict[str, Any] = listed([fixture])[0]
     return one

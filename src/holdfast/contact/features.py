@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from holdfast.geometry.offset import trimmed_offsets
 from holdfast.geometry.segment import Segment, segment_rows
-from holdfast.model.diameter import outline_diameter
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["ContactFeature", "contact_features", "end_slacks", "feature_rows", "outline_diameter"]
+__all__ = ["ContactFeature", "contact_features", "end_slacks", "feature_rows"]
 
 # A contact this near to the end of its feature, in mm, is at the end.
 ROUNDING = 1e-9

@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.through_motion import EXACT, motion
+from holdfast.kernels.through_motion import EXACT, are_one_chord_apart, motion
 
 Array = NDArray[np.float64]
 Errors = tuple[float, float]
@@ -48,14 +48,6 @@ CONCENTRIC = 1e-9
 # Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously counted: those
 # of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
 ROUNDINGS = 32.0 * 1.2e-16
-
-
-@compiled
-def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
-    """Whether two features are arcs of equal radius with centres one chord length apart."""
-    if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
-        return False
-    return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= EXACT
 
 
 @compiled

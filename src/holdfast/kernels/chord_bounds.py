@@ -30,7 +30,6 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import (
     HEIGHT,
     are_concentric,
-    are_one_chord_apart,
     blur,
     chord,
     parameter_on,
@@ -55,7 +54,7 @@ from holdfast.kernels.interval import (
     isquare,
     isub,
 )
-from holdfast.kernels.through_motion import MotionBox, motion, motion_box
+from holdfast.kernels.through_motion import MotionBox, are_one_chord_apart, motion, motion_box
 
 Array = NDArray[np.float64]
 # Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.

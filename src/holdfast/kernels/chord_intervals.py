@@ -16,9 +16,9 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import are_concentric, are_one_chord_apart, chord, parameter_on
+from holdfast.kernels.chord import are_concentric, chord, parameter_on
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.through_motion import EXACT, beyond_line
+from holdfast.kernels.through_motion import EXACT, are_one_chord_apart, beyond_line
 
 Array = NDArray[np.float64]
 

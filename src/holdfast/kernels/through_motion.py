@@ -65,13 +65,19 @@ def beyond_line(line: Array, arc: Array, d: float) -> float:
 
 
 @compiled
+def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
+    """Whether two features are arcs of equal radius with centres one chord length apart."""
+    if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
+        return False
+    return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= EXACT
+
+
+@compiled
 def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
     """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see ``beyond_line``)."""
-    if a[0] != 0.0 and b[0] != 0.0:
-        x, y = b[1] - a[1], b[2] - a[2]
-        if abs(a[6] - b[6]) <= EXACT and abs(hypot(x, y) - d) <= EXACT:
-            return (ARCS, atan2(y, x), 0.0)
-    elif a[0] == 0.0 and b[0] != 0.0:
+    if are_one_chord_apart(a, b, d):
+        return (ARCS, atan2(b[2] - a[2], b[1] - a[1]), 0.0)
+    if a[0] == 0.0 and b[0] != 0.0:
         side = beyond_line(a, b, d)
         if side != 0.0:
             return (LINE_FIRST, atan2(-side * a[3], side * a[4]), side)

@@ -187,8 +187,7 @@ def type_two_cell(
             if number < 0:
                 if count == out.shape[0]:
                     out = grown(out)
-                middle = (max(pieces[i, LOW], pieces[j, LOW]) + min(pieces[i, HIGH], pieces[j, HIGH])) / 2.0
-                write_given_up(out[count], 2.0, integers[one], integers[two], middle)
+                write_given_up(out[count], 2.0, pieces[i], pieces[j], integers)
                 count += 1
             for root in range(number):
                 psi, reach = roots[root, PSI], roots[root, RADIUS]

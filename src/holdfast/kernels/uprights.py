@@ -18,13 +18,13 @@ from math import acos, atan2, ceil, cos, floor, hypot, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import are_one_chord_apart, blur, parameter_on
+from holdfast.kernels.chord import blur, parameter_on
 from holdfast.kernels.chord_intervals import PARALLEL
 from holdfast.kernels.compiling import compiled
 from holdfast.kernels.pieces import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, grown
 from holdfast.kernels.pieces import FROM as CURVE_FROM
 from holdfast.kernels.pieces import TO as CURVE_TO
-from holdfast.kernels.through_motion import shares_a_line
+from holdfast.kernels.through_motion import are_one_chord_apart, shares_a_line
 from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, place_chord
 from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
 from holdfast.kernels.vise_checks import (

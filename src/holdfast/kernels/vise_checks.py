@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import parameter_on
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.pieces import COLUMN_STEP, HEAD, ROW_STEP, TAIL
+from holdfast.kernels.pieces import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -165,12 +165,13 @@ def write_record(row: Array, kind: float, pegs: Array, psi: float, apart: float,
 
 
 @compiled
-def write_given_up(row: Array, kind: float, one: IntArray, two: IntArray, psi: float) -> None:
-    """Write a pair of chords that was given up to a (19,) row of the records."""
+def write_given_up(row: Array, kind: float, first: Array, second: Array, integers: IntArray) -> None:
+    """Write a pair of pieces that was given up, with the middle of their common range, to a (19,) row of the records."""
     for k in range(RECORD_LENGTH):
         row[k] = 0.0
+    psi = (max(first[LOW], second[LOW]) + min(first[HIGH], second[HIGH])) / 2.0
     row[KIND], row[PSI], row[REACH], row[RADIUS] = -kind, psi, np.inf, np.inf
     for k in range(2):
-        step = one if k == 0 else two
+        step = integers[int(first[CURVE])] if k == 0 else integers[int(second[CURVE])]
         row[FEATURES + 2 * k], row[FEATURES + 2 * k + 1] = step[TAIL], step[HEAD]
         row[COLUMNS + 2 * k + 1], row[ROWS + 2 * k + 1] = step[COLUMN_STEP], step[ROW_STEP]

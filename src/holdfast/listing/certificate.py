@@ -8,7 +8,7 @@ z = (L psi, tail x, tail y, apart), all in mm, A an approximate inverse of the J
 
 When (1 - Z)^2 > 2 K Y there is exactly one solution within r+ = (1 - Z) / K of z, and it lies within
 r = 2 Y / (1 - Z + sqrt((1 - Z)^2 - 2 K Y)).
-Reference: J.-P. Lessard, J. B. van den Berg, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015) 1057-1061.
+Reference: J. B. van den Berg, J.-P. Lessard, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015) 1057-1061.
 
 The search tells how far the exact contacts may be from the computed ones. When that is within r+, the solution here is the
 one the search isolated, and no other hides beside it.

@@ -55,21 +55,24 @@ UNBOUNDED = "where its contacts may lie could not be bounded"
 
 @define(frozen=True)
 class Account:
-    """What became of records: how many there were, proven fixtures, how many went to ball arithmetic, and the undecided."""
+    """What became of records: how many there were, proven fixtures, how many went to ball arithmetic, how many were pairs
+    of chords that the engine had given up, and the undecided."""
 
     records: int
     verified: int
     escalated: int
+    given_up: int
     undecided: tuple[Undecided, ...]
 
     @classmethod
     def together(cls, accounts: list[Account]) -> Account:
         """Several accounts as one."""
         lost = tuple(item for account in accounts for item in account.undecided)
-        records, verified, escalated = (
-            sum(getattr(account, name) for account in accounts) for name in ("records", "verified", "escalated")
+        records, verified, escalated, given_up = (
+            sum(getattr(account, name) for account in accounts)
+            for name in ("records", "verified", "escalated", "given_up")
         )
-        return cls(records, verified, escalated, lost)
+        return cls(records, verified, escalated, given_up, lost)
 
 
 def is_left(kind: IntArray) -> NDArray[np.bool_]:
@@ -144,7 +147,8 @@ def decided(records: Array, problem: Problem) -> tuple[Array, Account]:
     is_open = verdicts == OPEN
     settled, reasons = escalated(records[is_open], problem)
     proven = np.concatenate([solved(records, contacts)[verdicts == PROVEN], settled])
-    account = Account(len(records) + len(lost), len(proven), int(is_open.sum()) + len(lost), (*lost, *reasons))
+    left_open = int(is_open.sum()) + len(lost)
+    account = Account(len(records) + len(lost), len(proven), left_open, len(lost), (*lost, *reasons))
     return proven, account
 
 

@@ -22,7 +22,8 @@ from attrs import define, evolve
 from flint import arb, ctx
 from numpy.typing import NDArray
 
-from holdfast.listing.polish import Contacts, contact_equations, newton_step
+from holdfast.listing.polish import Contacts, contacts_at, newton_step, peg_points
+from holdfast.listing.settling import contact_value
 
 __all__ = ["Fold", "exactly_polished", "fold"]
 
@@ -80,25 +81,18 @@ def contact_values(rows: Array, offsets: Array, slides: Array, unknowns: tuple[f
     out = []
     for row, (dx, dy), slide in zip(rows.tolist(), offsets.tolist(), slides.tolist(), strict=True):
         across, along = dx + slide * apart, arb(dy)
-        px, py = x + cosine * across - sine * along - row[1], y + sine * across + cosine * along - row[2]
-        if row[0] == 0.0:
-            out.append((row[4] * px - row[3] * py) / (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt())
-        else:
-            out.append((px * px + py * py - arb(row[6]) ** 2) / (2 * arb(row[6])))
+        center = x + cosine * across - sine * along, y + sine * across + cosine * along
+        out.append(contact_value(row, center))
     return out
 
 
 def bent(contacts: Contacts, offsets: Array, slides: Array, direction: Array, length: float) -> Array:
     """Second derivatives (N, 4) of the squared contact equations along directions (N, 4) of the unknowns."""
-    psi = contacts.psi
-    c, s = np.cos(psi)[:, None], np.sin(psi)[:, None]
-    reach_x, reach_y = offsets[..., 0] + slides * contacts.apart[:, None], offsets[..., 1]
-    arm = np.stack([c * reach_x - s * reach_y, s * reach_x + c * reach_y], axis=-1)
-    along = np.stack([c * slides, s * slides], axis=-1)
+    _, quarter, along = peg_points(contacts.psi, contacts.tail, contacts.apart, offsets, slides)
+    arm = np.stack([quarter[..., 1], -quarter[..., 0]], axis=-1)
+    sideways = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     turn = (direction[:, 0] / length)[:, None, None]
     glide = direction[:, 3][:, None, None]
-    quarter = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
-    sideways = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     speed = direction[:, None, 1:3] + quarter * turn + along * glide
     bend = -arm * turn**2 + 2.0 * sideways * turn * glide
     is_line = contacts.rows[..., 0] == 0.0
@@ -126,8 +120,7 @@ def moved(contacts: Contacts, step: Array, offsets: Array, slides: Array, length
     """Contacts at unknowns moved by steps (N, 4) in mm."""
     psi, tail = contacts.psi + step[:, 0] / length, contacts.tail + step[:, 1:3]
     apart = contacts.apart + step[:, 3]
-    points, off, jacobian = contact_equations(contacts.rows, psi, tail, apart, offsets, slides, length)
-    return evolve(contacts, psi=psi, tail=tail, apart=apart, points=points, off=off, jacobian=jacobian)
+    return contacts_at(contacts.rows, psi, tail, apart, offsets, slides, length)
 
 
 def exactly_polished(contacts: Contacts, offsets: Array, slides: Array, length: float) -> Contacts:

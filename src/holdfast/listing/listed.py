@@ -26,7 +26,6 @@ def listed_result(
     statistics: Mapping[str, int],
     cells: int = 0,
     examined: int | None = None,
-    why_none: str = "",
 ) -> Result:
     """Check, list once, rank and count the fixtures that an engine found.
 
@@ -39,7 +38,6 @@ def listed_result(
     statistics : see ``Result.statistics``.
     cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
         than the records).
-    why_none : the reason to give when there is no fixture.
     """
     candidates, account = finish(records, problem)
     first, others = twins(candidates, problem.faces[candidates.feature])
@@ -56,7 +54,7 @@ def listed_result(
         distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
         complete=complete,
         contact_margin=problem.contact_margin,
-        notes=notes(len(kept_apart), len(account.undecided), why_none if complete and len(ranked) == 0 else ""),
+        notes=notes(len(kept_apart), len(account.undecided)),
         statistics=statistics,
         twins=kept_apart,
         proof=proof_of(account, cells, examined),
@@ -66,8 +64,7 @@ def listed_result(
 def proof_of(account: Account, cells: int, examined: int | None) -> Proof:
     """The account of a search for the result."""
     # A pair of chords that was given up counts as one candidate.
-    lost = sum("pair of chords" in item.reason for item in account.undecided)
-    candidates = account.records if examined is None else examined + lost
+    candidates = account.records if examined is None else examined + account.given_up
     kept = account.verified + len(account.undecided)
     # One candidate may hold two solutions, which then count as two.
     candidates = max(candidates, kept)
@@ -81,9 +78,9 @@ def rank(table: FixtureTable) -> NDArray[np.intp]:
     return np.argsort(-np.round(table.null_vector.min(axis=1), 9), kind="stable")
 
 
-def notes(twin_count: int, undecided_count: int, why_none: str) -> tuple[str, ...]:
+def notes(twin_count: int, undecided_count: int) -> tuple[str, ...]:
     """Remarks on a search that a user should read."""
-    out = [why_none] if why_none and not undecided_count else []
+    out = []
     if twin_count:
         some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
         out.append(

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-__all__ = ["Contacts", "contact_equations", "contacts_at", "newton_step", "polish"]
+__all__ = ["Contacts", "contacts_at", "newton_step", "peg_points", "polish"]
 
 Array = NDArray[np.float64]
 ROUNDS = 3

@@ -9,9 +9,10 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from holdfast.contact.features import contact_features, end_slacks, feature_rows, outline_diameter
+from holdfast.contact.features import contact_features, end_slacks, feature_rows
 from holdfast.errors import InputError
 from holdfast.geometry.segment import segment_rows
+from holdfast.model.diameter import outline_diameter
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 

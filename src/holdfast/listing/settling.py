@@ -14,6 +14,7 @@ References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 
 import numpy as np
 from attrs import frozen
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels import vise_checks as rule
 
-__all__ = ["Box", "Limits", "Settled", "settle"]
+__all__ = ["Box", "Limits", "Settled", "contact_value", "settle"]
 
 PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
@@ -73,13 +74,20 @@ class Places:
     Jacobian, all as balls."""
 
     rows: Sequence[Sequence[float]]
-
     centers: list[tuple[arb, arb]]
     normals: list[tuple[arb, arb]]
     arms: list[tuple[arb, arb]]
     values: list[arb]
     slopes: list[list[arb]]
     axis: tuple[arb, arb]
+
+
+def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
+    """Contact equation of a peg's centre: its distance from a line, (distance² - R²) / 2R from an arc's centre, in mm."""
+    x, y = center[0] - row[1], center[1] - row[2]
+    if row[0] == 0.0:
+        return (row[4] * x - row[3] * y) / (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
+    return (x * x + y * y - arb(row[6]) ** 2) / (2 * arb(row[6]))
 
 
 def places(box: Box, unknowns: Sequence[arb]) -> Places:
@@ -96,22 +104,20 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
             size = (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
             gradient = (row[4] / size, -row[3] / size)
             normal = gradient
-            value = gradient[0] * (center[0] - row[1]) + gradient[1] * (center[1] - row[2])
         else:
             gradient = ((center[0] - row[1]) / row[6], (center[1] - row[2]) / row[6])
             normal = (row[7] * gradient[0], row[7] * gradient[1])
-            value = ((center[0] - row[1]) ** 2 + (center[1] - row[2]) ** 2 - arb(row[6]) ** 2) / (2 * arb(row[6]))
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
         slope.append((gradient[0] * cosine + gradient[1] * sine) * right)
         centers.append(center)
         normals.append(normal)
         arms.append(turned)
-        values.append(value)
+        values.append(contact_value(row, center))
         slopes.append(slope)
     return Places(box.features, centers, normals, arms, values, slopes, (cosine, sine))
 
 
-def slacks(box: Box, here: Places, limits: Limits) -> list[arb]:
+def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> list[arb]:
     """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign)."""
     out = [
         slack
@@ -121,7 +127,6 @@ def slacks(box: Box, here: Places, limits: Limits) -> list[arb]:
     along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
     for left in along[: box.lefts]:
         out += [right - left - (arb(limits.min_gap) - rule.GAP_SLACK) for right in along[box.lefts :]]
-    minors = wrench_minors(here, limits.length)
     size = sum((abs(minor) for minor in minors), arb(0))
     out.append(size - rule.LEAST_SPAN)
     sign = 1 if sum(float(minor.mid()) for minor in minors) >= 0 else -1
@@ -142,7 +147,7 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
     along, across = dx * row[3] + dy * row[4], dy * row[3] - dx * row[4]
     if row[0] == 0.0:
         return [row[5] - along - margin + row[9], row[5] + along - margin + row[8]]
-    if row[5] >= 3.141592653589793:
+    if row[5] >= pi:
         return []
     angle = arb.atan2(across, along)
     return [(row[5] - angle) * row[6] - margin + row[9], (row[5] + angle) * row[6] - margin + row[8]]
@@ -172,12 +177,6 @@ def wrench_minors(here: Places, length: float) -> list[arb]:
     return out
 
 
-def signs_oppose(here: Places, limits: Limits) -> bool:
-    """Whether two minors certainly have opposite signs, so that nothing closes."""
-    minors = wrench_minors(here, limits.length)
-    return any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors)
-
-
 @frozen(eq=False)
 class Frame:
     """Directions of the Jacobian's singular vectors at the middle of a box.
@@ -185,14 +184,15 @@ class Frame:
     Parameters
     ----------
     box : the candidate.
-    left : (4, 4) combinations of the contact equations, one in each row.
     right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined last.
+    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact balls.
     length : L in mm.
     """
 
     box: Box
-    left: NDArray[np.float64]
     right: NDArray[np.float64]
+    combining: arb_mat
+    turning: arb_mat
     length: float
 
     @classmethod
@@ -202,7 +202,8 @@ class Frame:
         jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
         jacobian[:, 0] /= limits.length
         u, _, v = np.linalg.svd(jacobian)
-        return cls(box, u.T, v.T, limits.length)
+        left, right = (arb_mat(4, 4, [float(e) for e in matrix.T.ravel()]) for matrix in (u, v))
+        return cls(box, v.T, left, right, limits.length)
 
     def start(self) -> list[arb]:
         """The whole box, in the frame's coordinates in mm, a little larger."""
@@ -217,21 +218,25 @@ class Frame:
             m + (s / self.length if j == 0 else s) for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
         ]
 
-    def system(self, place: Sequence[arb]) -> tuple[Places, list[arb], list[list[arb]]]:
-        """The contacts, the combined contact equations and their Jacobian at a place in the frame."""
-        here = places(self.box, self.unknowns(place))
-        scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
-        turned = arb_mat(4, 4, [float(e) for e in self.left.ravel()]) * arb_mat(scaled)
-        slopes = turned * arb_mat(4, 4, [float(e) for e in self.right.ravel()])
-        values = arb_mat(4, 4, [float(e) for e in self.left.ravel()]) * arb_mat(4, 1, here.values)
-        return here, values.entries(), [[slopes[i, j] for j in range(4)] for i in range(4)]
+    def places(self, place: Sequence[arb]) -> Places:
+        """The contacts at a place in the frame."""
+        return places(self.box, self.unknowns(place))
 
-    def step(self, place: list[arb]) -> tuple[list[arb] | None, bool]:
+    def values(self, here: Places) -> list[arb]:
+        """The combined contact equations."""
+        return list((self.combining * arb_mat(4, 1, here.values)).entries())
+
+    def slopes(self, here: Places) -> list[list[arb]]:
+        """The Jacobian of the combined contact equations by the frame's coordinates."""
+        scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
+        slopes = self.combining * arb_mat(scaled) * self.turning
+        return [[slopes[i, j] for j in range(4)] for i in range(4)]
+
+    def step(self, place: list[arb], here: Places) -> tuple[list[arb] | None, bool]:
         """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
-        whether it holds exactly one."""
+        whether it holds exactly one. ``here`` are the contacts at the place."""
         middle = [arb(p.mid()) for p in place]
-        _, values, _ = self.system(middle)
-        _, _, slopes = self.system(place)
+        values, slopes = self.values(self.places(middle)), self.slopes(here)
         out, inside = list(place), True
         for k in range(4):
             rest = values[k] + sum((slopes[k][j] * (out[j] - middle[j]) for j in range(4) if j != k), arb(0))
@@ -262,9 +267,10 @@ def settle(box: Box, limits: Limits) -> Settled:
                 return Settled(
                     (), "the contacts are a double solution, or so nearly that its clamping force is not decided"
                 )
-            if is_empty(frame, place, limits):
+            here = frame.places(place)
+            if is_empty(box, here, limits):
                 continue
-            smaller, unique = frame.step(place)
+            smaller, unique = frame.step(place, here)
             if smaller is None:
                 continue
             if unique:
@@ -277,12 +283,15 @@ def settle(box: Box, limits: Limits) -> Settled:
     return judged(frame, roots, limits)
 
 
-def is_empty(frame: Frame, place: Sequence[arb], limits: Limits) -> bool:
+def is_empty(box: Box, here: Places, limits: Limits) -> bool:
     """Whether some contact equation has no zero, or some rule is broken, everywhere in a place."""
-    here = places(frame.box, frame.unknowns(place))
     if any(value > 0 or value < 0 for value in here.values):
         return True
-    return signs_oppose(here, limits) or any(slack < 0 for slack in slacks(frame.box, here, limits))
+    minors = wrench_minors(here, limits.length)
+    if any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
+        # Of opposite signs, so that nothing closes.
+        return True
+    return any(slack < 0 for slack in slacks(box, here, minors, limits))
 
 
 def halves(place: list[arb]) -> list[list[arb]]:
@@ -307,7 +316,8 @@ def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Settled:
             with ctx.workprec(bits):
                 root = refined(frame, root)
                 unknowns = frame.unknowns(root)
-                values = slacks(frame.box, places(frame.box, unknowns), limits)
+                here = places(frame.box, unknowns)
+                values = slacks(frame.box, here, wrench_minors(here, limits.length), limits)
                 verdict = -1 if any(v < 0 for v in values) else int(all(v > 0 for v in values))
             if verdict != 0:
                 break
@@ -322,7 +332,7 @@ def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Settled:
 def refined(frame: Frame, root: list[arb]) -> list[arb]:
     """A proven solution to the precision in force."""
     for _ in range(12):
-        closer, _ = frame.step(root)
+        closer, _ = frame.step(root, frame.places(root))
         if closer is None or not any(c.rad() < 0.5 * r.rad() for c, r in zip(closer, root, strict=True)):
             break
         root = closer

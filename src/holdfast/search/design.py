@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from threading import Event
 
 import numpy as np
+from attrs import evolve
 from numpy.typing import NDArray
 
 from holdfast.contact.curves import CurveTable, center_numbers, curve_table, loosened
@@ -72,7 +73,7 @@ def design(
     search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
     records, complete = run_blocks(search.blocks(types), thread_count(threads), progress, cancel)
     work = np.array(search.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0)
-    return listed_result(
+    result = listed_result(
         problem,
         records,
         complete=complete,
@@ -80,8 +81,10 @@ def design(
         statistics=statistics(search, table, work),
         cells=len(records),
         examined=int(work[CANDIDATES]),
-        why_none=why_none(problem, table, int(work[CONTACTS])),
     )
+    if complete and not any(result.found.values()) and not result.notes:
+        return evolve(result, notes=(why_none(problem, table, int(work[CONTACTS])),))
+    return result
 
 
 def why_none(problem: Problem, table: CurveTable, contacts: int) -> str:
