@@ -9,8 +9,9 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import are_concentric
+from holdfast.kernels.curve_columns import END_STRETCH, FIRST_STRETCH
 from holdfast.kernels.curve_table import tail_curves
+from holdfast.kernels.through_motion import are_concentric
 
 __all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "loosened"]
 
@@ -39,12 +40,14 @@ class LatticeSteps:
 
 @define(frozen=True, eq=False)
 class CurveTable:
-    """Chord curves and uprights of all pairs of features; columns are named in ``kernels.pieces`` and ``uprights``."""
+    """Chord curves and uprights of all pairs of features, and the curves' stretches; columns are named in
+    ``kernels.curve_columns``, ``uprights`` and ``stretches``."""
 
     integers: NDArray[np.int64]
     reals: NDArray[np.float64]
     upright_integers: NDArray[np.int64]
     upright_reals: NDArray[np.float64]
+    stretches: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.integers)
@@ -75,4 +78,8 @@ def curve_table(rows: NDArray[np.float64], steps: LatticeSteps, tails: Sequence[
         tail_curves(tail, rows, centers, steps.lengths, steps.starts, steps.steps, steps.angles)
         for tail in (range(len(rows)) if tails is None else tails)
     ]
+    before = 0
+    for integers, _, _, _, stretches in parts:
+        integers[:, [FIRST_STRETCH, END_STRETCH]] += before
+        before += len(stretches)
     return CurveTable(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))

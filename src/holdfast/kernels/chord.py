@@ -20,40 +20,53 @@ Errors of computed chords
 Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail satisfies
 \|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its determinant is X, and its
 Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b. The Newton-Kantorovich theorem says that when 64 kappa eta <= X^2
-there is exactly one chord within 4 eta / \|X\| of the computed one, on the same branch. The bounds of ``curve_errors``
+there is exactly one chord within 4 eta / \|X\| of the computed one, on the same branch. The bounds of ``chord_state``
 follow by the chain rule from h' = -x . (u + p r_a) and p = cross(w, r_b) / X.
 Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
 """
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, isfinite, sin, sqrt
+from math import atan2, cos, hypot, inf, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.through_motion import EXACT, are_one_chord_apart, motion
+from holdfast.kernels.curve_columns import (
+    BLUR,
+    BRANCH,
+    COINCIDENCE,
+    COSINE,
+    KAPPA,
+    LENGTH,
+    MIDDLE,
+    SHIFT,
+    SIDE,
+    SINE,
+)
+from holdfast.kernels.through_motion import (
+    ARCS,
+    CONCENTRIC,
+    EXACT,
+    NONE,
+    are_concentric,
+    are_one_chord_apart,
+    coincidence,
+    motion,
+)
 
 Array = NDArray[np.float64]
-Errors = tuple[float, float]
 Chord = tuple[float, float, float, float, float, float]
+State = tuple[float, float, float, float, float, float, float, float, float, float]
 
 # Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these are not.)
 HEIGHT = 0.0
 POSITION = 1.0
 
-# Centres nearer than this, in mm, make arcs concentric.
-CONCENTRIC = 1e-9
 # Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously counted: those
 # of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
 ROUNDINGS = 32.0 * 1.2e-16
-
-
-@compiled
-def are_concentric(a: Array, b: Array) -> bool:
-    """Whether two features are arcs of one centre: their chords turn about it without changing shape."""
-    return a[0] != 0.0 and b[0] != 0.0 and hypot(a[1] - b[1], a[2] - b[2]) <= CONCENTRIC
 
 
 @compiled
@@ -67,15 +80,15 @@ def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chor
 
 
 @compiled
-def arc_to_arc(a: Array, b: Array, d: float, wx: float, wy: float, branch: float) -> Chord:
+def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
     """Tail on arc a, head on arc b: the tail lies on the circle of a and on that of b moved by -w."""
     cx, cy = b[1] - a[1], b[2] - a[2]
     gx, gy = cx - wx, cy - wy
-    gap = hypot(gx, gy)
-    if are_one_chord_apart(a, b, d) and cx * wx + cy * wy > 0.0:
+    gap = sqrt(gx * gx + gy * gy)
+    if one_chord_apart and cx * wx + cy * wy > 0.0:
         # gap = 2 d sin(angle / 2): its direction is exact from the half angle, not from the difference.
         mx, my = cx + wx, cy + wy
-        size = hypot(mx, my)
+        size = sqrt(mx * mx + my * my)
         side = 1.0 if cx * wy - cy * wx >= 0.0 else -1.0
         dx, dy = side * my / size, -side * mx / size
         along = gap / 2.0
@@ -89,20 +102,20 @@ def arc_to_arc(a: Array, b: Array, d: float, wx: float, wy: float, branch: float
 
 
 @compiled
-def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
-    """Tail and the two contact directions of a chord of length d and direction alpha.
+def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
+    """Tail and the two contact directions of a chord w from feature a to feature b.
 
     Parameters
     ----------
     a, b : (8,) rows of the features of tail and head.
-    d, alpha : length in mm and direction in radians.
+    wx, wy : the chord in mm.
     branch : +1 or -1 where an arc takes part; ignored between lines.
+    one_chord_apart : whether the features are equal arcs with centres one chord length apart.
 
     Returns
     -------
     (ux, uy, r_ax, r_ay, r_bx, r_by)
     """
-    wx, wy = d * cos(alpha), d * sin(alpha)
     if a[0] == 0.0:
         if b[0] != 0.0:
             return line_to_arc(a, b, wx, wy, branch)
@@ -112,17 +125,13 @@ def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
     if b[0] == 0.0:
         vx, vy, rbx, rby, rax, ray = line_to_arc(b, a, -wx, -wy, branch)
         return (vx - wx, vy - wy, rax, ray, rbx, rby)
-    return arc_to_arc(a, b, d, wx, wy, branch)
+    return arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
 
 
 @compiled
-def tail_distance(c: Chord, d: float, alpha: float) -> float:
-    """p: distance from the tail to the instant centre along r_a, infinite at a tangency."""
-    turn = c[2] * c[5] - c[3] * c[4]
-    across = d * (cos(alpha) * c[5] - sin(alpha) * c[4])
-    if turn == 0.0:
-        return inf
-    return across / turn
+def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
+    """The chord of length d in mm and direction alpha in radians; see ``chord_along``."""
+    return chord_along(a, b, d * cos(alpha), d * sin(alpha), branch, are_one_chord_apart(a, b, d))
 
 
 @compiled
@@ -154,59 +163,102 @@ def curvature(row: Array) -> float:
 
 
 @compiled
-def curve_errors(a: Array, b: Array, d: float, turn: float, p: float, mode: float) -> Errors:
-    """Bounds of the errors of a computed value and slope.
+def regular_error(curve: Array) -> float:
+    """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
+    return 8.0 * curve[BLUR] + 4.0 * EXACT
+
+
+@compiled
+def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
+    """Write to a row of the curve table what does not change along the curve.
 
     Parameters
     ----------
-    turn, p : computed X and p (see the conventions above).
+    d, branch : length in mm and branch of the chord from feature a to feature b.
+    shift : arg Delta in radians, so that psi = alpha - shift.
+    """
+    row[LENGTH], row[BRANCH], row[SHIFT] = d, branch, shift
+    row[COSINE], row[SINE] = cos(shift), sin(shift)
+    row[BLUR] = blur(a, b, d)
+    row[COINCIDENCE], row[MIDDLE], row[SIDE] = coincidence(a, b, d)
+    row[KAPPA] = curvature(a) + curvature(b)
+    if are_concentric(a, b):
+        row[COINCIDENCE] = CONCENTRIC
+
+
+@compiled
+def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
+    """A chord of a curve at an orientation.
+
+    Parameters
+    ----------
+    a, b : (8,) rows of the features of tail and head.
+    curve : row of the curve table.
+    psi, cosine, sine : orientation in radians and its cosine and sine.
 
     Returns
     -------
-    (error of the value, error of the slope), infinite too near a tangency
+    (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the chord's own
+     directions), the errors infinite where these formulas do not bound them, too near a tangency
     """
-    eta = blur(a, b, d)
-    kappa = curvature(a) + curvature(b)
-    square = turn * turn
-    if square < 64.0 * kappa * eta or square == 0.0:
-        return (inf, inf)
-    value, slope = 6.0 * eta / abs(turn), 8.0 * eta / square * (1.0 + kappa * (d + 2.0 * abs(p)))
-    if mode != HEIGHT and a[0] != 0.0:
-        return (value / a[6] + 1e-15, slope / a[6])
-    return (value, slope)
+    d = curve[LENGTH]
+    wx, wy = d * (cosine * curve[COSINE] - sine * curve[SINE]), d * (sine * curve[COSINE] + cosine * curve[SINE])
+    kappa, kind = curve[KAPPA], curve[COINCIDENCE]
+    if kind != NONE and kind != CONCENTRIC:
+        regular, u = motion(a, b, curve, psi)
+        if regular:
+            error = regular_error(curve)
+            rax, ray = (a[4], -a[3]) if a[0] == 0.0 else ((u[0] - a[1]) / a[6], (u[1] - a[2]) / a[6])
+            rbx, rby = (b[4], -b[3]) if b[0] == 0.0 else ((u[0] + wx - b[1]) / b[6], (u[1] + wy - b[2]) / b[6])
+            slope_error = error * (1.0 + d * kappa)
+            return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
+    c = chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
+    turn = c[2] * c[5] - c[3] * c[4]
+    if kind == CONCENTRIC:
+        p = -a[6]
+    elif turn != 0.0:
+        p = (wx * c[5] - wy * c[4]) / turn
+    else:
+        p = 0.0
+    eta, square = curve[BLUR], turn * turn
+    error, slope_error = inf, inf
+    if square >= 64.0 * kappa * eta and square > 0.0:
+        inverse = 1.0 / abs(turn)
+        error = 6.0 * eta * inverse
+        slope_error = 8.0 * eta * inverse * inverse * (1.0 + kappa * (d + 2.0 * abs(p)))
+    return (c[0], c[1], c[2], c[3], c[4], c[5], c[0] + p * c[2], c[1] + p * c[3], error, slope_error)
 
 
 @compiled
-def tail_radius(a: Array, b: Array, d: float, c: Chord, reach: float) -> float:
-    """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians off.
-
-    The tail moves at a speed of at most d / |X|, and X^2 changes at a rate of at most 4 d kappa. Infinite where this does
-    not bound it, too near a tangency.
-    """
-    eta = blur(a, b, d)
-    kappa = curvature(a) + curvature(b)
-    turn = abs(c[2] * c[5] - c[3] * c[4])
-    square = turn * turn
-    if square < 64.0 * kappa * eta or square < 16.0 * d * kappa * reach or turn == 0.0:
-        return inf
-    return 5.0 * eta / turn + 1.3 * d / turn * reach
-
-
-@compiled
-def regular_error(a: Array, b: Array, d: float) -> float:
-    """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
-    return 8.0 * blur(a, b, d) + 4.0 * EXACT
-
-
-@compiled
-def curve_value(
-    a: Array, b: Array, d: float, alpha: float, branch: float, shift: float, mode: float
+def valued(
+    a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
 ) -> tuple[float, float, float, float]:
+    """Value and derivative over psi of a chord in place, and bounds of their errors; see ``curve_value``."""
+    ux, uy, px, py = state[0], state[1], state[6], state[7]
+    if mode == HEIGHT:
+        doubt = state[9]
+        if a[0] + b[0] == 1.0:
+            # P lies on the line of action through the straight feature, which turns with nothing: of its error along that
+            # line only the part along x counts.
+            nx, ny = (state[2], state[3]) if a[0] == 0.0 else (state[4], state[5])
+            share = abs(cosine * nx + sine * ny)
+            doubt = min(doubt, state[8] + share * (doubt + state[8]))
+        return (cosine * uy - sine * ux, -(cosine * px + sine * py), state[8], doubt)
+    s = parameter_on(a, ux, uy)
+    p = (px - ux) * state[2] + (py - uy) * state[3]
+    if a[0] == 0.0:
+        return (s, -p, state[8], state[9])
+    return (s, -p / a[6], state[8] / a[6] + 1e-15, state[9] / a[6])
+
+
+@compiled
+def curve_value(a: Array, b: Array, curve: Array, psi: float, mode: float) -> tuple[float, float, float, float]:
     """Value and derivative over psi of a chord curve.
 
     Parameters
     ----------
-    shift : arg Delta in radians, so that psi = alpha - shift.
+    curve : row of the curve table.
+    psi : orientation in radians.
     mode : ``HEIGHT`` for h in mm, ``POSITION`` for s of the tail on a (mm on a line, radians on an arc).
 
     Returns
@@ -214,27 +266,5 @@ def curve_value(
     (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite where these
     formulas do not bound them, too near a tangency
     """
-    psi = alpha - shift
-    x, y = cos(psi), sin(psi)
-    regular, u = motion(a, b, d, alpha, branch)
-    if regular:
-        error = regular_error(a, b, d)
-        slope_error = error * (1.0 + d * (curvature(a) + curvature(b)))
-        if mode == HEIGHT:
-            return (x * u[1] - y * u[0], -(x * u[0] + y * u[1]) + x * u[3] - y * u[2], error, slope_error)
-        s = parameter_on(a, u[0], u[1])
-        if a[0] == 0.0:
-            return (s, a[3] * u[2] + a[4] * u[3], error, slope_error)
-        return (s, (u[4] * u[3] - u[5] * u[2]) / (a[6] * a[6]), error / a[6], slope_error / a[6])
-    c = chord(a, b, d, alpha, branch)
-    p = -a[6] if are_concentric(a, b) else tail_distance(c, d, alpha)
-    if not isfinite(p):
-        p = 0.0
-    errors = curve_errors(a, b, d, c[2] * c[5] - c[3] * c[4], p, mode)
-    if mode == HEIGHT:
-        slope = -(x * (c[0] + p * c[2]) + y * (c[1] + p * c[3]))
-        return (x * c[1] - y * c[0], slope, errors[0], errors[1])
-    s = parameter_on(a, c[0], c[1])
-    if a[0] == 0.0:
-        return (s, -p, errors[0], errors[1])
-    return (s, -p / a[6], errors[0], errors[1])
+    cosine, sine = cos(psi), sin(psi)
+    return valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)

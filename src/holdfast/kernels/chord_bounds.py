@@ -1,16 +1,15 @@
-"""Enclosures of a chord curve's second derivative over a range of orientations.
+"""Enclosures of how fast a chord's instant centre moves, over a range of directions.
 
 With C_a = cross(w, r_a), C_b = cross(w, r_b), X = cross(r_a, r_b), k_a and k_b the features' curvatures (0 for a line,
 1 / R for an arc), differentiating the two lines of action through the instant centre P gives
 
     X^3 P' = (C_a X + k_b C_a^2) r_a - (C_b X + k_a C_b^2) r_b,
 
-and with h' = -x . P and s' = -p (times k_a on an arc)
+The right-hand side stays finite at a tangency, where X = 0, so the sign of the second derivatives made of it,
 
-    X^3 h'' = -X^3 y . u - X^2 C_b y . r_a + (C_b X + k_a C_b^2) x . r_b - (C_a X + k_b C_a^2) x . r_a
-    X^3 s'' = (C_b X + k_a C_b^2) r_a . r_b - (C_a X + k_b C_a^2)      (times k_a on an arc).
+    h'' = -y . P - x . P'        and        s'' = -P' . r_a      (divided by R_a on an arc),
 
-The right-hand sides stay finite at a tangency, where X = 0, so the sign of a second derivative is bounded there too.
+is bounded there too (see ``pieces``).
 
 Between two arcs of nearly equal radii R_a and R_b whose centres are nearly one chord apart, r_a and r_b nearly agree, and
 the terms on the right nearly cancel. With g = c - w, c from centre to centre, R_a r_a - R_b r_b = g gives the same without
@@ -22,23 +21,15 @@ cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w, c), E =
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, isfinite, sin
+from math import atan2, hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import (
-    HEIGHT,
-    are_concentric,
-    blur,
-    chord,
-    parameter_on,
-    regular_error,
-    tail_radius,
-)
+from holdfast.kernels.chord import curvature
 from holdfast.kernels.compiling import compiled
+from holdfast.kernels.curve_columns import BRANCH, COINCIDENCE, LENGTH
 from holdfast.kernels.interval import (
-    TURN,
     Interval,
     iadd,
     icos,
@@ -53,15 +44,17 @@ from holdfast.kernels.interval import (
     isqrt,
     isquare,
     isub,
+    outward,
 )
-from holdfast.kernels.through_motion import MotionBox, are_one_chord_apart, motion, motion_box
+from holdfast.kernels.through_motion import ARCS, CONCENTRIC, NONE, motion_box
 
 Array = NDArray[np.float64]
 # Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.
 NEAR = 0.5
-# A range of directions in radians over which the regular formulas of a coincidence are linear for all purposes.
-SHORT = 1e-6
 ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+# What is not known.
+ANYTHING = (-inf, inf)
 
 
 @compiled
@@ -79,12 +72,12 @@ def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: floa
 
 
 @compiled
-def arc_to_arc_box(a: Array, b: Array, d: float, wx: Interval, wy: Interval, branch: float) -> ChordBox:
+def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool) -> ChordBox:
     """Enclosure of ``arc_to_arc``."""
     cx, cy = b[1] - a[1], b[2] - a[2]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
     gap = isqrt(iadd(isquare(gx), isquare(gy)))
-    if are_one_chord_apart(a, b, d) and cx * wx[0] + cy * wy[0] > 0.0 and cx * wx[1] + cy * wy[1] > 0.0:
+    if one_chord_apart and cx * wx[0] + cy * wy[0] > 0.0 and cx * wx[1] + cy * wy[1] > 0.0:
         mx, my = ishift(cx, wx), ishift(cy, wy)
         size = isqrt(iadd(isquare(mx), isquare(my)))
         middle_x, middle_y = (wx[0] + wx[1]) / 2.0, (wy[0] + wy[1]) / 2.0
@@ -113,8 +106,9 @@ def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox
 
 
 @compiled
-def chord_box(a: Array, b: Array, d: float, wx: Interval, wy: Interval, branch: float) -> ChordBox:
-    """Enclosure of ``chord`` for all w in a box."""
+def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Enclosure of ``chord_along`` for all w in a box."""
+    branch = curve[BRANCH]
     if a[0] == 0.0:
         if b[0] == 0.0:
             return line_to_line_box(a, b, wx, wy)
@@ -122,72 +116,11 @@ def chord_box(a: Array, b: Array, d: float, wx: Interval, wy: Interval, branch: 
     if b[0] == 0.0:
         vx, vy, rbx, rby, rax, ray = line_to_arc_box(b, a, ineg(wx), ineg(wy), branch)
         return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
-    return arc_to_arc_box(a, b, d, wx, wy, branch)
-
-
-@compiled
-def tail_disc(a: Array, b: Array, d: float, alpha: float, branch: float, reach: float) -> tuple[float, float, float]:
-    """A disc (x, y, radius in mm) that holds the tails of a branch for all directions within ``reach`` of alpha."""
-    angles = (alpha - reach - 1e-15, alpha + reach + 1e-15)
-    wx, wy = iscale(d, icos(angles)), iscale(d, isin(angles))
-    ux, uy, _, _, _, _ = chord_box(a, b, d, wx, wy, branch)
-    eta = blur(a, b, d)
-    half_width, half_height = (ux[1] - ux[0]) / 2.0, (uy[1] - uy[0]) / 2.0
-    return ((ux[0] + ux[1]) / 2.0, (uy[0] + uy[1]) / 2.0, 1.1 * hypot(half_width, half_height) + 4.0 * eta)
-
-
-@compiled
-def chord_tail(a: Array, b: Array, d: float, alpha: float, branch: float, reach: float) -> tuple[float, float, float]:
-    """The tail of a chord, and how far in mm the exact one may be from it when alpha is off by up to ``reach``."""
-    regular, u = motion(a, b, d, alpha, branch)
-    if regular and reach <= SHORT:
-        # The second derivative is bounded by a few d (1 + d / R): no matter over so short a reach.
-        return (u[0], u[1], regular_error(a, b, d) + 2.0 * (hypot(u[2], u[3]) + d) * reach)
-    c = chord(a, b, d, alpha, branch)
-    radius = tail_radius(a, b, d, c, reach)
-    if not isfinite(radius):
-        x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
-        radius += hypot(c[0] - x, c[1] - y)
-    # A tail that counts is on its feature.
-    if a[0] != 0.0:
-        return (c[0], c[1], min(radius, 2.2 * a[6]))
-    if radius <= 2.2 * a[5]:
-        return (c[0], c[1], radius)
-    return (a[1], a[2], 1.1 * a[5])
-
-
-@compiled
-def value_disc(
-    a: Array, b: Array, d: float, alpha: float, branch: float, reach: float, shift: float, mode: float
-) -> tuple[float, float]:
-    """A middle value of a branch for directions within ``reach`` of alpha, and how far its values may be from it."""
-    x, y, radius = tail_disc(a, b, d, alpha, branch, reach)
-    psi = alpha - shift
-    if mode == HEIGHT:
-        return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
-    if a[0] == 0.0:
-        return (parameter_on(a, x, y), radius)
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either side.
-    return (parameter_on(a, x, y), 1.1 * radius / a[6] if radius <= 0.5 * a[6] else TURN)
-
-
-@compiled
-def over_cube(numerator: Interval, turn: Interval) -> Interval:
-    """numerator / turn^3; when turn reaches 0 from one side, a one-signed quotient is still bounded on one side."""
-    cube = imul(turn, isquare(turn))
-    if turn[0] > 0.0 or turn[1] < 0.0:
-        return idivide(numerator, cube)
-    positive = turn[1] > -turn[0]
-    size = cube[1] if positive else -cube[0]
-    if not positive:
-        numerator = ineg(numerator)
-    if size <= 0.0:
-        return (-inf, inf)
-    if numerator[0] > 0.0:
-        return (numerator[0] / size * (1.0 - 1e-15), inf)
-    if numerator[1] < 0.0:
-        return (-inf, numerator[1] / size * (1.0 - 1e-15))
-    return (-inf, inf)
+    if a[6] <= b[6]:
+        return arc_to_arc_box(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
+    # Seen from the smaller circle, the contact on the larger one is known better.
+    vx, vy, rbx, rby, rax, ray = arc_to_arc_box(b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS)
+    return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
 
 
 @compiled
@@ -199,23 +132,36 @@ def one_sided(turn: Interval, sign: float) -> Interval:
 
 
 @compiled
-def regular_bend(a: Array, u: MotionBox, r: MotionBox, psi: Interval, mode: float) -> Interval:
-    """Enclosure of the second derivative from those of u, u' and u'' (h'' = -y.u - 2 x.u' + y.u'')."""
-    if mode != HEIGHT:
-        if a[0] == 0.0:
-            return iadd(iscale(a[3], u[4]), iscale(a[4], u[5]))
-        return iscale(1.0 / (a[6] * a[6]), icross(r[0], r[1], r[4], r[5]))
-    x, y = icos(psi), isin(psi)
-    fall = isub(imul(y, isub(u[0], u[4])), imul(x, isub(u[1], u[5])))
-    return isub(fall, iscale(2.0, idot(x, y, u[2], u[3])))
+def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
+    r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
+
+    Between a line and an arc X^2 = 1 - (across / R)^2; between two arcs, with g = \|c - w\|,
+    X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
+    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
+    """
+    if a[0] == 0.0 and b[0] == 0.0:
+        size = abs(a[3] * b[4] - a[4] * b[3])
+        return outward(size, size)
+    if a[0] == 0.0 or b[0] == 0.0:
+        line, arc, side = (a, b, 1.0) if a[0] == 0.0 else (b, a, -1.0)
+        fixed = side * (line[4] * (line[1] - arc[1]) - line[3] * (line[2] - arc[2]))
+        normal = atan2(-line[3], line[4])
+        across = ishift(fixed, iscale(d, icos((low - normal, high - normal))))
+        inside = imul(isub((arc[6], arc[6]), across), ishift(arc[6], across))
+        return iscale(1.0 / arc[6], isqrt(inside))
+    cx, cy = b[1] - a[1], b[2] - a[2]
+    apart, middle = hypot(cx, cy), atan2(cy, cx)
+    half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
+    square = ishift((apart - d) * (apart - d), iscale(4.0 * apart * d, isquare(half)))
+    less, more = (a[6] - b[6]) * (a[6] - b[6]), (a[6] + b[6]) * (a[6] + b[6])
+    inside = imul(isub(square, (less, less)), isub((more, more), square))
+    return iscale(0.5 / (a[6] * b[6]), isqrt(inside))
 
 
 @compiled
-def arcs_bend(
-    a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, psi: Interval, mode: float, turn_sign: float
-) -> Interval:
-    """Enclosure of the second derivative between arcs of which each contact direction is nearly the other."""
-    ux, uy, rx, ry, _, _ = chord
+def arcs_motion(a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float) -> CenterMotion:
+    """``center_motion`` between arcs of which each contact direction is nearly the other."""
+    _, _, rx, ry, _, _ = chord
     cx, cy = b[1] - a[1], b[2] - a[2]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
     rho, inverse = a[6] / b[6], 1.0 / b[6]
@@ -232,63 +178,48 @@ def arcs_bend(
     hx, hy = isub(iscale(rho, rx), iscale(inverse, gx)), isub(iscale(rho, ry), iscale(inverse, gy))
     # R_b X^3 P' is along * r_a + product * rho g / R_b + last * h.
     along, beside = iscale(unequal, product), iscale(rho * inverse, product)
-    nx = iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx)))
-    ny = iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy)))
-    if mode != HEIGHT:
-        return iscale(1.0 / a[6], over_cube(iscale(-inverse, idot(nx, ny, rx, ry)), turn))
-    x, y = icos(psi), isin(psi)
-    cross_b = isub(iscale(rho, cross_a), iscale(inverse, across))
-    pull = imul(imul(isquare(turn), cross_b), isub(imul(x, ry), imul(y, rx)))
-    swung = ineg(iadd(iscale(inverse, idot(x, y, nx, ny)), pull))
-    return iadd(over_cube(swung, turn), isub(imul(y, ux), imul(x, uy)))
+    nx = iscale(inverse, iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx))))
+    ny = iscale(inverse, iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy))))
+    return (turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
 
 
 @compiled
-def curve_bend(
-    a: Array, b: Array, d: float, low: float, high: float, branch: float, shift: float, mode: float, turn_sign: float
-) -> Interval:
-    """Enclosure of a chord curve's second derivative for alpha in [low, high].
+def center_motion(a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float) -> CenterMotion:
+    """Enclosures over alpha in [low, high] of what the instant centre's speed P' is made of.
 
     Parameters
     ----------
+    curve : row of the curve table.
     turn_sign : sign of X inside the range (X vanishes at most at its ends).
 
     Returns
     -------
-    (lowest, highest), infinite where nothing is known.
+    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b); near a coincidence P' is enclosed itself,
+     X is 1, and what cannot be told is infinite
     """
-    alpha = (low, high)
-    if are_concentric(a, b):
-        # The instant centre is the common centre: h'' = -y . P and s'' = 0.
-        if mode != HEIGHT:
-            return (0.0, 0.0)
-        psi = isub(alpha, (shift, shift))
-        return isub(iscale(a[1], isin(psi)), iscale(a[2], icos(psi)))
-    regular, u, r = motion_box(a, b, d, low, high, branch)
-    if regular:
-        return regular_bend(a, u, r, isub(alpha, (shift, shift)), mode)
-    wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
-    box = chord_box(a, b, d, wx, wy, branch)
+    unit, zero = (1.0, 1.0), (0.0, 0.0)
+    if curve[COINCIDENCE] == CONCENTRIC:
+        # The instant centre is the common centre.
+        return (unit, zero, zero, zero, zero, zero)
+    if curve[COINCIDENCE] != NONE:
+        regular, u = motion_box(a, b, curve, low, high)
+        if regular:
+            # P = u + J u', J the quarter turn.
+            return (unit, isub(u[2], u[5]), iadd(u[3], u[4]), ANYTHING, ANYTHING, ANYTHING)
+    d = curve[LENGTH]
+    wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
+    box = chord_box(a, b, curve, wx, wy)
     if a[0] != 0.0 and b[0] != 0.0:
         gap = hypot(b[1] - a[1] - (wx[0] + wx[1]) / 2.0, b[2] - a[2] - (wy[0] + wy[1]) / 2.0)
         if gap < NEAR * min(a[6], b[6]):
-            return arcs_bend(a, b, wx, wy, box, isub(alpha, (shift, shift)), mode, turn_sign)
-    ux, uy, rax, ray, rbx, rby = box
-    turn = one_sided(icross(rax, ray, rbx, rby), turn_sign)
+            return arcs_motion(a, b, wx, wy, box, turn_sign)
+    _, _, rax, ray, rbx, rby = box
+    turn = turn_size(a, b, d, low, high)
+    if turn_sign < 0.0:
+        turn = ineg(turn)
     cross_a, cross_b = icross(wx, wy, rax, ray), icross(wx, wy, rbx, rby)
-    bend_a = 0.0 if a[0] == 0.0 else 1.0 / a[6]
-    bend_b = 0.0 if b[0] == 0.0 else 1.0 / b[6]
-    part_a = imul(cross_a, iadd(turn, iscale(bend_b, cross_a)))
-    part_b = imul(cross_b, iadd(turn, iscale(bend_a, cross_b)))
-    if mode == HEIGHT:
-        psi = isub(alpha, (shift, shift))
-        x, y = icos(psi), isin(psi)
-        square = isquare(turn)
-        swing = isub(imul(part_b, idot(x, y, rbx, rby)), imul(part_a, idot(x, y, rax, ray)))
-        swing = isub(swing, imul(imul(square, cross_b), isub(imul(x, ray), imul(y, rax))))
-        # -X^3 y.u is kept outside the quotient: it needs no division.
-        fixed = isub(imul(y, ux), imul(x, uy))
-        return iadd(over_cube(swing, turn), fixed)
-    swing = isub(imul(part_b, idot(rax, ray, rbx, rby)), part_a)
-    bend = over_cube(swing, turn)
-    return bend if a[0] == 0.0 else iscale(bend_a, bend)
+    part_a = imul(cross_a, iadd(turn, iscale(curvature(b), cross_a)))
+    part_b = imul(cross_b, iadd(turn, iscale(curvature(a), cross_b)))
+    nx, ny = isub(imul(part_a, rax), imul(part_b, rbx)), isub(imul(part_a, ray), imul(part_b, rby))
+    along = isub(part_a, imul(part_b, idot(rax, ray, rbx, rby)))
+    return (turn, nx, ny, along, part_a, part_b)

@@ -16,9 +16,9 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import are_concentric, chord, parameter_on
+from holdfast.kernels.chord import chord, parameter_on
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.through_motion import EXACT, are_one_chord_apart, beyond_line
+from holdfast.kernels.through_motion import EXACT, are_concentric, are_one_chord_apart, beyond_line
 
 Array = NDArray[np.float64]
 
@@ -184,6 +184,20 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
 
 
 @compiled
+def only_touch(a: Array, b: Array, d: float) -> bool:
+    """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or at none.
+
+    Its contacts then share one line of action, and nothing closes.
+    """
+    if a[0] != 0.0 and b[0] != 0.0:
+        apart = hypot(b[1] - a[1], b[2] - a[2])
+        return abs(apart - d) >= a[6] + b[6] - EXACT or apart + d <= abs(a[6] - b[6]) + EXACT
+    line, arc = (a, b) if a[0] == 0.0 else (b, a)
+    apart = line[4] * (arc[1] - line[1]) - line[3] * (arc[2] - line[2])
+    return arc[0] != 0.0 and abs(apart) - d >= arc[6] - EXACT
+
+
+@compiled
 def reaches(row: Array, x: float, y: float) -> bool:
     """Whether a point of a feature's carrier is on the feature, or past its end by no more than ``SPARE``."""
     spare = SPARE if row[0] == 0.0 else SPARE / row[6]
@@ -240,6 +254,8 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
     if are_concentric(a, b) and min(abs(d - a[6] - b[6]), abs(d - abs(a[6] - b[6]))) <= EXACT:
         return np.empty((0, 5))
     if a[0] == 0.0 and b[0] == 0.0 and abs(a[3] * b[4] - a[4] * b[3]) <= PARALLEL:
+        return np.empty((0, 5))
+    if only_touch(a, b, d):
         return np.empty((0, 5))
     events = np.empty((MOST_EVENTS, 3))
     count = collect_events(events, a, b, d)

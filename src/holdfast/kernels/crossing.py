@@ -18,28 +18,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import curve_value
-from holdfast.kernels.chord_bounds import value_disc
+from holdfast.kernels.chord_discs import value_disc
 from holdfast.kernels.compiling import compiled
+from holdfast.kernels.curve_columns import HEAD, TAIL
 from holdfast.kernels.pieces import (
     BEND_HIGH,
     BEND_LOW,
-    BRANCH,
     CURVE,
-    HEAD,
     HIGH,
-    LENGTH,
     LOW,
-    SHIFT,
+    SAME,
     SLOPE_ERROR_HIGH,
     SLOPE_ERROR_LOW,
     SLOPE_HIGH,
     SLOPE_LOW,
-    TAIL,
     VALUE_ERROR_HIGH,
     VALUE_ERROR_LOW,
     VALUE_HIGH,
     VALUE_LOW,
     slope_range,
+    value_bounds,
 )
 
 Array = NDArray[np.float64]
@@ -54,8 +52,8 @@ FARTHEST = 1e-6
 MOST_SPLITS = 4096
 STACK_DEPTH = 256
 MOST_ROOTS = 1 << 15
-# Rounding of an orientation in radians.
-SAME = 2e-15
+# Rounding of an interpolated value in mm or radians, generously counted.
+HAIR = 1e-9
 # Ranges in radians from which on chords are bounded as discs, where their slopes are unknown, and to which those are split.
 WIDEST_DISC = 0.1
 NARROWEST_DISC = 1e-13
@@ -73,34 +71,23 @@ def value_at(
     """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the slope may be
     infinite)."""
     a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
-    d, shift, branch = reals[curve, LENGTH], reals[curve, SHIFT], reals[curve, BRANCH]
-    value, slope, error, spread = curve_value(a, b, d, psi + shift, branch, shift, mode)
+    value, slope, error, spread = curve_value(a, b, reals[curve], psi, mode)
     if not isfinite(error):
-        value, error = value_disc(a, b, d, psi + shift, branch, SAME, shift, mode)
+        value, error = value_disc(a, b, reals[curve], psi, SAME, mode)
     return value, slope, error, spread
 
 
 @compiled
-def value_bounds(
-    value_low: float, value_high: float, lowest: float, highest: float, width: float
-) -> tuple[float, float]:
-    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or not."""
-    low, high = min(value_low, value_high), max(value_low, value_high)
-    if lowest >= 0.0 or highest <= 0.0:
-        return (low, high)
-    if isfinite(lowest) and isfinite(highest):
-        # The function lies above the falling line from the low end and the rising line into the high end.
-        spread = highest - lowest
-        at = (value_low - value_high + highest * width) / spread
-        bottom = value_low + lowest * min(max(at, 0.0), width)
-        at = (value_high - value_low - lowest * width) / spread
-        top = value_low + highest * min(max(at, 0.0), width)
-        return (min(bottom, low), max(top, high))
-    if isfinite(lowest):
-        return (value_low + lowest * width, value_high - lowest * width)
-    if isfinite(highest):
-        return (value_high - highest * width, value_low + highest * width)
-    return (-np.inf, np.inf)
+def first_guess(low: float, high: float, f_low: float, f_high: float, slope_low: float, slope_high: float) -> float:
+    """Where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the straight line
+    where its slopes vary too much for that."""
+    width, rise = high - low, f_high - f_low
+    along = -f_low / rise
+    one, two = rise / (width * slope_low), rise / (width * slope_high)
+    if 0.0 < one < 3.0 and 0.0 < two < 3.0:
+        rest = 1.0 - along
+        along = along * along * (3.0 - 2.0 * along) + along * rest * (rest * one - along * two)
+    return low + width * along
 
 
 @compiled
@@ -116,8 +103,9 @@ def solve(
     reals: Array,
     mode: float,
     target: float,
+    start: float,
 ) -> tuple[float, float]:
-    """The orientation at which a monotone f takes a target: Newton steps kept inside the bracket.
+    """The orientation at which a monotone f takes a target: Newton steps from ``start``, kept inside the bracket.
 
     Returns
     -------
@@ -128,7 +116,7 @@ def solve(
     if not min(f_low, f_high) < target < max(f_low, f_high):
         psi = low if abs(f_low - target) <= abs(f_high - target) else high
         return (psi, abs((f_low if psi == low else f_high) - target))
-    psi = low + (high - low) * (target - f_low) / (f_high - f_low)
+    psi = start
     error = np.inf
     rest = np.inf
     for _ in range(100):
@@ -138,7 +126,7 @@ def solve(
         value_two, slope_two, error_two, _ = value_at(psi, two, features, integers, reals, mode)
         rest = value_two - value_one - target
         error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
-        if rest == 0.0:
+        if abs(rest) <= error:
             break
         if (rest > 0.0) == rising:
             high = psi
@@ -170,10 +158,34 @@ def disc_bounds(
 ) -> tuple[float, float]:
     """Bounds of a curve's values over a range from a disc that holds its chords, whatever its slopes."""
     a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
-    reach, shift = (high - low) / 2.0 + SAME, reals[curve, SHIFT]
-    middle = low + (high - low) / 2.0 + shift
-    value, radius = value_disc(a, b, reals[curve, LENGTH], middle, reals[curve, BRANCH], reach, shift, mode)
+    middle, reach = low + (high - low) / 2.0, (high - low) / 2.0 + SAME
+    value, radius = value_disc(a, b, reals[curve], middle, reach, mode)
     return (value - radius, value + radius)
+
+
+@compiled
+def value_between(piece: Array, psi: float) -> float:
+    """Linear interpolation of a piece's value."""
+    along = (psi - piece[LOW]) / (piece[HIGH] - piece[LOW])
+    return piece[VALUE_LOW] + along * (piece[VALUE_HIGH] - piece[VALUE_LOW])
+
+
+@compiled
+def sag(piece: Array) -> float:
+    """How far a steady piece may be from its linear interpolation, by its bend and by the errors at its ends."""
+    width = piece[HIGH] - piece[LOW]
+    return piece[BEND_HIGH] * width * width / 8.0 + max(piece[VALUE_ERROR_LOW], piece[VALUE_ERROR_HIGH])
+
+
+@compiled
+def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
+    """Whether f may take a target, told from the ends of two steady pieces alone."""
+    low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
+    doubt = sag(first) + sag(second) + HAIR
+    f_low = value_between(second, low) - value_between(first, low)
+    f_high = value_between(second, high) - value_between(first, high)
+    k, last = targets(min(f_low, f_high) - doubt, max(f_low, f_high) + doubt, offset, period)
+    return k <= last
 
 
 @compiled
@@ -186,6 +198,7 @@ def crossings(
     mode: float,
     offset: float,
     period: float,
+    flat: float,
     stack: Array,
     roots: Array,
 ) -> int:
@@ -193,9 +206,10 @@ def crossings(
 
     Parameters
     ----------
-    first, second : (13,) pieces.
+    first, second : (26,) pieces.
     mode : which value of the curves is compared, see ``curve_value``.
     offset, period : targets are offset + k period for whole k; a period of 0 allows k = 0 only.
+    flat : crossings at which the slope of f is no steeper than this are of no interest, and may be left out.
     stack, roots : (STACK_DEPTH, STACK_LENGTH) and (MOST_ROOTS, 3) work space.
 
     Returns
@@ -233,8 +247,10 @@ def crossings(
         lowest, highest = low2 - high1, high2 - low1
         f_low, f_high = v2 - v1, w2 - w1
         error = max(e1 + e2, c1 + c2) + rounding
-        done = False
-        if lowest > 0.0 or highest < 0.0:
+        done = max(-lowest, highest) <= flat
+        if done:
+            pass
+        elif lowest > 0.0 or highest < 0.0:
             bottom, top = min(f_low, f_high) - error, max(f_low, f_high) + error
             steepness = max(lowest, -highest)
             k, last = targets(bottom, top, offset, period)
@@ -242,7 +258,8 @@ def crossings(
                 return -1
             while k <= last:
                 target = offset + k * period
-                psi, rest = solve(low, high, f_low, f_high, one, two, features, integers, reals, mode, target)
+                start = first_guess(low, high, f_low - target, f_high - target, s2 - s1, t2 - t1)
+                psi, rest = solve(low, high, f_low, f_high, one, two, features, integers, reals, mode, target, start)
                 if psi in (low, high):
                     rest += error
                 roots[found, PSI], roots[found, MULTIPLE] = psi, k

@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
+from holdfast.kernels.chord import write_curve
 from holdfast.kernels.chord_intervals import chord_intervals
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.pieces import CURVE_INTEGERS, CURVE_REALS, SHIFT, grown
+from holdfast.kernels.curve_columns import (
+    COSINE,
+    CURVE_INTEGERS,
+    CURVE_REALS,
+    END_STRETCH,
+    FIRST_STRETCH,
+    FROM,
+    SHIFT,
+    SINE,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
+)
+from holdfast.kernels.growing import grown, grown_whole
+from holdfast.kernels.stretches import STRETCH_LENGTH, add_stretches
 from holdfast.kernels.uprights import UPRIGHT_REALS, uprights_between
 
 Array = NDArray[np.float64]
@@ -26,19 +41,9 @@ def reach(row: Array) -> float:
 
 
 @compiled
-def grown_whole(array: IntArray) -> IntArray:
-    """A copy of a (N, M) array of whole numbers with room for twice as many rows."""
-    out = np.empty((2 * array.shape[0], array.shape[1]), np.int64)
-    for i in range(array.shape[0]):
-        for j in range(array.shape[1]):
-            out[i, j] = array[i, j]
-    return out
-
-
-@compiled
 def tail_curves(
     tail: int, features: Array, centers: IntArray, lengths: Array, starts: IntArray, steps: IntArray, angles: Array
-) -> tuple[IntArray, Array, IntArray, Array]:
+) -> tuple[IntArray, Array, IntArray, Array, Array]:
     """All chords whose tail is on one feature and whose head is on the same feature or one of a higher number.
 
     Parameters
@@ -53,13 +58,15 @@ def tail_curves(
 
     Returns
     -------
-    (integers, reals, upright integers, upright reals)
-        The curve table of ``pieces`` and the upright table of ``uprights`` (its orientations still to be set by psi =
-        alpha - shift, brought into range by the caller; here psi is alpha - shift).
+    (integers, reals, upright integers, upright reals, stretches)
+        The curve table of ``curve_columns``, the upright table of ``uprights`` (its orientations, alpha - shift, still to
+        be brought into range by the caller) and the curves' stretches (see ``stretches``), counted from 0 for this tail.
     """
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
     whole, uprights = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, UPRIGHT_REALS))
-    count = upright_count = 0
+    stretches = np.empty((64, STRETCH_LENGTH))
+    count = upright_count = stretch_count = 0
+    curve = np.empty(CURVE_REALS)
     a = features[tail]
     for head in range(tail, features.shape[0]):
         b = features[head]
@@ -71,18 +78,29 @@ def tail_curves(
                 continue
             ranges = chord_intervals(a, b, d)
             standing = uprights_between(a, b, d)
+            for k in range(ranges.shape[0]):
+                write_curve(curve, a, b, d, ranges[k, 2], 0.0)
+                curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
+                curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
+                first = stretch_count
+                stretches, stretch_count = add_stretches(stretches, stretch_count, a, b, curve)
+                for step in range(starts[length], starts[length + 1]):
+                    column, row = steps[step, 0], steps[step, 1]
+                    if head == tail and (column < 0 or (column == 0 and row < 0)):
+                        continue
+                    if count == integers.shape[0]:
+                        integers, reals = grown_whole(integers), grown(reals)
+                    write_step(integers[count], tail, head, column, row, center)
+                    integers[count, FIRST_STRETCH], integers[count, END_STRETCH] = first, stretch_count
+                    for k_of in range(CURVE_REALS):
+                        reals[count, k_of] = curve[k_of]
+                    reals[count, SHIFT], reals[count, COSINE] = angles[step], cos(angles[step])
+                    reals[count, SINE] = sin(angles[step])
+                    count += 1
             for step in range(starts[length], starts[length + 1]):
                 column, row = steps[step, 0], steps[step, 1]
                 if head == tail and (column < 0 or (column == 0 and row < 0)):
                     continue
-                for k in range(ranges.shape[0]):
-                    if count == integers.shape[0]:
-                        integers, reals = grown_whole(integers), grown(reals)
-                    write_step(integers[count], tail, head, column, row, center)
-                    for column_of in range(5):
-                        reals[count, column_of] = ranges[k, column_of]
-                    reals[count, 5], reals[count, SHIFT] = d, angles[step]
-                    count += 1
                 for k in range(standing.shape[0]):
                     if upright_count == whole.shape[0]:
                         whole, uprights = grown_whole(whole), grown(uprights)
@@ -91,7 +109,7 @@ def tail_curves(
                         uprights[upright_count, column_of] = standing[k, column_of]
                     uprights[upright_count, 3], uprights[upright_count, 4] = d, standing[k, 2] - angles[step]
                     upright_count += 1
-    return integers[:count], reals[:count], whole[:upright_count], uprights[:upright_count]
+    return integers[:count], reals[:count], whole[:upright_count], uprights[:upright_count], stretches[:stretch_count]
 
 
 @compiled

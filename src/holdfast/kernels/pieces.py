@@ -3,207 +3,121 @@
 Glossary
 --------
 cell : a closed range of orientations psi; the work is shared out by cells.
-piece : a chord curve over a range inside one cell, with value and derivative at both ends and an enclosure of its second
-    derivative ("bend") over the whole range. The bend keeps one sign, or the derivative it allows varies little; so the
-    derivative over any part of the piece is bounded by its values at that part's ends.
+piece : a chord curve over a range inside one cell and inside one stretch, with value and derivative at both ends, an
+    enclosure of its second derivative ("bend") and, made of these, enclosures of its slope, its value, of the place of its
+    pegs along x, and of the directions in which its pegs can push together.
 
+Bends: with P the instant centre and K >= |P'| (see ``stretches``)
 
-Columns of a piece: LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, BEND_LOW, BEND_HIGH, CURVE (index), and the
-bounds VALUE_ERROR and SLOPE_ERROR of the errors at both ends.
+    |h''| = |y . P + x . P'| <= |P| + K        and        |s''| = |P' . r_a| <= K      (divided by R_a on an arc);
+
+the place along x, x . u, has the slope y . P and so the bend |x . P - y . P'| <= |P| + K, and a contact direction turns at
+the rate p / R, which changes by at most K / R. A function of such a bend B is within B w^2 / 8 of its linear interpolation
+over a range w. Beside a tangency the bend is bounded on one side only, by X^3 P'.
+
+Directions: two pegs push together with a force F between the two directions in which each pushes. For the clamping force
+to be positive F must point along +x on the left jaw, and the right jaw's pegs push with -F. Directions with positive x are
+told as y / (x + |y|), which grows from -1 to 1 with the angle at a rate of at most 1.
+
+Columns of a piece: LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, BEND_LOW, BEND_HIGH, CURVE (index), the
+bounds VALUE_ERROR and SLOPE_ERROR of the errors at both ends, SLOPE_LEAST and SLOPE_MOST, VALUE_LEAST and VALUE_MOST over
+the piece (errors included), X_LEFT (the rightmost peg is no farther left than this), X_RIGHT (the leftmost peg is no
+farther right), PUSH_LEFT_LOW to PUSH_LEFT_HIGH and PUSH_RIGHT_LOW to PUSH_RIGHT_HIGH (directions F as a chord of the left
+jaw and of the right one; none when low > high), ACROSS_LEAST and ACROSS_MOST (of y . P), STEADY (1 where all this is
+finite, 0 beside a tangency).
 """
 
 from __future__ import annotations
 
-from math import floor, inf, isfinite, pi
+from math import cos, floor, hypot, inf, isfinite, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import POSITION, chord, curve_value
-from holdfast.kernels.chord_bounds import curve_bend, value_disc
+from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, valued
+from holdfast.kernels.chord_discs import tail_disc, value_disc
 from holdfast.kernels.compiling import compiled
+from holdfast.kernels.curve_columns import (
+    COLUMN_STEP,
+    END_STRETCH,
+    FIRST_STRETCH,
+    FROM,
+    HEAD,
+    KAPPA,
+    LENGTH,
+    SHIFT,
+    TAIL,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
+)
+from holdfast.kernels.growing import grown
+from holdfast.kernels.stretches import (
+    ALONG_HIGH,
+    ALONG_LOW,
+    LEAST_CUBE,
+    PART_A,
+    PART_B,
+    PARTS,
+    SPEED,
+    TURN,
+    X_HIGH,
+    X_LOW,
+    Y_HIGH,
+    Y_LOW,
+)
+from holdfast.kernels.stretches import HIGH as STRETCH_HIGH
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 LOW, HIGH, VALUE_LOW, SLOPE_LOW, VALUE_HIGH, SLOPE_HIGH, BEND_LOW, BEND_HIGH, CURVE = range(9)
 VALUE_ERROR_LOW, SLOPE_ERROR_LOW, VALUE_ERROR_HIGH, SLOPE_ERROR_HIGH = range(9, 13)
-PIECE_LENGTH = 13
+SLOPE_LEAST, SLOPE_MOST, VALUE_LEAST, VALUE_MOST, X_LEFT, X_RIGHT = range(13, 19)
+PUSH_LEFT_LOW, PUSH_LEFT_HIGH, PUSH_RIGHT_LOW, PUSH_RIGHT_HIGH, ACROSS_LEAST, ACROSS_MOST, STEADY = range(19, 26)
+PIECE_LENGTH = 26
 
-# Columns of a curve's whole numbers and of its real numbers.
-TAIL, HEAD, COLUMN_STEP, ROW_STEP, CENTER = range(5)
-CURVE_INTEGERS = 5
-FROM, TO, BRANCH, TANGENT_FROM, TANGENT_TO, LENGTH, SHIFT = range(7)
-CURVE_REALS = 7
+FULL_TURN = 2.0 * pi
+# Rounding of an orientation in radians.
+SAME = 2e-15
+# Rounding of directions, places in mm and slopes, generously counted.
+HAIR = 1e-9
 
-TURN = 2.0 * pi
-# Ranges of orientation narrower than this, in radians, are not split any further.
-NARROWEST = 1e-12
-
-
-@compiled
-def grown(array: Array) -> Array:
-    """A copy of a (N, M) array with room for twice as many rows."""
-    out = np.empty((2 * array.shape[0], array.shape[1]))
-    for i in range(array.shape[0]):
-        for j in range(array.shape[1]):
-            out[i, j] = array[i, j]
-    return out
-
-
-@compiled
-def turn_sign(a: Array, b: Array, d: float, alpha: float, branch: float) -> float:
-    """Sign of the cross product X of the two contact directions."""
-    c = chord(a, b, d, alpha, branch)
-    return 1.0 if c[2] * c[5] - c[3] * c[4] > 0.0 else -1.0
+# Entries of an edge: value, slope, their errors, place of the tail along x, |P|, bound of how far P is from tail and head,
+# bound of the tail's error, the outward normals of tail and head in the vise's frame, and y . P.
+EDGE_VALUE, EDGE_SLOPE, EDGE_VALUE_ERROR, EDGE_SLOPE_ERROR, EDGE_X, EDGE_CENTER, EDGE_ARM, EDGE_ERROR = range(8)
+TAIL_X, TAIL_Y, HEAD_X, HEAD_Y, EDGE_ACROSS = range(8, 13)
+EDGE_LENGTH = 13
+# The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
+MOST_TURN = 1.0
 
 
 @compiled
 def unwrapped(value: float, near: float) -> float:
     """An angle moved by whole turns to be nearest to another."""
-    return value + TURN * floor((near - value) / TURN + 0.5)
+    return value + FULL_TURN * floor((near - value) / FULL_TURN + 0.5)
 
 
 @compiled
-def add_pieces(
-    out: Array,
-    count: int,
-    features: Array,
-    integers: IntArray,
-    reals: Array,
-    curve: int,
-    low: float,
-    high: float,
-    tangent_low: float,
-    tangent_high: float,
-    mode: float,
-    flatness: float,
-) -> tuple[Array, int]:
-    """Cut one curve over [low, high] into pieces and append them to ``out`` (grown as needed).
-
-    Parameters
-    ----------
-    low, high : psi in radians, inside the curve's range and inside one cell.
-    tangent_low, tangent_high : bound of the error in radians of that end where the chord is a tangency (infinite slope)
-        there, 0 where it is not.
-    flatness : how much the slope of a piece without a one-signed bend may vary, in mm per radian.
-    """
-    a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
-    d, branch, shift = reals[curve, LENGTH], reals[curve, BRANCH], reals[curve, SHIFT]
-    sign = turn_sign(a, b, d, shift + (low + high) / 2.0, branch)
-    circles = mode == POSITION and a[0] != 0.0 and a[5] >= pi
-    if mode == POSITION and a[0] != 0.0:
-        flatness = flatness / a[6]
-    left = low
-    right = high
-    stack = np.empty(200)
-    depth = 0
-    while True:
-        bends = curve_bend(a, b, d, shift + left, shift + right, branch, shift, mode, sign)
-        width = right - left
-        settled = bends[0] >= 0.0 or bends[1] <= 0.0 or (bends[1] - bends[0]) * width <= flatness
-        # Nothing is learnt of a range no longer than the error of its end.
-        smallest = NARROWEST
-        if left == low:
-            smallest = max(smallest, 4.0 * tangent_low)
-        if right == high:
-            smallest = max(smallest, 4.0 * tangent_high)
-        if not settled and width > smallest and depth < 199:
-            stack[depth] = right
-            depth += 1
-            if tangent_low > 0.0 and left == low:
-                right = left + width / 8.0
-            elif tangent_high > 0.0 and right == high:
-                right = right - width / 8.0
-            else:
-                right = left + width / 2.0
-            continue
-        if count == out.shape[0]:
-            out = grown(out)
-        row = out[count]
-        count += 1
-        value_low, slope_low, error_low, spread_low = curve_value(a, b, d, shift + left, branch, shift, mode)
-        value_high, slope_high, error_high, spread_high = curve_value(a, b, d, shift + right, branch, shift, mode)
-        # Where the branches meet, or nearly so, the value is bounded by a disc, a hair beyond the end included.
-        at_low, at_high = tangent_low > 0.0 and left == low, tangent_high > 0.0 and right == high
-        if at_low:
-            slope_low, spread_low = end_slope(bends, -1.0)
-        if at_high:
-            slope_high, spread_high = end_slope(bends, 1.0)
-        if at_low or not isfinite(error_low):
-            value_low, error_low = value_disc(a, b, d, shift + left, branch, tangent_low, shift, mode)
-        if at_high or not isfinite(error_high):
-            value_high, error_high = value_disc(a, b, d, shift + right, branch, tangent_high, shift, mode)
-        if circles:
-            middle = curve_value(a, b, d, shift + left + width / 64.0, branch, shift, mode)[0]
-            value_low = unwrapped(value_low, middle)
-            middle = curve_value(a, b, d, shift + right - width / 64.0, branch, shift, mode)[0]
-            value_high = unwrapped(value_high, middle)
-        row[LOW], row[HIGH], row[CURVE] = left, right, curve
-        row[VALUE_LOW], row[SLOPE_LOW] = value_low, slope_low
-        row[VALUE_HIGH], row[SLOPE_HIGH] = value_high, slope_high
-        row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = error_low, spread_low
-        row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = error_high, spread_high
-        row[BEND_LOW], row[BEND_HIGH] = bends[0], bends[1]
-        if depth == 0:
-            return out, count
-        left = right
-        depth -= 1
-        right = stack[depth]
-
-
-@compiled
-def end_slope(bends: tuple[float, float], side: float) -> tuple[float, float]:
-    """Slope at a tangency and its error: infinite, with the sign the bend gives it (side -1 at the low end, +1 at the high
-    end), or unknown."""
-    if bends[0] >= 0.0:
-        return (side * inf, 0.0)
-    if bends[1] <= 0.0:
-        return (-side * inf, 0.0)
-    return (0.0, inf)
-
-
-@compiled
-def cell_pieces(
-    cell_low: float,
-    cell_high: float,
-    members: IntArray,
-    features: Array,
-    integers: IntArray,
-    reals: Array,
-    mode: float,
-    flatness: float,
-) -> Array:
-    """Pieces of the given curves inside one cell.
-
-    Parameters
-    ----------
-    cell_low, cell_high : psi in radians, less than a turn apart.
-    members : (M,) indices of curves to consider.
-    features : (F, 8) rows.
-    integers, reals : (C, 5) and (C, 7) curve table.
-
-    Returns
-    -------
-    (N, 13) array
-    """
-    out = np.empty((64, PIECE_LENGTH))
-    count = int(np.int64(0))
-    for curve in members:
-        base = reals[curve, FROM] - reals[curve, SHIFT]
-        span = reals[curve, TO] - reals[curve, FROM]
-        start = base + TURN * floor((cell_low - base) / TURN)
-        for lap in range(2):
-            low, high = start + lap * TURN, start + lap * TURN + span
-            left, right = max(low, cell_low), min(high, cell_high)
-            if right - left <= 0.0:
-                continue
-            tangent_low = reals[curve, TANGENT_FROM] if left == low else 0.0
-            tangent_high = reals[curve, TANGENT_TO] if right == high else 0.0
-            out, count = add_pieces(
-                out, count, features, integers, reals, curve, left, right, tangent_low, tangent_high, mode, flatness
-            )
-    return out[:count]
+def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: float) -> None:
+    """Write what a piece needs of a chord at one of its ends to a (13,) row."""
+    cosine, sine = cos(psi), sin(psi)
+    state = chord_state(a, b, curve, psi, cosine, sine)
+    edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = valued(
+        a, b, state, cosine, sine, mode
+    )
+    edge[EDGE_X] = cosine * state[0] + sine * state[1]
+    px, py, ax, ay = state[6], state[7], state[6] - state[0], state[7] - state[1]
+    edge[EDGE_CENTER] = sqrt(px * px + py * py)
+    edge[EDGE_ARM] = sqrt(ax * ax + ay * ay) + curve[LENGTH]
+    edge[EDGE_ERROR] = state[8]
+    edge[EDGE_ACROSS] = cosine * py - sine * px
+    side_a = 1.0 if a[0] == 0.0 else a[7]
+    side_b = 1.0 if b[0] == 0.0 else b[7]
+    edge[TAIL_X] = side_a * (cosine * state[2] + sine * state[3])
+    edge[TAIL_Y] = side_a * (cosine * state[3] - sine * state[2])
+    edge[HEAD_X] = side_b * (cosine * state[4] + sine * state[5])
+    edge[HEAD_Y] = side_b * (cosine * state[5] - sine * state[4])
 
 
 @compiled
@@ -224,3 +138,319 @@ def slope_range(
     at = (slope_high - slope_low - bend_low * width) / spread
     highest = slope_low + bend_high * min(max(at, 0.0), width)
     return (min(lowest, slope_low, slope_high), max(highest, slope_low, slope_high))
+
+
+@compiled
+def value_bounds(
+    value_low: float, value_high: float, lowest: float, highest: float, width: float
+) -> tuple[float, float]:
+    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or not."""
+    low, high = min(value_low, value_high), max(value_low, value_high)
+    if lowest >= 0.0 or highest <= 0.0:
+        return (low, high)
+    if isfinite(lowest) and isfinite(highest):
+        # The function lies above the falling line from the low end and the rising line into the high end.
+        spread = highest - lowest
+        at = (value_low - value_high + highest * width) / spread
+        bottom = value_low + lowest * min(max(at, 0.0), width)
+        at = (value_high - value_low - lowest * width) / spread
+        top = value_low + highest * min(max(at, 0.0), width)
+        return (min(bottom, low), max(top, high))
+    if isfinite(lowest):
+        return (value_low + lowest * width, value_high - lowest * width)
+    if isfinite(highest):
+        return (value_high - highest * width, value_low + highest * width)
+    return (-inf, inf)
+
+
+@compiled
+def bend_beside(
+    stretch: Array, a: Array, d: float, reach: float, low: float, high: float, mode: float
+) -> tuple[float, float]:
+    """Enclosure of the second derivative beside a tangency, one of whose bounds is infinite.
+
+    X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``; X^3 s'' = -X^3 P' . r_a.
+    """
+    cube = stretch[TURN] * stretch[TURN] * stretch[TURN]
+    if mode == HEIGHT:
+        psi, half = (low + high) / 2.0, (high - low) / 2.0
+        x, y = cos(psi), sin(psi)
+        first = min(x * stretch[X_LOW], x * stretch[X_HIGH]) + min(y * stretch[Y_LOW], y * stretch[Y_HIGH])
+        last = max(x * stretch[X_LOW], x * stretch[X_HIGH]) + max(y * stretch[Y_LOW], y * stretch[Y_HIGH])
+        size = hypot(max(-stretch[X_LOW], stretch[X_HIGH]), max(-stretch[Y_LOW], stretch[Y_HIGH]))
+        doubt = size * (half + HAIR) + stretch[TURN] * stretch[TURN] * d
+        swing_low, swing_high, fixed = -last - doubt, -first + doubt, reach
+    else:
+        scale = 1.0 if a[0] == 0.0 else 1.0 / a[6]
+        swing_low, swing_high, fixed = -scale * stretch[ALONG_HIGH], -scale * stretch[ALONG_LOW], 0.0
+        swing_low -= HAIR * abs(swing_low)
+        swing_high += HAIR * abs(swing_high)
+    if cube < 0.0:
+        swing_low, swing_high, cube = -swing_high, -swing_low, -cube
+    if swing_low > 0.0 and cube > 0.0:
+        return (swing_low / cube * (1.0 - HAIR) - fixed, inf)
+    if swing_high < 0.0 and cube > 0.0:
+        return (-inf, swing_high / cube * (1.0 - HAIR) + fixed)
+    return (-inf, inf)
+
+
+@compiled
+def front(x: float, y: float) -> float:
+    """A direction with positive x as y / (x + abs(y))."""
+    return y / (x + abs(y))
+
+
+@compiled
+def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
+    """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there are none.
+
+    Where it is in doubt which way round "between" is, all directions are told.
+    """
+    turn = ax * by - ay * bx
+    if ax * bx + ay * by < 0.0 and abs(turn) <= doubt + HAIR:
+        return (-1.0, 1.0)
+    ax, bx = ax + doubt, bx + doubt
+    if ax <= 0.0 and bx <= 0.0:
+        return (1.0, -1.0)
+    if ax > 0.0 and bx > 0.0:
+        one, two = front(ax, ay), front(bx, by)
+        return (min(one, two), max(one, two))
+    if ax > 0.0:
+        return (front(ax, ay), 1.0) if turn > 0.0 else (-1.0, front(ax, ay))
+    return (-1.0, front(bx, by)) if turn > 0.0 else (front(bx, by), 1.0)
+
+
+@compiled
+def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
+    """Write the directions of the forces of a piece's pegs, from the normals at its ends."""
+    for k in range(2):
+        # Pegs push against the outward normals; the right jaw's pegs push with -F.
+        sign = -1.0 if k == 0 else 1.0
+        bottom, top = push_range(
+            sign * low[TAIL_X], sign * low[TAIL_Y], sign * low[HEAD_X], sign * low[HEAD_Y], 2.0 * doubt
+        )
+        first, last = push_range(
+            sign * high[TAIL_X], sign * high[TAIL_Y], sign * high[HEAD_X], sign * high[HEAD_Y], 2.0 * doubt
+        )
+        row[PUSH_LEFT_LOW + 2 * k] = min(bottom, first) - 4.0 * doubt - HAIR
+        row[PUSH_LEFT_HIGH + 2 * k] = max(top, last) + 4.0 * doubt + HAIR
+        if bottom > top and first > last:
+            row[PUSH_LEFT_LOW + 2 * k], row[PUSH_LEFT_HIGH + 2 * k] = 2.0, -2.0
+        elif bottom > top or first > last:
+            row[PUSH_LEFT_LOW + 2 * k], row[PUSH_LEFT_HIGH + 2 * k] = -1.0, 1.0
+
+
+@compiled
+def write_steady(
+    row: Array, a: Array, curve: Array, low: Array, high: Array, stretch: Array, width: float, mode: float
+) -> None:
+    """Write the enclosures of a piece whose instant centre moves at a bounded speed."""
+    speed, sag = stretch[SPEED], width * width / 8.0
+    center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width
+    error = max(low[EDGE_ERROR], high[EDGE_ERROR])
+    curved = curve[KAPPA]
+    turned = curved * (speed * sag + 2.0 * error) + HAIR * width + SAME
+    if mode == HEIGHT:
+        # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
+        tail, head = max(abs(low[TAIL_X]), abs(high[TAIL_X])), max(abs(low[HEAD_X]), abs(high[HEAD_X]))
+        swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
+        bend = (center + min(speed, swing)) * (1.0 + HAIR)
+    else:
+        bend = (speed if a[0] == 0.0 else speed / a[6]) * (1.0 + HAIR)
+    row[BEND_LOW], row[BEND_HIGH] = -bend, bend
+    doubt = max(low[EDGE_SLOPE_ERROR], high[EDGE_SLOPE_ERROR])
+    least, most = slope_range(row[SLOPE_LOW], row[SLOPE_HIGH], -bend, bend, width)
+    row[SLOPE_LEAST], row[SLOPE_MOST] = least - doubt, most + doubt
+    doubt = bend * sag + max(row[VALUE_ERROR_LOW], row[VALUE_ERROR_HIGH])
+    row[VALUE_LEAST] = min(row[VALUE_LOW], row[VALUE_HIGH]) - doubt
+    row[VALUE_MOST] = max(row[VALUE_LOW], row[VALUE_HIGH]) + doubt
+    doubt = (center + speed) * sag + error + HAIR
+    row[X_LEFT] = min(low[EDGE_X], high[EDGE_X]) - doubt
+    row[X_RIGHT] = max(low[EDGE_X], high[EDGE_X]) + doubt
+    if mode == HEIGHT:
+        arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width
+        if (curved * arm + 1.0) * width <= MOST_TURN:
+            write_pushes(row, low, high, turned)
+        else:
+            row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
+    # The slope of y . P is bounded by |P| + K.
+    doubt = 0.5 * (center + speed) * width + error + HAIR
+    row[ACROSS_LEAST] = min(low[EDGE_ACROSS], high[EDGE_ACROSS]) - doubt
+    row[ACROSS_MOST] = max(low[EDGE_ACROSS], high[EDGE_ACROSS]) + doubt
+    row[STEADY] = 1.0
+
+
+@compiled
+def write_beside(
+    row: Array, a: Array, b: Array, curve: Array, stretch: Array, tangent_low: float, tangent_high: float, mode: float
+) -> None:
+    """Write the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
+    width, middle = row[HIGH] - row[LOW], (row[LOW] + row[HIGH]) / 2.0
+    x, y, radius = tail_disc(a, b, curve, middle, width / 2.0)
+    size = hypot(x, y) + radius
+    row[BEND_LOW], row[BEND_HIGH] = bend_beside(stretch, a, curve[LENGTH], size, row[LOW], row[HIGH], mode)
+    # Where the branches meet the slope is infinite, with the sign the bend gives it.
+    if tangent_low > 0.0:
+        row[SLOPE_LOW], row[SLOPE_ERROR_LOW] = end_slope(row[BEND_LOW], row[BEND_HIGH], -1.0)
+    if tangent_high > 0.0:
+        row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = end_slope(row[BEND_LOW], row[BEND_HIGH], 1.0)
+    # There, or nearly there, the value is bounded by a disc, a hair beyond the end included.
+    if tangent_low > 0.0 or not isfinite(row[VALUE_ERROR_LOW]):
+        row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low, mode)
+    if tangent_high > 0.0 or not isfinite(row[VALUE_ERROR_HIGH]):
+        row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high, mode)
+    row[SLOPE_LEAST], row[SLOPE_MOST] = -inf, inf
+    value, doubt = value_disc(a, b, curve, middle, width / 2.0, mode)
+    row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
+    place, doubt = cos(middle) * x + sin(middle) * y, radius + size * width / 2.0 + HAIR
+    row[X_LEFT], row[X_RIGHT] = place - doubt, place + doubt
+    row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
+    row[ACROSS_LEAST], row[ACROSS_MOST] = -inf, inf
+    row[STEADY] = 0.0
+
+
+@compiled
+def end_slope(bend_low: float, bend_high: float, side: float) -> tuple[float, float]:
+    """Slope at a tangency and its error: infinite, with the sign the bend gives it (side -1 at the low end, +1 at the high
+    end), or unknown."""
+    if bend_low >= 0.0:
+        return (side * inf, 0.0)
+    if bend_high <= 0.0:
+        return (-side * inf, 0.0)
+    return (0.0, inf)
+
+
+@compiled
+def add_pieces(
+    out: Array,
+    count: int,
+    features: Array,
+    integers: IntArray,
+    reals: Array,
+    stretches: Array,
+    pitch_x: float,
+    index: int,
+    low: float,
+    high: float,
+    base: float,
+    mode: float,
+    edges: Array,
+) -> tuple[Array, int]:
+    """Append the pieces of one curve over [low, high] to ``out`` (grown as needed).
+
+    Parameters
+    ----------
+    low, high : psi in radians, inside the curve's range and inside one cell.
+    base : psi at the low end of the curve's range.
+    edges : (2, 13) work space.
+    """
+    a, b, curve = features[integers[index, TAIL]], features[integers[index, HEAD]], reals[index]
+    circles = mode == POSITION and a[0] != 0.0 and a[5] >= pi
+    step = integers[index, COLUMN_STEP] * pitch_x
+    span = curve[TO] - curve[FROM]
+    # No tail is farther from the centre of the part than this.
+    size = sqrt(a[1] * a[1] + a[2] * a[2]) + a[5] + a[6]
+    at_low, at_high = edges[0], edges[1]
+    left, known = low, False
+    for k in range(integers[index, FIRST_STRETCH], integers[index, END_STRETCH]):
+        stretch = stretches[k]
+        end = base + (stretch[STRETCH_HIGH] - curve[FROM])
+        last = stretch[STRETCH_HIGH] >= curve[TO]
+        if end <= left and not last:
+            continue
+        right = high if last else min(end, high)
+        if right <= left:
+            continue
+        if stretch[PARTS] > 0.0:
+            # Where the whole stretch tells no sign of the bend, its parts, which follow, do.
+            bends = bend_beside(stretch, a, curve[LENGTH], size, left, right, mode)
+            if bends[0] < 0.0 < bends[1]:
+                continue
+        if not known:
+            write_edge(at_low, a, b, curve, left, mode)
+        write_edge(at_high, a, b, curve, right, mode)
+        if count == out.shape[0]:
+            out = grown(out)
+        row = out[count]
+        count += 1
+        row[LOW], row[HIGH], row[CURVE] = left, right, index
+        row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
+        row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
+        row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
+        row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR], at_high[EDGE_SLOPE_ERROR]
+        tangent_low = curve[TANGENT_FROM] if left <= base else 0.0
+        tangent_high = curve[TANGENT_TO] if right >= base + span else 0.0
+        steady = stretch[SPEED] < inf and tangent_low == 0.0 and tangent_high == 0.0
+        steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
+        if circles and steady:
+            unwind(row, a, b, curve)
+        if steady:
+            write_steady(row, a, curve, at_low, at_high, stretch, right - left, mode)
+        else:
+            write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
+            if circles:
+                unwind(row, a, b, curve)
+        row[X_LEFT] += max(step, 0.0)
+        row[X_RIGHT] += min(step, 0.0)
+        for n in range(EDGE_LENGTH):
+            at_low[n] = at_high[n]
+        left, known = right, True
+        if right >= high:
+            break
+    return out, count
+
+
+@compiled
+def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
+    """Bring the positions at both ends of a piece on a whole circle to the turn of its inside."""
+    width = row[HIGH] - row[LOW]
+    for k in range(2):
+        psi = row[LOW] + width / 64.0 if k == 0 else row[HIGH] - width / 64.0
+        cosine, sine = cos(psi), sin(psi)
+        middle = valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, POSITION)[0]
+        column = VALUE_LOW if k == 0 else VALUE_HIGH
+        row[column] = unwrapped(row[column], middle)
+
+
+@compiled
+def cell_pieces(
+    cell_low: float,
+    cell_high: float,
+    members: IntArray,
+    features: Array,
+    integers: IntArray,
+    reals: Array,
+    stretches: Array,
+    pitch_x: float,
+    mode: float,
+) -> Array:
+    """Pieces of curves inside one cell.
+
+    Parameters
+    ----------
+    cell_low, cell_high : psi in radians, less than a turn apart.
+    members : (M,) indices of the curves to consider, ascending.
+    features : (F, 8) rows.
+    integers, reals, stretches : (C, 7), (C, 14) and (S, 13) curve table.
+    pitch_x : column pitch in mm.
+    mode : ``HEIGHT`` or ``POSITION``.
+
+    Returns
+    -------
+    (N, 26) array, in the order of the curves
+    """
+    out = np.empty((64, PIECE_LENGTH))
+    edges = np.empty((2, EDGE_LENGTH))
+    count = int(np.int64(0))
+    for index in members:
+        base = reals[index, FROM] - reals[index, SHIFT]
+        span = reals[index, TO] - reals[index, FROM]
+        start = base + FULL_TURN * floor((cell_low - base) / FULL_TURN)
+        for lap in range(2):
+            low = start + lap * FULL_TURN
+            left, right = max(low, cell_low), min(low + span, cell_high)
+            if right - left > 0.0:
+                out, count = add_pieces(
+                    out, count, features, integers, reals, stretches, pitch_x, index, left, right, low, mode, edges
+                )
+    return out[:count]

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.compiling import compiled
+from holdfast.kernels.curve_columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 from holdfast.kernels.interval import (
     Interval,
     iadd,
@@ -49,7 +50,10 @@ MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 EXACT = 1e-11
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
-NONE, ARCS, LINE_FIRST, ARC_FIRST = 0.0, 1.0, 2.0, 3.0
+# Centres nearer than this, in mm, make arcs concentric.
+SAME_CENTER = 1e-9
+# Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing shape.
+NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
 TURN = 2.0 * pi
 
 
@@ -70,6 +74,12 @@ def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
     if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
         return False
     return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= EXACT
+
+
+@compiled
+def are_concentric(a: Array, b: Array) -> bool:
+    """Whether two features are arcs of one centre."""
+    return a[0] != 0.0 and b[0] != 0.0 and hypot(a[1] - b[1], a[2] - b[2]) <= SAME_CENTER
 
 
 @compiled
@@ -97,7 +107,7 @@ def from_coincidence(alpha: float, middle: float) -> float:
 @compiled
 def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
     """Whether the regular formulas are the better ones at an angle from the coincidence."""
-    if kind == NONE or abs(gamma) > 1.0:
+    if kind in (NONE, CONCENTRIC) or abs(gamma) > 1.0:
         return False
     if kind == ARCS:
         return d * abs(sin(gamma / 2.0)) <= 0.7 * radius
@@ -105,26 +115,34 @@ def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
 
 
 @compiled
-def shares_a_line(a: Array, b: Array, d: float, alpha: float) -> bool:
+def shares_a_line(curve: Array, psi: float) -> bool:
     """Whether a chord is so near its coincidence that both contacts share one line of action."""
-    kind, middle, _ = coincidence(a, b, d)
-    return kind != NONE and abs(from_coincidence(alpha, middle)) <= SHARED
+    kind = curve[COINCIDENCE]
+    if kind in (NONE, CONCENTRIC):
+        return False
+    return abs(from_coincidence(psi + curve[SHIFT], curve[MIDDLE])) <= SHARED
 
 
 @compiled
-def motion(a: Array, b: Array, d: float, alpha: float, branch: float) -> tuple[bool, Motion]:
-    """Tail and its derivative over alpha near a coincidence.
+def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
+    """Tail and its derivative over psi near a coincidence.
+
+    Parameters
+    ----------
+    curve : row of the curve table, of a curve that has a coincidence.
 
     Returns
     -------
     (whether the regular formulas apply, (ux, uy, u'x, u'y, r_ax R, r_ay R)), the last two only for an arc tail
     """
-    kind, middle, side = coincidence(a, b, d)
+    kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
+    alpha = psi + curve[SHIFT]
     gamma = from_coincidence(alpha, middle)
     radius = a[6] if a[0] != 0.0 else b[6]
     if not is_regular(kind, radius, d, gamma):
         return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
+    branch = curve[BRANCH]
     way = branch if gamma >= 0.0 else -branch
     half_angle = gamma / 2.0
     if kind == ARCS:
@@ -201,16 +219,14 @@ def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval,
 
 
 @compiled
-def motion_box(
-    a: Array, b: Array, d: float, low: float, high: float, branch: float
-) -> tuple[bool, MotionBox, MotionBox]:
+def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple[bool, MotionBox]:
     """Enclosures over alpha in [low, high] near a coincidence.
 
     Returns
     -------
-    (whether the regular formulas apply, (u, u', u''), (r_a R, its derivatives)), the last only for an arc tail
+    (whether the regular formulas apply, (u, u', u''))
     """
-    kind, middle, side = coincidence(a, b, d)
+    kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     center = from_coincidence((low + high) / 2.0, middle)
     reach = (high - low) / 2.0 * (1.0 + 1e-15) + 1e-16
     gamma = (center - reach, center + reach)
@@ -218,14 +234,14 @@ def motion_box(
     zero = (0.0, 0.0)
     nothing = (zero, zero, zero, zero, zero, zero)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
-        return (False, nothing, nothing)
-    way = branch if center >= 0.0 else -branch
+        return (False, nothing)
+    way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
     if kind == ARCS:
         r = arcs_box(a, b, d, middle, gamma, way)
-        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]), r)
+        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]))
     if kind == ARC_FIRST:
         r = line_box(b, radius, d, side, gamma, way)
-        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]), r)
+        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]))
     r = line_box(a, radius, d, side, gamma, way)
     alpha = ishift(middle, gamma)
     wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
@@ -237,4 +253,4 @@ def motion_box(
         iadd(r[4], wx),
         iadd(r[5], wy),
     )
-    return (True, u, r)
+    return (True, u)

@@ -1,35 +1,45 @@
 """Type I: two pegs on each jaw, found as crossings of the heights of two chords, modulo the row pitch.
 
-Work on half a turn of orientations and on unordered pairs of chords: turning the vise half way round swaps its jaws, so
-each fixture shows up once, with either chord on the left.
+Half a turn of orientations is enough: turning the vise half way round swaps its jaws, so each fixture shows up once, with
+the one chord or the other on the left.
+
+Before crossings are sought, three bounds of the pieces are compared, each by a few additions: the right chord must be
+able to stand the smallest gap to the right of the left one, both must be able to push against each other along x, and the
+difference of their heights must be able to be a whole number of pitches.
 """
 
 from __future__ import annotations
 
-from math import cos, floor, sin
+from math import ceil, cos, floor, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import HEIGHT
-from holdfast.kernels.chord_bounds import chord_tail
+from holdfast.kernels.chord_discs import chord_tail
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.crossing import MOST_ROOTS, MULTIPLE, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings
+from holdfast.kernels.crossing import MOST_ROOTS, MULTIPLE, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
+from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
+from holdfast.kernels.growing import grown
 from holdfast.kernels.pieces import (
-    BRANCH,
-    CENTER,
-    COLUMN_STEP,
+    ACROSS_LEAST,
+    ACROSS_MOST,
     CURVE,
-    HEAD,
     HIGH,
-    LENGTH,
     LOW,
-    ROW_STEP,
-    SHIFT,
-    TAIL,
-    grown,
+    PUSH_LEFT_LOW,
+    PUSH_RIGHT_LOW,
+    STEADY,
+    VALUE_LEAST,
+    VALUE_MOST,
+    X_LEFT,
+    X_RIGHT,
+    cell_pieces,
 )
 from holdfast.kernels.vise_checks import (
+    GAP_SLACK,
+    LEAST_CLAMPING,
+    MIN_GAP,
     PEG_LENGTH,
     RECORD_LENGTH,
     is_fixture,
@@ -41,10 +51,15 @@ from holdfast.kernels.vise_checks import (
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Columns of the statistics a cell returns: pairs of pieces, four contacts examined, those that may be inside their features,
-# and those kept as possible fixtures.
-PAIRS, CANDIDATES, CONTACTS, FOUND = range(4)
-STATISTICS = 4
+# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought, four contacts
+# examined, those that may be inside their features, and those kept as possible fixtures.
+PAIRS, CROSSED, CANDIDATES, CONTACTS, FOUND = range(5)
+STATISTICS = 5
+# Rounding of places along x in mm, generously counted.
+HAIR = 1e-6
+# Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that jaw.
+ROLE_X, ROLE_PUSH_LOW, ROLE_PUSH_HIGH, ROLE_VALUE_LEAST, ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(8)
+ROLE_LENGTH = 8
 
 
 @compiled
@@ -56,34 +71,99 @@ def place_chord(
     ``reach`` tells how far in radians psi may be off; the pegs' radii follow from it.
     """
     tail, head = integers[curve, TAIL], integers[curve, HEAD]
-    a, b = features[tail], features[head]
     d, alpha = reals[curve, LENGTH], psi + reals[curve, SHIFT]
-    x, y, radius = chord_tail(a, b, d, alpha, reals[curve, BRANCH], reach)
+    x, y, radius = chord_tail(features[tail], features[head], reals[curve], psi, reach)
     column, row = float(integers[curve, COLUMN_STEP]), float(integers[curve, ROW_STEP])
     place_peg(pegs[0], x, y, tail, 0.0, line, radius)
     place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
 
 
 @compiled
-def type_one_cell(
-    pieces: Array,
+def write_roles(pieces: Array, x_column: int, push_column: int, counting: bool, out: Array) -> int:
+    """Write the (N, 8) roles of the pieces that may be on one jaw; return their number."""
+    count = int(np.int64(0))
+    for k in range(pieces.shape[0]):
+        row = pieces[k]
+        if row[push_column] > row[push_column + 1] and not counting:
+            continue
+        role = out[count]
+        role[ROLE_X], role[ROLE_PUSH_LOW], role[ROLE_PUSH_HIGH] = row[x_column], row[push_column], row[push_column + 1]
+        role[ROLE_VALUE_LEAST], role[ROLE_VALUE_MOST] = row[VALUE_LEAST], row[VALUE_MOST]
+        role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
+        count += 1
+    return count
+
+
+@compiled
+def sort_roles(roles: Array, count: int, keys: Array, order: IntArray) -> None:
+    """Write the order of roles by their places along x, the rightmost first (Shell's sort)."""
+    for k in range(count):
+        keys[k], order[k] = roles[k, ROLE_X], k
+    step = 1
+    while step < count // 3:
+        step = 3 * step + 1
+    while step > 0:
+        for k in range(step, count):
+            key, item, at = keys[k], order[k], k
+            while at >= step and keys[at - step] < key:
+                keys[at], order[at] = keys[at - step], order[at - step]
+                at -= step
+            keys[at], order[at] = key, item
+        step //= 3
+
+
+@compiled
+def flat_slope(first: Array, second: Array) -> float:
+    """A slope of the difference of heights below which two pieces do not clamp hard enough anywhere.
+
+    The forces of each jaw's pegs act together along the line through the instant centres, so of a force of size 1 the part
+    x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
+    """
+    apart = max(first[ACROSS_LEAST] - second[ACROSS_MOST], second[ACROSS_LEAST] - first[ACROSS_MOST])
+    return 0.9 * LEAST_CLAMPING * max(apart, 0.0)
+
+
+@compiled
+def may_cross(left: Array, right: Array, row_offset: float, pitch_y: float, counting: bool) -> bool:
+    """Whether two roles far enough apart may make a fixture: their pushes and their heights allow it.
+
+    For ``counting`` it is asked only whether the four contacts may be simultaneous.
+    """
+    if not counting and (right[ROLE_PUSH_LOW] > left[ROLE_PUSH_HIGH] or right[ROLE_PUSH_HIGH] < left[ROLE_PUSH_LOW]):
+        return False
+    if right[ROLE_LOW] >= left[ROLE_HIGH] or left[ROLE_LOW] >= right[ROLE_HIGH]:
+        return False
+    lowest = right[ROLE_VALUE_LEAST] - left[ROLE_VALUE_MOST] - row_offset - HAIR
+    highest = right[ROLE_VALUE_MOST] - left[ROLE_VALUE_LEAST] - row_offset + HAIR
+    return ceil(lowest / pitch_y) * pitch_y <= highest
+
+
+@compiled
+def type_one_cells(
+    edges: Array,
+    members: IntArray,
     loose: Array,
     features: Array,
     integers: IntArray,
     reals: Array,
+    stretches: Array,
+    pitch_x: float,
     pitch_y: float,
     row_offset: float,
     limits: Array,
+    counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All Type I fixtures with psi in one cell, but those that rest on an upright chord.
+    """All Type I fixtures with psi in some neighbouring cells, but those that rest on an upright chord.
 
     Parameters
     ----------
-    pieces : (N, 13) pieces of one cell, of the curves' heights.
+    edges : (K + 1,) edges of K cells, psi in radians.
+    members : (M,) indices of the curves that exist in some of them, ascending.
     loose, features : (F, 8) rows of the features, with ends moved out by a hair (to search) and as they are (to check).
-    integers, reals : the curve table.
-    stats : (4,) counts to add to.
+    integers, reals, stretches : the curve table.
+    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only.
+    stats : (5,) counts to add to.
 
     Returns
     -------
@@ -93,51 +173,64 @@ def type_one_cell(
     count = int(np.int64(0))
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
-    # Which chord is on the left decides the sign of the row offset; where both signs mean the same rows, look once.
+    gap = limits[MIN_GAP] - GAP_SLACK - HAIR
+    # Where both signs of the row offset mean the same rows, a contact counts once, whichever chord is on the left.
     both_offsets = floor(2.0 * row_offset / pitch_y + 0.5)
-    twice = abs(both_offsets - 2.0 * row_offset / pitch_y) > 1e-12
-    for i in range(pieces.shape[0]):
-        one = int(pieces[i, CURVE])
-        for j in range(i):
-            two = int(pieces[j, CURVE])
-            if one == two or pieces[i, LOW] >= pieces[j, HIGH] or pieces[j, LOW] >= pieces[i, HIGH]:
-                continue
-            if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
-                continue
-            stats[PAIRS] += 1
-            for side in range(2):
-                if side == 1 and not twice:
+    once = abs(both_offsets - 2.0 * row_offset / pitch_y) <= 1e-12
+    for cell in range(edges.shape[0] - 1):
+        pieces = cell_pieces(edges[cell], edges[cell + 1], members, loose, integers, reals, stretches, pitch_x, HEIGHT)
+        lefts, rights = np.empty((pieces.shape[0], ROLE_LENGTH)), np.empty((pieces.shape[0], ROLE_LENGTH))
+        left_count = write_roles(pieces, X_LEFT, PUSH_LEFT_LOW, counting, lefts)
+        right_count = write_roles(pieces, X_RIGHT, PUSH_RIGHT_LOW, counting, rights)
+        keys, order = np.empty(right_count), np.empty(right_count, np.int64)
+        sort_roles(rights, right_count, keys, order)
+        sorted_rights = np.empty((right_count, ROLE_LENGTH))
+        for j in range(right_count):
+            for k in range(ROLE_LENGTH):
+                sorted_rights[j, k] = rights[order[j], k]
+        for i in range(left_count):
+            left = lefts[i]
+            first = pieces[int(left[ROLE_PIECE])]
+            one = int(first[CURVE])
+            for j in range(right_count):
+                right = sorted_rights[j]
+                if not counting and right[ROLE_X] - left[ROLE_X] < gap:
+                    break
+                stats[PAIRS] += 1
+                if not may_cross(left, right, row_offset, pitch_y, counting):
                     continue
-                offset = row_offset if side == 0 else -row_offset
-                number = crossings(pieces[i], pieces[j], loose, integers, reals, HEIGHT, offset, pitch_y, stack, roots)
+                second = pieces[int(right[ROLE_PIECE])]
+                two = int(second[CURVE])
+                if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
+                    continue
+                if counting and once and one > two:
+                    continue
+                steady = first[STEADY] * second[STEADY] == 1.0
+                if steady and not may_meet(first, second, row_offset, pitch_y):
+                    continue
+                stats[CROSSED] += 1
+                flat = 0.0 if counting else flat_slope(first, second)
+                number = crossings(
+                    first, second, loose, integers, reals, HEIGHT, row_offset, pitch_y, flat, stack, roots
+                )
                 if number < 0:
                     if count == out.shape[0]:
                         out = grown(out)
-                    write_given_up(out[count], 1.0, pieces[i], pieces[j], integers)
+                    write_given_up(out[count], 1.0, first, second, integers)
                     count += 1
                 for root in range(number):
-                    psi, reach, multiple = roots[root, PSI], roots[root, RADIUS], roots[root, MULTIPLE]
-                    contact = 0
-                    for order in range(2):
-                        # Without a second pass either order may be on the left; with it, each pass is for one order.
-                        if twice and order != side:
-                            continue
-                        # The height of chord two over chord one is offset + multiple pitches.
-                        left, right, line = one, two, multiple
-                        if order == 1:
-                            left, right = two, one
-                            line = -multiple if side == 1 else -multiple - both_offsets
-                        place_chord(pegs[:2], left, psi, reach, 0.0, features, integers, reals)
-                        place_chord(pegs[2:], right, psi, reach, line, features, integers, reals)
-                        verdict, apart = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
-                        contact = max(contact, verdict)
-                        stats[CANDIDATES] += 1
-                        if verdict == 2:
-                            if count == out.shape[0]:
-                                out = grown(out)
-                            write_record(out[count], 1.0, pegs, psi, apart, reach)
-                            count += 1
-                            stats[FOUND] += 1
-                    if contact > 0:
+                    psi, reach = roots[root, PSI], roots[root, RADIUS]
+                    # The height of the right chord over the left one is the row offset and so many pitches.
+                    place_chord(pegs[:2], one, psi, reach, 0.0, features, integers, reals)
+                    place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], features, integers, reals)
+                    verdict, apart = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
+                    stats[CANDIDATES] += 1
+                    if verdict > 0:
                         stats[CONTACTS] += 1
+                    if verdict == 2 and not counting:
+                        if count == out.shape[0]:
+                            out = grown(out)
+                        write_record(out[count], 1.0, pegs, psi, apart, reach)
+                        count += 1
+                        stats[FOUND] += 1
     return out[:count]

@@ -13,26 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import POSITION
+from holdfast.kernels.closure import outward_normal
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings
-from holdfast.kernels.pieces import (
-    CENTER,
-    COLUMN_STEP,
-    CURVE,
-    HEAD,
-    HIGH,
-    LENGTH,
-    LOW,
-    ROW_STEP,
-    SHIFT,
-    TAIL,
-    grown,
-)
-from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, PAIRS, place_chord
+from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
+from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
+from holdfast.kernels.growing import grown
+from holdfast.kernels.pieces import CURVE, HIGH, LOW, STEADY, VALUE_LEAST, VALUE_MOST, X_LEFT, cell_pieces
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, FOUND, HAIR, PAIRS, place_chord
 from holdfast.kernels.vise_checks import (
+    GAP_SLACK,
     LEAST_CLAMPING,
+    MIN_GAP,
     PEG_LENGTH,
     RECORD_LENGTH,
+    ROUNDING,
     WRENCH_LENGTH,
     is_fixture,
     place_peg,
@@ -101,6 +95,73 @@ def row_meets(
 
 
 @compiled
+def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length: float) -> None:
+    """Write what right pegs need of three left pegs in place to (5, 3) rows.
+
+    With w_i = (n_i, t_i) the wrenches of the left pegs and D their determinant, rows 0 to 2 hold the cross products of two
+    of them, cyclically, with the sign of D; the null vector's entries of the left pegs for a right peg of wrench w, over
+    that of the right peg, are minus the scalar products of those rows with w, over abs(D). Row 3 holds the place along x of
+    the rightmost left peg, the largest radius of the pegs, and the largest turn of a normal by that, in radians; row 4 holds
+    abs(D).
+    """
+    wrenches = triple[:3]
+    first = np.empty((3, 3))
+    rightmost = -np.inf
+    radius = swing = 0.0
+    for k in range(3):
+        x, y = pegs[k, 0], pegs[k, 1]
+        row = features[int(pegs[k, 2])]
+        nx, ny = outward_normal(row, x, y)
+        first[k, 0], first[k, 1], first[k, 2] = nx, ny, (x * ny - y * nx) / length
+        rightmost = max(rightmost, cos(psi) * x + sin(psi) * y)
+        radius = max(radius, pegs[k, 5])
+        if row[0] != 0.0:
+            swing = max(swing, pegs[k, 5] / row[6])
+    for k in range(3):
+        one, two = first[(k + 1) % 3], first[(k + 2) % 3]
+        wrenches[k, 0] = one[1] * two[2] - one[2] * two[1]
+        wrenches[k, 1] = one[2] * two[0] - one[0] * two[2]
+        wrenches[k, 2] = one[0] * two[1] - one[1] * two[0]
+    determinant = wrenches[0, 0] * first[0, 0] + wrenches[0, 1] * first[0, 1] + wrenches[0, 2] * first[0, 2]
+    if determinant < 0.0:
+        for k in range(3):
+            for n in range(3):
+                wrenches[k, n] = -wrenches[k, n]
+    triple[3, 0], triple[3, 1], triple[3, 2] = rightmost, radius, swing
+    triple[4, 0] = abs(determinant)
+
+
+@compiled
+def may_close(
+    triple: Array, row: Array, x: float, y: float, radius: float, cx: float, cy: float, gap: float, limits: Array
+) -> bool:
+    """Whether a right peg may make a fixture with three left pegs: a quick look before ``is_fixture``.
+
+    Parameters
+    ----------
+    triple : (5, 3) rows of ``write_triple``.
+    row, x, y, radius : the right peg's feature and place.
+    cx, cy : cosine and sine of psi.
+    gap : smallest gap in mm, less the doubt of orientation.
+    """
+    length = limits[WRENCH_LENGTH]
+    doubt = max(triple[3, 1], radius)
+    if cx * x + cy * y - triple[3, 0] < gap - 2.0 * doubt:
+        return False
+    nx, ny = outward_normal(row, x, y)
+    swing = max(triple[3, 2], 0.0 if row[0] == 0.0 else radius / row[6])
+    t = (x * ny - y * nx) / length
+    # As in ``is_fixture``: how far a minor may be off.
+    band = 20.0 * swing + 4.0 * doubt / length + ROUNDING
+    if triple[4, 0] <= band:
+        return True
+    largest = -np.inf
+    for k in range(3):
+        largest = max(largest, triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
+    return largest <= band
+
+
+@compiled
 def add_right_pegs(
     out: Array,
     count: int,
@@ -111,32 +172,41 @@ def add_right_pegs(
     pitch_y: float,
     row_offset: float,
     limits: Array,
+    counting: bool,
     work: Array,
     null: Array,
     stats: IntArray,
 ) -> tuple[Array, int]:
     """Try every right peg for three left pegs in place; append the fixtures to ``out`` (grown as needed)."""
-    ax, ay = -sin(psi), cos(psi)
-    base = ax * pegs[0, 0] + ay * pegs[0, 1] + row_offset
+    cx, cy = cos(psi), sin(psi)
+    base = cx * pegs[0, 1] - cy * pegs[0, 0] + row_offset
     # Points of the part are at most 2 L apart.
     error = pegs[0, 5] + 4.0 * limits[WRENCH_LENGTH] * reach
     slack = 1e-9 + error / pitch_y
+    gap = limits[MIN_GAP] - GAP_SLACK - HAIR - 4.0 * limits[WRENCH_LENGTH] * reach
+    triple = np.empty((5, 3))
+    write_triple(triple, pegs, psi, features, limits[WRENCH_LENGTH])
     for e in range(features.shape[0]):
         row = features[e]
-        lowest, highest = height_range(row, ax, ay)
+        # A straight feature that faces left cannot be pushed to the left.
+        if row[0] == 0.0 and not counting and row[4] * cx - row[3] * cy < -HAIR - reach:
+            continue
+        lowest, highest = height_range(row, -cy, cx)
         first = int(ceil((lowest - base) / pitch_y - slack))
         last = int(floor((highest - base) / pitch_y + slack))
         for line in range(first, last + 1):
             for k in range(2):
-                meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
+                meets, x, y, radius = row_meets(row, -cy, cx, base + line * pitch_y, error, 1.0 - 2.0 * k)
                 if not meets:
+                    continue
+                if not counting and not may_close(triple, row, x, y, radius, cx, cy, gap, limits):
                     continue
                 place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
                 verdict, apart = is_fixture(pegs, 3.0, psi, reach, features, limits, work, null)
                 stats[CANDIDATES] += 1
                 if verdict > 0:
                     stats[CONTACTS] += 1
-                if verdict == 2:
+                if verdict == 2 and not counting:
                     if count == out.shape[0]:
                         out = grown(out)
                     write_record(out[count], 2.0, pegs, psi, apart, reach)
@@ -146,53 +216,88 @@ def add_right_pegs(
 
 
 @compiled
-def type_two_cell(
-    pieces: Array,
+def farthest_right(features: Array, low: float, high: float) -> float:
+    """How far right in mm along x a peg that touches the part may stand, for psi in [low, high] (arcs as whole circles)."""
+    psi, half = (low + high) / 2.0, (high - low) / 2.0
+    most = -np.inf
+    for k in range(features.shape[0]):
+        _, highest = height_range(features[k], cos(psi), sin(psi))
+        size = abs(features[k, 1]) + abs(features[k, 2]) + features[k, 5] + features[k, 6]
+        most = max(most, highest + size * half)
+    return most
+
+
+@compiled
+def type_two_cells(
+    edges: Array,
+    members: IntArray,
     loose: Array,
     features: Array,
     integers: IntArray,
     reals: Array,
+    stretches: Array,
+    pitch_x: float,
     pitch_y: float,
     row_offset: float,
     limits: Array,
+    counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All Type II fixtures with psi in one cell whose left chords from the shared tail are not uprights.
+    """All Type II fixtures with psi in some neighbouring cells whose left chords from the shared tail are not uprights.
 
-    Parameters and result as for ``type_one_cell``. The shared tail is on the feature of the lowest number, so that each
-    triple of pegs shows up once; the pieces, of the tails' positions, are sorted by it.
+    Parameters and result as for ``type_one_cells``. The shared tail is on the feature of the lowest number, so that each
+    triple of pegs shows up once; the curves, and so the pieces, are in the order of their tails.
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
-    for i in range(pieces.shape[0]):
-        one = int(pieces[i, CURVE])
-        tail = integers[one, TAIL]
-        # A tail on a whole circle may be counted from either side of the seam.
-        circle = loose[tail, 0] != 0.0 and loose[tail, 5] >= pi
-        period = 2.0 * pi if circle else 0.0
-        for j in range(i - 1, -1, -1):
-            two = int(pieces[j, CURVE])
-            if integers[two, TAIL] != tail:
-                break
-            if pieces[i, LOW] >= pieces[j, HIGH] or pieces[j, LOW] >= pieces[i, HIGH]:
+    for cell in range(edges.shape[0] - 1):
+        pieces = cell_pieces(
+            edges[cell], edges[cell + 1], members, loose, integers, reals, stretches, pitch_x, POSITION
+        )
+        farthest = farthest_right(loose, edges[cell], edges[cell + 1]) - limits[MIN_GAP] + GAP_SLACK + HAIR
+        for i in range(pieces.shape[0]):
+            first = pieces[i]
+            one = int(first[CURVE])
+            tail = integers[one, TAIL]
+            if first[X_LEFT] > farthest and not counting:
                 continue
-            if not share_a_jaw(integers[one], integers[two], limits):
-                continue
-            if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
-                continue
-            stats[PAIRS] += 1
-            number = crossings(pieces[i], pieces[j], loose, integers, reals, POSITION, 0.0, period, stack, roots)
-            if number < 0:
-                if count == out.shape[0]:
-                    out = grown(out)
-                write_given_up(out[count], 2.0, pieces[i], pieces[j], integers)
-                count += 1
-            for root in range(number):
-                psi, reach = roots[root, PSI], roots[root, RADIUS]
-                place_triple(pegs, one, two, psi, reach, features, integers, reals)
-                out, count = add_right_pegs(
-                    out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, work, null, stats
-                )
+            # A tail on a whole circle may be counted from either side of the seam.
+            circle = loose[tail, 0] != 0.0 and loose[tail, 5] >= pi
+            period = 2.0 * pi if circle else 0.0
+            for j in range(i - 1, -1, -1):
+                second = pieces[j]
+                two = int(second[CURVE])
+                if integers[two, TAIL] != tail:
+                    break
+                stats[PAIRS] += 1
+                if first[LOW] >= second[HIGH] or second[LOW] >= first[HIGH]:
+                    continue
+                if not circle and (
+                    first[VALUE_LEAST] > second[VALUE_MOST] + HAIR or second[VALUE_LEAST] > first[VALUE_MOST] + HAIR
+                ):
+                    continue
+                if second[X_LEFT] > farthest and not counting:
+                    continue
+                if not share_a_jaw(integers[one], integers[two], limits):
+                    continue
+                if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
+                    continue
+                steady = first[STEADY] * second[STEADY] == 1.0 and not circle
+                if steady and not may_meet(first, second, 0.0, 0.0):
+                    continue
+                stats[CROSSED] += 1
+                number = crossings(first, second, loose, integers, reals, POSITION, 0.0, period, 0.0, stack, roots)
+                if number < 0:
+                    if count == out.shape[0]:
+                        out = grown(out)
+                    write_given_up(out[count], 2.0, first, second, integers)
+                    count += 1
+                for root in range(number):
+                    psi, reach = roots[root, PSI], roots[root, RADIUS]
+                    place_triple(pegs, one, two, psi, reach, features, integers, reals)
+                    out, count = add_right_pegs(
+                        out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, counting, work, null, stats
+                    )
     return out[:count]

@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import blur, parameter_on
 from holdfast.kernels.chord_intervals import PARALLEL
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.pieces import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, grown
-from holdfast.kernels.pieces import FROM as CURVE_FROM
-from holdfast.kernels.pieces import TO as CURVE_TO
+from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL
+from holdfast.kernels.curve_columns import FROM as CURVE_FROM
+from holdfast.kernels.curve_columns import TO as CURVE_TO
+from holdfast.kernels.growing import grown
 from holdfast.kernels.through_motion import are_one_chord_apart, shares_a_line
 from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, place_chord
 from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
@@ -118,16 +119,6 @@ def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tu
 
 
 @compiled
-def shares_its_line(curve: int, psi: float, features: Array, integers: IntArray, reals: Array) -> bool:
-    """Whether the contacts of a curve's chord share one line of action at an orientation.
-
-    Their wrenches then agree up to sign, and the minors of the upright's contacts vanish: nothing closes.
-    """
-    a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
-    return shares_a_line(a, b, reals[curve, LENGTH], psi + reals[curve, SHIFT])
-
-
-@compiled
 def upright_reach(a: Array, b: Array, upright: Array) -> float:
     """How far in radians the orientation of an upright may be off.
 
@@ -191,6 +182,7 @@ def upright_type_one(
     pitch_y: float,
     row_offset: float,
     limits: Array,
+    counting: bool,
     stats: IntArray,
 ) -> Array:
     """All Type I fixtures that rest on one of the ``chosen`` uprights and on a curve of ``members``.
@@ -208,7 +200,7 @@ def upright_type_one(
         lowest, highest = height_range(row, ax, ay)
         for curve in members:
             exists, inside = orientation_inside(curve, psi, reach, reals)
-            if not exists or shares_its_line(curve, inside, loose, integers, reals):
+            if not exists or shares_a_line(reals[curve], inside):
                 continue
             place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
             height = ax * pegs[0, 0] + ay * pegs[0, 1]
@@ -237,7 +229,7 @@ def upright_type_one(
                         stats[CANDIDATES] += 1
                         if verdict > 0 and order == 0:
                             stats[CONTACTS] += 1
-                        if verdict == 2:
+                        if verdict == 2 and not counting:
                             if count == out.shape[0]:
                                 out = grown(out)
                             write_record(out[count], 1.0, pegs, psi, apart, reach)
@@ -259,6 +251,7 @@ def upright_type_two(
     pitch_y: float,
     row_offset: float,
     limits: Array,
+    counting: bool,
     stats: IntArray,
 ) -> Array:
     """All Type II fixtures two of whose left pegs form one of the ``chosen`` uprights from the shared tail.
@@ -278,7 +271,7 @@ def upright_type_two(
             exists, inside = orientation_inside(curve, psi, reach, reals)
             if not exists or not share_a_jaw(whole[u], integers[curve], limits):
                 continue
-            if shares_its_line(curve, inside, loose, integers, reals):
+            if shares_a_line(reals[curve], inside):
                 continue
             place_triple(pegs, curve, curve, inside, 2.0 * reach + INSIDE, features, integers, reals)
             x, y, radius = pegs[0, 0], pegs[0, 1], pegs[0, 5]
@@ -286,6 +279,6 @@ def upright_type_two(
                 continue
             place_upright(pegs[:2], x, y, 0.0, whole[u], upright, radius, reach)
             out, count = add_right_pegs(
-                out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, work, null, stats
+                out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, counting, work, null, stats
             )
     return out[:count]

@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import parameter_on
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.compiling import compiled
-from holdfast.kernels.pieces import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
+from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL
+from holdfast.kernels.pieces import CURVE, HIGH, LOW
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from functools import partial
-from itertools import pairwise
 from math import hypot, pi, tau
 
 import numpy as np
@@ -17,10 +16,8 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from holdfast.contact.curves import CurveTable, LatticeSteps
-from holdfast.kernels.chord import HEIGHT, POSITION
-from holdfast.kernels.pieces import cell_pieces
-from holdfast.kernels.type_one import STATISTICS, type_one_cell
-from holdfast.kernels.type_two import type_two_cell
+from holdfast.kernels.type_one import STATISTICS, type_one_cells
+from holdfast.kernels.type_two import type_two_cells
 from holdfast.kernels.uprights import upright_type_one, upright_type_two
 from holdfast.model.vise import Vise
 from holdfast.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
@@ -30,8 +27,7 @@ __all__ = ["ViseSearch", "lattice_steps"]
 Array = NDArray[np.float64]
 
 CELLS_PER_HALF_TURN = 96
-# A piece may vary its slope by this part of the part's size; only speed depends on it.
-FLATNESS = 0.04
+CELLS_PER_BLOCK = 6
 
 
 def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
@@ -63,7 +59,8 @@ class ViseSearch:
     table : chord curves and uprights between the loose features.
     contact_margin : in mm.
     wrench_length : L in mm.
-    stats : (cells, 4) statistics the kernels add to, one row for each block so that threads never share one.
+    counting : count all simultaneous contacts instead of looking for fixtures only.
+    stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
     vise: Vise
@@ -72,6 +69,7 @@ class ViseSearch:
     table: CurveTable
     contact_margin: float
     wrench_length: float
+    counting: bool = False
     stats: list[NDArray[np.int64]] = field(factory=list)
 
     @property
@@ -86,9 +84,11 @@ class ViseSearch:
             if name not in types:
                 continue
             edges = cell_edges(half_turns, half_turns * CELLS_PER_HALF_TURN)
-            upright_cells = self.upright_cells(half_turns, edges)
-            for cell, (low, high) in enumerate(pairwise(edges)):
-                blocks += self.cell_blocks(name, float(low), float(high), upright_cells[cell])
+            for first in range(0, len(edges) - 1, CELLS_PER_BLOCK):
+                blocks.append(self.crossing_block(name, edges[first : first + CELLS_PER_BLOCK + 1]))
+            for cell, uprights in enumerate(self.upright_cells(half_turns, edges)):
+                if len(uprights):
+                    blocks.append(self.upright_block(name, float(edges[cell]), float(edges[cell + 1]), uprights))
         return blocks
 
     def upright_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
@@ -100,47 +100,40 @@ class ViseSearch:
         cells[psi >= FIRST_ORIENTATION + half_turns * pi] = -1
         return [np.flatnonzero(cells == cell) for cell in range(len(edges) - 1)]
 
-    def cell_blocks(self, name: str, low: float, high: float, uprights: NDArray[np.int64]) -> list[Block]:
-        """The work of one cell: its crossings, and its uprights if it has any."""
+    def crossing_block(self, name: str, edges: Array) -> Block:
+        """The crossings of some neighbouring cells."""
+        kernel = type_one_cells if name == "I" else type_two_cells
+        members = members_of_cell(self.table, float(edges[0]), float(edges[-1]))
+        return Block(partial(self.cross, kernel, edges, members, self.tally()), 1.0)
+
+    def upright_block(self, name: str, low: float, high: float, uprights: NDArray[np.int64]) -> Block:
+        """The uprights of one cell."""
+        kernel = upright_type_one if name == "I" else upright_type_two
         members = members_of_cell(self.table, low, high)
-        blocks = []
-        if len(members) > 1:
-            stats = np.zeros(STATISTICS, np.int64)
-            self.stats.append(stats)
-            kernel = type_one_cell if name == "I" else type_two_cell
-            mode = HEIGHT if name == "I" else POSITION
-            work = partial(self.cross, kernel, mode, low, high, members, stats)
-            blocks.append(Block(work, 1.0 + (1.0 if name == "I" else 0.2) * len(members) ** 2))
-        if len(members) and len(uprights):
-            stats = np.zeros(STATISTICS, np.int64)
-            self.stats.append(stats)
-            upright_kernel = upright_type_one if name == "I" else upright_type_two
-            work = partial(self.meet_uprights, upright_kernel, uprights, members, stats)
-            blocks.append(Block(work, 1.0 + len(members) * len(uprights)))
-        return blocks
+        return Block(partial(self.meet_uprights, kernel, uprights, members, self.tally()), 0.1)
+
+    def tally(self) -> NDArray[np.int64]:
+        """A new row of statistics for a kernel to add to."""
+        self.stats.append(np.zeros(STATISTICS, np.int64))
+        return self.stats[-1]
 
     def cross(
-        self,
-        kernel: Callable[..., Array],
-        mode: float,
-        low: float,
-        high: float,
-        members: NDArray[np.int64],
-        stats: NDArray[np.int64],
+        self, kernel: Callable[..., Array], edges: Array, members: NDArray[np.int64], stats: NDArray[np.int64]
     ) -> Array:
-        """Run a kernel of crossings on one cell."""
-        flatness = FLATNESS * self.wrench_length
-        integers, reals = self.table.integers, self.table.reals
-        pieces = cell_pieces(low, high, members, self.loose, integers, reals, mode, flatness)
+        """Run a kernel of crossings on some cells."""
         return kernel(
-            pieces,
+            edges,
+            members,
             self.loose,
             self.features,
-            integers,
-            reals,
+            self.table.integers,
+            self.table.reals,
+            self.table.stretches,
+            self.vise.pitch[0],
             self.vise.pitch[1],
             self.vise.row_offset,
             self.limits,
+            self.counting,
             stats,
         )
 
@@ -164,5 +157,6 @@ class ViseSearch:
             self.vise.pitch[1],
             self.vise.row_offset,
             self.limits,
+            self.counting,
             stats,
         )
