@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from designs import ROWS, Design, counted, loaded, timed
+from designs import LARGE, Design, larger_rows, loaded, timed
 from report import Column, Section, measured, run_alone
 
 MOST_TIMES = 5.0
-LARGE = 40_000
 STORED = 4096
 REPEATS = 5
 
@@ -91,9 +90,8 @@ def floor(design: Design, tests: int) -> dict[str, Any]:
 def run(quick: bool) -> Section:
     """Measure the floor and the search of the larger rows of Table 1."""
     section = Section("floor", "The search beside its floor of closure tests, one thread", COLUMNS).begin()
-    rows = [(row.design, counted(row.design)) for row in ROWS if row.design.columns > 1]
     ratios = []
-    for design, contacts in [row for row in rows if row[1] > LARGE][: 1 if quick else None]:
+    for design, contacts in larger_rows(quick):
         lowest, ours = floor(design, contacts), timed(design)
         ratios.append(ours["seconds"] / lowest["seconds"])
         section.row(

@@ -55,7 +55,7 @@ class Large:
         return SIZE / self.pitches
 
 
-FULL, QUICK = Large(100, 40, 40, 100), Large(20, 4, 10, 20)
+FULL, QUICK = Large(100, 40, 40, 100), Large(40, 10, 20, 20)
 
 
 def ragged_part(faces: int) -> list[tuple[float, float, float]]:

@@ -6,6 +6,7 @@ between is replaced. NAME is a section of the figures, or ``machine``, ``targets
 
 from __future__ import annotations
 
+import argparse
 import re
 import sys
 from typing import Any
@@ -21,18 +22,22 @@ PLACE = re.compile(r"(<!-- figures: (\S+) -->\n).*?(<!-- end of figures -->)", f
 
 
 def write_page() -> None:
-    """Fill every place of the page for which there are figures, and draw the plot."""
+    """Draw the plot, and fill every place of the page for which there are figures."""
     figures = kept_figures()
-    sections = figures["sections"]
+    if {"table-one", "growth"} <= figures["sections"].keys():
+        rows, growing = (figures["sections"][name]["data"] for name in ("table-one", "growth"))
+        PLOT.write_text(drawn(rows["points"], growing["points"], growing["part"]), encoding="utf-8")
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), figures), encoding="utf-8")
 
-    def filled(place: re.Match[str]) -> str:
-        content = content_of(place[2], figures)
-        return place[0] if content is None else f"{place[1]}\n{content}\n{place[3]}"
 
-    if {"table-one", "growth"} <= sections.keys():
-        rows, growing = sections["table-one"]["data"]["points"], sections["growth"]["data"]
-        PLOT.write_text(drawn(rows, growing["points"], growing["part"]), encoding="utf-8")
-    PAGE.write_text(PLACE.sub(filled, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+def filled(page: str, figures: dict[str, Any]) -> str:
+    """The page with the figures in their places."""
+
+    def place(found: re.Match[str]) -> str:
+        content = content_of(found[2], figures)
+        return found[0] if content is None else f"{found[1]}\n{content}\n{found[3]}"
+
+    return PLACE.sub(place, page)
 
 
 def content_of(name: str, figures: dict[str, Any]) -> str | None:
@@ -82,6 +87,16 @@ def table_line(cells: list[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Run as a script."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if the page has other figures")
+    if parser.parse_args().check:
+        page = PAGE.read_text(encoding="utf-8")
+        sys.exit(0 if filled(page, kept_figures()) == page else 1)
     write_page()
-    sys.stdout.write(f"{PAGE.relative_to(ROOT)} and {PLOT.relative_to(ROOT)} are written.\n")
+    sys.stdout.write(f"{PAGE.relative_to(ROOT)} is written.\n")
+
+
+if __name__ == "__main__":
+    main()
