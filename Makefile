@@ -27,9 +27,9 @@ check: $(INSTALLED_DEV)
 	$(BIN)/lint-imports
 	$(MAKE) test
 
-# The twelve rows of the paper's Table 1, ours beside theirs.
+# Every target of speed and memory with pass or short, and docs/benchmarks.md from the figures; BENCH=--quick tries a little.
 bench: $(INSTALLED)
-	$(BIN)/python benchmarks/table_one.py --unproven
+	$(BIN)/python benchmarks/bench.py $(BENCH)
 
 # Thousands of planted fixtures, the paper's Table 2, then both engines on the complete sets, the paper's parts and random
 # parts.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import re
+import subprocess
+import sys
 from contextlib import redirect_stdout
 from pathlib import Path
 
@@ -30,6 +32,19 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
         if not target.startswith("http"):
             assert (page.parent / target).exists(), target
+
+
+def test_the_benchmarks_page_shows_the_figures_kept() -> None:
+    """What the page says between its words is what the last bench kept."""
+    subprocess.run([sys.executable, ROOT / "benchmarks" / "page.py", "--check"], check=True)
+
+
+def test_every_benchmark_has_a_place_on_the_page() -> None:
+    """The page has one place for each section a benchmark keeps, and no other."""
+    scripts = (ROOT / "benchmarks").glob("*.py")
+    sections = {name for path in scripts for name in re.findall(r'Section\(\s*"([a-z-]+)"', path.read_text())}
+    places = re.findall(r"<!-- figures: (\S+) -->", (ROOT / "docs" / "benchmarks.md").read_text())
+    assert sorted(places) == sorted(sections | {"machine", "plot", "targets"})
 
 
 def test_modules_named_in_the_documentation_exist() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from fakes import fake_proof, fake_result
 from holdfast.errors import InputError
-from holdfast.files.result_file import read_result
+from holdfast.files.result_reader import read_result
 
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 

@@ -155,13 +155,39 @@ def test_control_letters_in_a_name_do_not_reach_the_terminal(process: Any) -> No
     assert outcome.stderr.count("\n") == 1
 
 
-def test_the_help_needs_nothing_heavy() -> None:
-    program = (
-        "import sys, holdfast.cli.main; "
-        "print([m for m in ('numpy', 'numba', 'ezdxf', 'pydantic', 'svgelements', 'resvg_py') if m in sys.modules])"
-    )
-    outcome = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert outcome.stdout == "[]\n"
+# Modules that take longer to load than a small command takes; the first of each tuple stands for all it brings along.
+NUMBERS = ("numpy", "numba")
+OTHERS = ("ezdxf", "flint", "pydantic", "resvg_py", "rich", "scipy", "svgelements")
+
+
+def loaded(program: str, folder: Path) -> list[str]:
+    """The heavy modules that a program has loaded when it ends."""
+    program = f"""
+import atexit, sys
+atexit.register(lambda: sys.stderr.write(" ".join(m for m in {NUMBERS + OTHERS} if m in sys.modules)))
+{program}
+"""
+    outcome = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=folder, check=True)
+    return outcome.stderr.split()
+
+
+COMMAND = "from holdfast.cli.main import run; sys.argv[1:] = {!r}; run()"
+
+
+@pytest.mark.parametrize(
+    "program",
+    ["import holdfast", "import holdfast.cli.main", COMMAND.format(["--help"]), COMMAND.format(["design", "--help"])],
+)
+def test_neither_the_package_nor_the_help_needs_anything_heavy(program: str, tmp_path: Path) -> None:
+    assert loaded(program, tmp_path) == []
+
+
+def test_a_design_of_a_built_in_part_reads_and_writes_with_what_the_search_needs(tmp_path: Path) -> None:
+    """No reader of drawings, no checker of foreign files and no typesetter is loaded, though a file is written."""
+    program = PROGRAM.format(tests=str(TESTS), behaviour="return fake_result(3)")
+    words = ["design", "widget", *VISE, "--out", "r.json"]
+    assert loaded(f"sys.argv[1:] = {words!r}\n{program}", tmp_path) == list(NUMBERS)
+    assert (tmp_path / "r.json").exists()
 
 
 def test_a_real_design_from_the_first_command_to_the_picture(process: Any, tmp_path: Path) -> None:

@@ -19,7 +19,8 @@ from fakes import fake_proof, fake_result
 from holdfast import Vise, design, load
 from holdfast.errors import InputError
 from holdfast.files import result_file
-from holdfast.files.result_file import read_result, write_result, write_result_to
+from holdfast.files.result_file import write_result, write_result_to
+from holdfast.files.result_reader import read_result
 from holdfast.model.proof import Undecided
 from holdfast.model.result import FixtureTable
 

@@ -122,7 +122,7 @@ def design(
         ),
     ] = None,
     draw: Annotated[
-        Path | None,
+        str | None,
         typer.Option(
             metavar="DIR",
             help="Draw the best twelve and a sheet of thumbnails into this folder.",
@@ -142,7 +142,7 @@ def design(
     Four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type II).
     All lengths are in millimetres.
 
-    Example: [cyan]holdfast design part.dxf --pitch 10 --columns 2 --peg-radius 3 --out part.json[/cyan]
+    Example: holdfast design part.dxf --pitch 10 --columns 2 --peg-radius 3 --out part.json
     """
     # Everything cheap is checked before anything is read, and everything is checked before the search.
     pitch_x, pitch_y = pitches(pitch)
@@ -158,7 +158,8 @@ def design(
     column_count, listed = whole_number("--columns", columns), whole_number("--list", list_)
     row_count = None if rows is None else whole_number("--rows", rows)
     form = output_format(out, format_)
-    refuse_outputs(out, draw)
+    folder = None if draw is None else Path(draw)
+    refuse_outputs(out, folder)
 
     from holdfast.kernels.compiling import is_first_run
     from holdfast.model.vise import Vise
@@ -181,8 +182,8 @@ def design(
     report(result, spent, out, form, listed)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
-    if draw is not None:
-        draw_pictures(result, draw, out)
+    if folder is not None:
+        draw_pictures(result, folder, out)
 
 
 def search_of(engine: str, threads: int | None) -> Callable[..., Result]:
@@ -231,14 +232,18 @@ def output_format(out: str | None, asked: str | None) -> str:
 
 def write_output(result: Result, out: str, form: str) -> None:
     """Write the result to a file or to the terminal."""
-    from holdfast.files.result_csv import write_result_csv, write_result_csv_to
-    from holdfast.files.result_file import write_result, write_result_to
+    if form == "csv":
+        from holdfast.files.result_csv import write_result_csv as write
+        from holdfast.files.result_csv import write_result_csv_to as write_to
+    else:
+        from holdfast.files.result_file import write_result as write
+        from holdfast.files.result_file import write_result_to as write_to
 
     if out == STANDARD_OUTPUT:
-        (write_result_csv_to if form == "csv" else write_result_to)(result, sys.stdout)
+        write_to(result, sys.stdout)
         sys.stdout.flush()
     else:
-        (write_result_csv if form == "csv" else write_result)(result, out)
+        write(result, out)
 
 
 def report(result: Result, spent: str, out: str | None, form: str, listed: int) -> None:

@@ -24,7 +24,7 @@ __all__ = ["features"]
 def features(
     part: PartArgument,
     draw: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
+        str | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
     ] = None,
     peg_radius: Annotated[
         str | None, typer.Option(metavar="MM", help="Draw also where the centres of pegs of this radius can be.")
@@ -36,17 +36,18 @@ def features(
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
-    Example: [cyan]holdfast features part.dxf --draw faces.svg[/cyan]
+    Example: holdfast features part.dxf --draw faces.svg
     """
     from holdfast.files.atomic import refuse_unwritable, write_bytes
 
     radius = optional_length("--peg-radius", peg_radius)
     if radius is not None and radius < 0:
         raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more, in mm.")
+    picture = None if draw is None else Path(draw)
     ending = None
-    if draw is not None:
-        ending = picture_ending(draw)
-        refuse_unwritable(draw)
+    if picture is not None:
+        ending = picture_ending(picture)
+        refuse_unwritable(picture)
     workpiece = load_part(part, unit, layer, part_number, join_tolerance).workpiece
 
     from holdfast.cli.tables import face_table, plural, print_tables
@@ -54,9 +55,9 @@ def features(
     x0, y0, x1, y1 = workpiece.bounds
     faces = plural(len(workpiece.faces), "face")
     print_tables(f"{workpiece.name}: {x1 - x0:.3f} x {y1 - y0:.3f} mm, {faces}", face_table(workpiece))
-    if draw is not None and ending is not None:
+    if picture is not None and ending is not None:
         from holdfast.drawing.features_picture import draw_features
         from holdfast.drawing.render import render
 
-        write_bytes(draw, render(draw_features(workpiece, peg_radius=radius), ending))
-        print_tables(f"Drawn in {draw}.")
+        write_bytes(picture, render(draw_features(workpiece, peg_radius=radius), ending))
+        print_tables(f"Drawn in {picture}.")

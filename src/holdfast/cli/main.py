@@ -10,17 +10,15 @@ import errno
 import os
 import signal
 import sys
-import tempfile
-import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from types import FrameType
 from typing import Annotated, Any, NoReturn
 
 import typer
-from typer.core import TyperGroup
 
 from holdfast import __version__
+from holdfast.cli.commands import PlainCommand, PlainGroup
 from holdfast.cli.design_command import design
 from holdfast.cli.features_command import features
 from holdfast.cli.parts_command import parts
@@ -35,23 +33,22 @@ DONE, FAULT, BAD_INPUT, INTERRUPTED, TERMINATED, NO_READER = 0, 1, 2, 130, 143, 
 # Typer has no public name for the base of its complaints about the command line itself.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
-EXAMPLES = """
-[bold]Examples[/bold]
+EXAMPLES = f"""
+{typer.style("Examples:", bold=True)}
+  holdfast design part.dxf --pitch 10 --columns 2 --peg-radius 3 --out part.json
+      every way to hold the part between two jaws with two columns of holes
+      each, 10 mm apart, and pegs of 6 mm diameter
+  holdfast show part.json 1 --draw setup.png
+      how to set up the best of them, with a picture for the wall
+  holdfast features part.dxf --draw faces.svg
+      the numbers of the part's faces, to talk about them
 
-[cyan]holdfast design part.dxf --pitch 10 --columns 2 --peg-radius 3 --out part.json[/cyan]
-every way to hold the part between two jaws with two columns of holes each, 10 mm apart, and pegs of 6 mm diameter
-
-[cyan]holdfast show part.json 1 --draw setup.png[/cyan]
-how to set up the best of them, with a picture for the wall
-
-[cyan]holdfast features part.dxf --draw faces.svg[/cyan]
-the numbers of the part's faces, to talk about them
-
-All lengths on the command line are in millimetres. [cyan]holdfast COMMAND --help[/cyan] explains a command.
+All lengths on the command line are in millimetres. holdfast COMMAND --help
+explains a command.
 """
 
 
-class PlainGroup(TyperGroup):
+class Holdfast(PlainGroup):
     """The commands, with every outcome told in one plain sentence and an exit code."""
 
     def invoke(self, ctx: Any) -> Any:
@@ -84,19 +81,18 @@ class PlainGroup(TyperGroup):
 
 app = typer.Typer(
     name="holdfast",
-    cls=PlainGroup,
+    cls=Holdfast,
     help="Finds every way to hold a part in a fixture vise with four pegs.",
     epilog=EXAMPLES,
-    no_args_is_help=True,
     add_completion=False,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command()(design)
-app.command()(show)
-app.command()(features)
-app.command()(parts)
-app.command()(verify)
+app.command(cls=PlainCommand)(design)
+app.command(cls=PlainCommand)(show)
+app.command(cls=PlainCommand)(features)
+app.command(cls=PlainCommand)(parts)
+app.command(cls=PlainCommand)(verify)
 
 
 def show_version(wanted: bool) -> None:
@@ -122,6 +118,8 @@ def run() -> NoReturn:
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="replace")  # type: ignore[union-attr]
     signal.signal(signal.SIGTERM, terminate)
+    # Every matrix here is small; threads to multiply large ones would only be started and never used.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     code = int(app(standalone_mode=False))
     try:
         sys.stdout.flush()
@@ -160,9 +158,6 @@ def complain(error: Exception) -> int:
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
     context = getattr(error, "ctx", None)
-    if not message.strip():
-        # Without any argument Typer has printed the help already.
-        return BAD_INPUT
     command = getattr(context, "command_path", "holdfast")
     say(f"error: {message.rstrip('.')}; see {command} --help.")
     return BAD_INPUT
@@ -176,6 +171,9 @@ def say(message: str) -> None:
 
 def report_fault(error: Exception) -> None:
     """Own up to a mistake of the program, and keep the traceback for the report."""
+    import tempfile
+    import traceback
+
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     text = "".join(traceback.format_exception(error))
     if os.environ.get("HOLDFAST_TRACEBACK"):

@@ -11,13 +11,13 @@ def parts() -> None:
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the
     names can stand for PART.
 
-    Example: [cyan]holdfast design widget --pitch 8 --columns 1 --peg-radius 3[/cyan]
+    Example: holdfast design widget --pitch 8 --columns 1 --peg-radius 3
     """
-    from holdfast.cli.tables import new_table, print_tables
+    from holdfast.cli.tables import Table, print_tables
     from holdfast.files.builtin import builtin_parts
     from holdfast.files.load import load
 
-    table = new_table("name", ">width mm", ">height mm", ">faces", "description")
+    table = Table(("name", ">width mm", ">height mm", ">faces", "description"))
     for part in builtin_parts():
         workpiece = load(part.name)
         x0, y0, x1, y1 = workpiece.bounds

@@ -11,21 +11,25 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import perf_counter
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
-    from rich.progress import Progress
+    from rich.progress import Progress, TaskID
 
 __all__ = ["ask_to_stop", "progress_bar", "search_progress"]
 
 INTERRUPTED = 130
+# Seconds without a bar; loading it takes a tenth of one.
+MOMENT = 1.0
+ONLY_TASK = cast("TaskID", 0)
 
 
 @contextmanager
 def search_progress(first_run: bool) -> Iterator[Callable[[float, int], None]]:
     """The progress bar of a search, as a function of the fraction done and the fixtures found."""
-    first = "Compiling the kernels, on the first run only" if first_run else "Searching"
+    first = "Compiling the kernels, on the first run only" if first_run else None
     with progress_bar("Searching", "found", first) as progress:
         yield progress
 
@@ -34,15 +38,37 @@ def search_progress(first_run: bool) -> Iterator[Callable[[float, int], None]]:
 def progress_bar(doing: str, counted: str, first: str | None = None) -> Iterator[Callable[[float, int], None]]:
     """A progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
 
+    It appears when there is progress after a moment, so that what is done at once is not kept waiting for it.
+
     Parameters
     ----------
     doing : what is being done.
     counted : what the count is of, the word behind the number.
-    first : what is said until the first progress, if something else.
+    first : what is said until the first progress; the bar appears with it at once.
     """
     if not sys.stderr.isatty():
         yield lambda fraction, count: None
         return
+    begun = perf_counter()
+    bars = [shown_bar(first, counted)] if first else []
+
+    def progress(fraction: float, count: int) -> None:
+        if not bars:
+            if perf_counter() - begun < MOMENT:
+                return
+            bars.append(shown_bar(doing, counted))
+        bars[0].update(ONLY_TASK, completed=fraction, count=count, description=doing)
+
+    try:
+        yield progress
+    finally:
+        for bar in bars:
+            running.remove(bar)
+            bar.stop()
+
+
+def shown_bar(words: str, counted: str) -> Progress:
+    """A bar on the terminal, with its one task."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -55,17 +81,10 @@ def progress_bar(doing: str, counted: str, first: str | None = None) -> Iterator
         console=Console(stderr=True),
         transient=True,
     )
-    with bar:
-        task = bar.add_task(first or doing, total=1.0, count=0)
-
-        def progress(fraction: float, count: int) -> None:
-            bar.update(task, completed=fraction, count=count, description=doing)
-
-        running.append(bar)
-        try:
-            yield progress
-        finally:
-            running.remove(bar)
+    bar.add_task(words, total=1.0, count=0)
+    bar.start()
+    running.append(bar)
+    return bar
 
 
 # Bars on the terminal now; an abrupt end must give the cursor back.

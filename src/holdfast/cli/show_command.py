@@ -15,29 +15,30 @@ __all__ = ["show"]
 
 def show(
     result_file: Annotated[
-        Path, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
+        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
     ],
     number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
     draw: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
+        str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
     ] = None,
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose.
 
     A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
 
-    Example: [cyan]holdfast show part.json 1 --draw setup.png[/cyan]
+    Example: holdfast show part.json 1 --draw setup.png
     """
     from holdfast.files.atomic import refuse_unwritable, write_bytes
-    from holdfast.files.result_file import read_result
+    from holdfast.files.result_reader import read_result
 
     rank = whole_number("fixture", number)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    picture = None if draw is None else Path(draw)
     ending = None
-    if draw is not None:
-        ending = picture_ending(draw)
-        refuse_unwritable(draw)
+    if picture is not None:
+        ending = picture_ending(picture)
+        refuse_unwritable(picture)
     result = read_result(result_file)
     if rank > len(result):
         raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
@@ -48,11 +49,11 @@ def show(
     print_tables(*fixture_tables(fixture, rank, len(result)))
     if not result.complete:
         typer.echo("holdfast: the search for this result was interrupted; there may be better fixtures.", err=True)
-    if draw is not None and ending is not None:
+    if picture is not None and ending is not None:
         from holdfast.drawing.fixture_picture import draw_fixture
         from holdfast.drawing.render import render
 
         title = f"Fixture {rank}"
         svg = draw_fixture(fixture, result.workpiece, result.vise, title=title)
-        write_bytes(draw, render(svg, ending))
-        print_tables(f"Drawn in {draw}.")
+        write_bytes(picture, render(svg, ending))
+        print_tables(f"Drawn in {picture}.")

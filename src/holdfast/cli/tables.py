@@ -6,9 +6,8 @@ import sys
 from math import degrees, hypot, pi
 from typing import TYPE_CHECKING, TextIO
 
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.table import Table
+import typer
+from attrs import define, field
 
 if TYPE_CHECKING:
     from holdfast.geometry.face import Face
@@ -21,46 +20,56 @@ __all__ = [
     "counts_sentence",
     "face_table",
     "fixture_tables",
-    "new_table",
+    "Table",
     "plural",
     "print_tables",
     "proof_sentences",
     "result_table",
 ]
 
-# Where nobody looks at a terminal, lines are as long as they need to be.
-WIDTH_OF_A_FILE = 200
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
 
 
-class Terminal(Console):
-    """A console that leaves a broken pipe to the command line's one place for it."""
+@define
+class Table:
+    """Rows of words under a line of headings.
 
-    def on_broken_pipe(self) -> None:
-        """Raise what happened."""
-        raise BrokenPipeError
+    Parameters
+    ----------
+    columns : the headings; a column whose heading begins with ``>`` has its content on the right.
+    rows : the words, one for each column.
+    """
+
+    columns: tuple[str, ...]
+    rows: list[tuple[str, ...]] = field(factory=list)
+
+    def add_row(self, *words: str) -> None:
+        """Add a row at the end."""
+        self.rows.append(words)
+
+    def lines(self) -> list[str]:
+        """The table as text: the headings, a rule below them, and a line for each row."""
+        right = [column.startswith(">") for column in self.columns]
+        headings = tuple(column.lstrip(">") for column in self.columns)
+        widths = [max(map(len, column)) for column in zip(headings, *self.rows, strict=True)]
+
+        def line(words: tuple[str, ...]) -> str:
+            pairs = zip(words, widths, right, strict=True)
+            return "   ".join(f"{w:>{n}}" if at_right else f"{w:<{n}}" for w, n, at_right in pairs).rstrip()
+
+        return [line(headings), "─" * (sum(widths) + 3 * (len(widths) - 1)), *map(line, self.rows)]
 
 
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
-    """Print tables and sentences to a stream, stdout by default."""
+    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal."""
     stream = stream or sys.stdout
-    console = Terminal(file=stream, highlight=False, markup=False, width=None if stream.isatty() else WIDTH_OF_A_FILE)
     for part in parts:
-        if isinstance(part, str):
-            stream.write(part + "\n")
-        else:
-            console.print(part)
+        heading, *lines = part.lines() if isinstance(part, Table) else (part,)
+        if lines and stream.isatty():
+            heading = typer.style(heading, bold=True)
+        stream.write("\n".join([heading, *lines]) + "\n")
     stream.flush()
-
-
-def new_table(*columns: str, title: str | None = None) -> Table:
-    """An empty table; a column whose name begins with ``>`` has its content on the right."""
-    table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False, show_edge=False)
-    for column in columns:
-        right = column.startswith(">")
-        table.add_column(column.lstrip(">"), justify="right" if right else "left", overflow="fold")
-    return table
 
 
 def plural(count: int, word: str) -> str:
@@ -133,7 +142,7 @@ def undecided_words(item: Undecided) -> str:
 
 def result_table(result: Result, count: int) -> Table:
     """The best fixtures, one line each."""
-    table = new_table(">rank", "type", "left holes", "right holes", ">opening mm", ">angle deg", ">closure margin")
+    table = Table((">rank", "type", "left holes", "right holes", ">opening mm", ">angle deg", ">closure margin"))
     for rank, fixture in enumerate(result[:count], 1):
         holes = {jaw: " ".join(peg.hole for peg in fixture.pegs if peg.jaw == jaw) for jaw in ("left", "right")}
         table.add_row(
@@ -150,7 +159,7 @@ def result_table(result: Result, count: int) -> Table:
 
 def fixture_tables(fixture: Fixture, rank: int, total: int) -> tuple[Table | str, ...]:
     """How to set up one fixture: what to turn, and where each peg goes."""
-    pegs = new_table("hole", "jaw", ">x mm", ">y mm", ">face", ">force per jaw force")
+    pegs = Table(("hole", "jaw", ">x mm", ">y mm", ">face", ">force per jaw force"))
     for peg in fixture.pegs:
         pegs.add_row(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.segment), f"{peg.force:.3f}")
     pose = fixture.pose
@@ -165,7 +174,7 @@ def fixture_tables(fixture: Fixture, rank: int, total: int) -> tuple[Table | str
 
 def face_table(workpiece: Workpiece) -> Table:
     """The numbered faces of a part."""
-    table = new_table(">face", "kind", "size mm", "from", "to", "loop")
+    table = Table((">face", "kind", "size mm", "from", "to", "loop"))
     first = 0
     loop_of = {}
     for index, loop in enumerate(workpiece.loops):

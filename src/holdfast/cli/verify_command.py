@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,7 +20,7 @@ REFUTED = 2
 
 def verify(
     result_file: Annotated[
-        Path, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
+        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
     ],
     list_: Annotated[
         str,
@@ -35,7 +34,7 @@ def verify(
     edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. The exit code is 0 when
     nothing is refuted and 2 otherwise.
 
-    Example: [cyan]holdfast verify part.json[/cyan]
+    Example: holdfast verify part.json
     """
     listed = whole_number("--list", list_)
 

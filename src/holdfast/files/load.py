@@ -102,7 +102,8 @@ def read_workpiece(
         content = read_bytes(path)
         kind = kind_of(path, content)
         if kind == "json":
-            return from_json(path, content, unit, layers, part_number)
+            own = path == builtin_path(path.stem)
+            return from_json(path, content, unit, layers, part_number, own)
         if kind == "dxf":
             from holdfast.files.dxf import read_dxf
 
@@ -199,9 +200,9 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
 
 
 def from_json(
-    path: Path, content: bytes, unit: str | None, layers: Sequence[str] | None, part_number: int | None
+    path: Path, content: bytes, unit: str | None, layers: Sequence[str] | None, part_number: int | None, own: bool
 ) -> Loaded:
-    """A workpiece from JSON bytes.
+    """A workpiece from JSON bytes, of a file of the user's or of holdfast's own.
 
     Raises
     ------
@@ -217,7 +218,7 @@ def from_json(
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON.") from error
-    read = read_json(text)
+    read = read_json(text, own=own)
     name = read.name or path.stem
     rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
     refuse_large(sum(len(loop) for loop in rows))

@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.files.atomic import text_file
-from holdfast.files.result_reader import FORMAT, read_result
 from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 
-__all__ = ["FORMAT", "fixture_rows", "read_result", "write_result", "write_result_to"]
+__all__ = ["FORMAT", "fixture_rows", "write_result", "write_result_to"]
 
+FORMAT = "holdfast-result/1"
 BLOCK = 4096
 LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10

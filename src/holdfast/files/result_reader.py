@@ -23,9 +23,8 @@ from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["FORMAT", "read_result"]
+__all__ = ["read_result"]
 
-FORMAT = "holdfast-result/1"
 BLOCK = 4096
 # A peg's centre and its hole may differ by this much, in mm, before the file contradicts itself.
 AGREEMENT = 1e-6

@@ -1,0 +1,55 @@
+"""All benchmarks one after the other, their targets with ``pass`` or ``short``, and docs/benchmarks.md from the figures.
+
+Run by ``make bench``, on a machine with nothing else to do. The longest parts are the rows given to the paper's algebra,
+up to ten minutes each (``--budget``). ``--quick`` tries a small part of everything and keeps no figures.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import algebra
+import floor
+import growth
+import memory
+import processes
+import pruning
+import table_one
+import threads
+from page import write_page
+from report import Section, machine
+
+
+def main() -> None:
+    """Run as a script."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="a small part of everything; no figures are kept")
+    parser.add_argument("--budget", type=float, metavar="SECONDS", help="seconds for each row of the paper's algebra")
+    options = parser.parse_args()
+    for key, value in machine().items():
+        sys.stdout.write(f"{key}: {value}\n")
+    sections: list[Section] = []
+    for run in (
+        table_one.run,
+        growth.run,
+        floor.run,
+        threads.run,
+        processes.run,
+        lambda quick: algebra.run(quick, options.budget),
+        memory.run,
+        pruning.run,
+    ):
+        sections.append(run(options.quick))
+        if not options.quick:
+            sections[-1].keep()
+    sys.stdout.write("\nAll targets\n\n")
+    targets = [target for section in sections for target in section.targets]
+    for target in sorted(targets, key=lambda target: target.number):
+        sys.stdout.write(f"target {target.number}  {target.verdict:5}  {target.words}: {target.value}\n")
+    if not options.quick:
+        write_page()
+
+
+if __name__ == "__main__":
+    main()
