@@ -39,21 +39,33 @@ def without_proof() -> None:
     """Take the proof out of the search of this process, before its kernels are compiled."""
     import numpy as np
 
-    from holdfast.kernels import chord, crossing
+    from holdfast.kernels import certifying, chord, contacts, crossing
+    from holdfast.kernels.compiling import compiled
     from holdfast.listing import deciding, finish
 
     for module in (chord, crossing):
         module.ROUNDINGS = 0.0
 
-    def taken(records: np.ndarray, problem: deciding.Problem) -> tuple[np.ndarray, deciding.Account]:
+    @compiled
+    def kept(records: np.ndarray, features: np.ndarray, setting: np.ndarray) -> np.ndarray:
+        """Which records keep all rules at their middles, polished in place."""
+        out = np.zeros(len(records), np.bool_)
+        w, pairs, null = np.empty((contacts.WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
+        for n in range(len(records)):
+            contacts.take_pegs(records[n], setting, w)
+            certifying.polish(records[n], features, setting[contacts.WRENCH_LENGTH], w, pairs[0])
+            out[n] = certifying.judged(records[n], features, setting, 0.0, np.inf, w, pairs, null) == certifying.PROVEN
+            for k in range(4):
+                records[n, 13 + k] = w[contacts.UNKNOWNS, k]
+        return out
+
+    def taken(
+        records: np.ndarray, problem: deciding.Problem, _: deciding.Course
+    ) -> tuple[np.ndarray, deciding.Account]:
         """Polished records whose middles keep all rules."""
         records = records[records[:, 0] > 0.0]
-        features = problem.rows[deciding.peg_integers(records)[0], :8]
-        places = deciding.peg_places(records, problem.vise)
-        contacts = deciding.polish(features, *deciding.unknowns(records), *places, problem.wrench_length)
-        lower, _ = deciding.slacks(contacts, np.zeros(len(records)), deciding.rules_of(records, problem))
-        kept = deciding.solved(records, contacts)[(lower > 0.0).all(axis=0)]
-        return kept, deciding.Account(len(records), len(kept), 0, 0, ())
+        chosen = records[kept(records, problem.rows, deciding.setting_of(problem))]
+        return chosen, deciding.Account(len(records), len(chosen), 0, 0, ())
 
     finish.decided = taken
 
