@@ -80,15 +80,17 @@ LEAST_REACH = 1e-9
 @compiled
 def polish(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
     """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see ``contacts``)."""
-    for turn in range(ROUNDS + 1):
+    for _ in range(ROUNDS):
         touch(record, features, length, w, points)
-        if turn < ROUNDS and invert(w) > SINGULAR:
+        if invert(w) > SINGULAR:
             largest = 0.0
             for k in range(4):
                 largest = max(largest, abs(w[NEWTON, k]))
             if largest <= FARTHEST:
-                for k in range(4):
-                    w[UNKNOWNS, k] -= w[NEWTON, k] / length if k == 0 else w[NEWTON, k]
+                w[UNKNOWNS, 0] -= w[NEWTON, 0] / length
+                for k in range(1, 4):
+                    w[UNKNOWNS, k] -= w[NEWTON, k]
+    touch(record, features, length, w, points)
 
 
 @compiled
@@ -240,26 +242,35 @@ def judged(
 
 
 @compiled
-def is_clear(points: Array, outline: Array, least: float) -> bool:
+def discs_around(outline: Array, margin: float) -> Array:
+    """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
+    discs = np.empty((outline.shape[0], 3))
+    for n in range(outline.shape[0]):
+        half, radius, wide = outline[n, 5], outline[n, 6], 0.0
+        if outline[n, 0] != 0.0:
+            # The disc on the chord, of an arc up to a half circle.
+            wide = radius * cos(half) if half < pi / 2.0 else 0.0
+            half = radius * sin(half) if half < pi / 2.0 else radius
+        discs[n, 0], discs[n, 1] = outline[n, 1] + wide * outline[n, 3], outline[n, 2] + wide * outline[n, 4]
+        discs[n, 2] = 1.001 * (half + margin) * (half + margin)
+    return discs
+
+
+@compiled
+def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
     """Whether four points are at least so many mm away from all of (S, 8) segments."""
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
-        for n in range(outline.shape[0]):
-            row = outline[n]
-            dx, dy = x - row[1], y - row[2]
-            # What is plainly far from the line's middle, or from the circle that carries the arc, needs no closer look.
-            far, near = (row[5] + least, 0.0) if row[0] == 0.0 else (row[6] + least, max(row[6] - least, 0.0))
-            square = dx * dx + dy * dy
-            if square > 1.001 * far * far or 1.001 * square < near * near:
-                continue
-            if segment_distance(x, y, row) < least:
+        for n in range(discs.shape[0]):
+            dx, dy = x - discs[n, 0], y - discs[n, 1]
+            if dx * dx + dy * dy < discs[n, 2] and segment_distance(x, y, outline[n]) < least:
                 return False
     return True
 
 
 @compiled
 def verdict_on(
-    record: Array, features: Array, outline: Array, setting: Array, w: Array, pairs: Array, null: Array
+    record: Array, features: Array, outline: Array, discs: Array, setting: Array, w: Array, pairs: Array, null: Array
 ) -> int:
     """The verdict on one record; leaves its solution in place."""
     length = setting[WRENCH_LENGTH]
@@ -277,7 +288,7 @@ def verdict_on(
         return OPEN
     verdict = judged(record, features, setting, radius, smallest, w, pairs, null)
     # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
-    if verdict == PROVEN and not is_clear(points, outline, setting[PEG_RADIUS] - TOUCH):
+    if verdict == PROVEN and not is_clear(points, outline, discs, setting[PEG_RADIUS] - TOUCH):
         return DISCARDED
     return verdict
 
@@ -299,9 +310,10 @@ def certified(records: Array, features: Array, outline: Array, setting: Array, s
     (N,) verdicts; open where another solution may be in the record's box
     """
     verdicts = np.empty(records.shape[0], np.int8)
+    discs = discs_around(outline, setting[PEG_RADIUS])
     w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
     for n in range(records.shape[0]):
-        verdicts[n] = verdict_on(records[n], features, outline, setting, w, pairs, null)
+        verdicts[n] = verdict_on(records[n], features, outline, discs, setting, w, pairs, null)
         for k in range(4):
             solutions[n, k] = w[UNKNOWNS, k]
     return verdicts

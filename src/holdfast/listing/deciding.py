@@ -209,7 +209,7 @@ def merged(records: Array, problem: Problem) -> Array:
     reach = box_reach(records, problem.wrench_length)
     middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
     lows, highs = middle - reach, middle + reach
-    bounded = np.isfinite(reach).all(axis=1)
+    bounded = np.asarray(np.isfinite(reach).all(axis=1))
     kept = np.ones(len(records), np.bool_)
     last, low, high = 0, lows[0], highs[0]
     for k in range(1, len(records)):

@@ -140,17 +140,16 @@ def listed_once(c: Candidates) -> Candidates:
     """
     if len(c.kind) == 0:
         return c
-    order, group = same_holes_first(c)
-    c = c.take(order)
-    place = c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening
+    first, group = same_holes_first(c)
+    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening)[first]
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
     # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its place.
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
-    order = np.lexsort([*reversed(packed((run[:, None], len(run)), (c.feature, c.feature.max())))])
-    return c.take(order[np.concatenate([[True], np.diff(run[order]) > 0])])
+    order = np.lexsort([*reversed(packed((run[:, None], len(run)), (c.feature[first], c.feature.max())))])
+    return c.take(first[order[np.concatenate([[True], np.diff(run[order]) > 0])]])
 
 
 def twins(c: Candidates, face: IntArray) -> tuple[IntArray, IntArray]:
