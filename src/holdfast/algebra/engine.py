@@ -211,5 +211,5 @@ def design_by_algebra(
             complete = False
             break
     statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
-    result = listed_result(problem, records, complete=complete, best=best, statistics=statistics)
+    result = listed_result(problem, records, complete=complete, best=best, statistics=statistics, cancel=cancel)
     return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

@@ -84,7 +84,8 @@ def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
         angle = snapped(angle % tau, len(segments))
         if angle == 0.0 or any(abs(angle - r.angle) < 1e-9 for r in found):
             continue
-        image = permutation(segments, about, angle)
+        # The first segment tells of most angles that they cannot be.
+        image = permutation(segments, about, angle) if carries(segments[first], segments[k], about, angle) else None
         if image is not None:
             found.append(Rotation(angle, image))
     return sorted(found, key=lambda rotation: rotation.angle)

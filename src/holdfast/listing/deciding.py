@@ -3,76 +3,95 @@
 A record tells where four contacts are and how far the exact ones may be from there. It goes through up to four stages, and
 leaves with the first that decides it:
 
-1. a certificate of its solution (``certificate``), with all rules decided by enclosures;
-2. the same with the contact equations computed in ball arithmetic;
-3. the fold lemma (``folds``): two solutions that merge or nearly so; where they are apart, stage 2 for each;
-4. an interval Newton search of the whole box in ball arithmetic (``settling``).
+1. a certificate of its solution (``kernels.certifying``), with all rules decided by enclosures;
+2. the same for the features' rows as they are, without what rounding may have done to the drawing before;
+3. the interval Newton method in double precision (``kernels.narrowing``): boxes in which no fixture can be are dropped, and
+   those with exactly one solution go through stage 2;
+4. the same method in ball arithmetic (``settling``).
 """
 
 from __future__ import annotations
 
+from threading import Event
+from typing import TYPE_CHECKING
+
 import numpy as np
-from attrs import define
+from attrs import define, field
 from numpy.typing import NDArray
 
 from holdfast.kernels import vise_checks as record
-from holdfast.kernels.distance import outline_distances
-from holdfast.listing.certificate import (
-    DISCARDED,
-    OPEN,
-    PROVEN,
-    ROUNDINGS,
-    Rules,
-    certificate,
-    coordinates,
-    judged,
-    slacks,
-)
-from holdfast.listing.polish import Contacts, contacts_at, polish
-from holdfast.listing.problem import Problem
+from holdfast.kernels.certifying import LEAST_REACH, OPEN, PROVEN, certified
+from holdfast.kernels.contacts import BLUR
+from holdfast.kernels.narrowing import jacobians, narrowed
+from holdfast.listing.problem import Problem, Progress
 from holdfast.model.proof import Undecided
 from holdfast.model.vise import Vise
 
-__all__ = ["Account", "contacts_of", "decided", "is_left", "peg_integers"]
+if TYPE_CHECKING:
+    from holdfast.listing.settling import Settled
+
+__all__ = ["Account", "Course", "decided", "is_left", "merged", "peg_integers", "setting_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Verdicts = NDArray[np.int8]
 
-# A peg may be inside the part by this much, in mm, in the check that follows the proof.
-TOUCH = 1e-7
-# Where an engine tells nothing better, the exact contact is this near, in mm.
-LEAST_REACH = 1e-9
-# Error in mm of contact equations computed in ball arithmetic.
-TINY = 1e-30
-# How often the fold lemma is applied: its boxes shrink quadratically.
-FOLDINGS = 3
-# Numbers of the rules bend by at most this many times (1 / R + 1 / L) over the square of a step, in units of the slope.
-BENDS = 10.0
+# Records looked at between two looks at the flag that stops the work.
+OPEN_BLOCK = 64
 GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"
 UNBOUNDED = "where its contacts may lie could not be bounded"
 
 
+@define(eq=False)
+class Course:
+    """How far the deciding of records has come, and whether it is to stop.
+
+    Parameters
+    ----------
+    total : records to decide.
+    progress : told the fraction done and how many records still may be fixtures.
+    cancel : when set, what takes long is left out.
+    """
+
+    total: int
+    progress: Progress | None = None
+    cancel: Event | None = None
+    done: int = field(default=0, init=False)
+    kept: int = field(default=0, init=False)
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether somebody asked to stop."""
+        return self.cancel is not None and self.cancel.is_set()
+
+    def advance(self, done: int, kept: int) -> None:
+        """Records are decided, and some of them kept."""
+        self.done += done
+        self.kept += kept
+        if self.progress is not None and done:
+            self.progress(min(self.done / max(self.total, 1), 1.0), self.kept)
+
+
 @define(frozen=True)
 class Account:
-    """What became of records: how many there were, proven fixtures, how many went to ball arithmetic, how many were pairs
-    of chords that the engine had given up, and the undecided."""
+    """What became of records: how many there were, proven fixtures, how many the first certificate left open, how many were
+    pairs of chords that the engine had given up, the undecided, and how many were left when the work was stopped."""
 
     records: int
     verified: int
     escalated: int
     given_up: int
     undecided: tuple[Undecided, ...]
+    left: int = 0
 
     @classmethod
     def together(cls, accounts: list[Account]) -> Account:
         """Several accounts as one."""
         lost = tuple(item for account in accounts for item in account.undecided)
-        records, verified, escalated, given_up = (
+        records, verified, escalated, given_up, left = (
             sum(getattr(account, name) for account in accounts)
-            for name in ("records", "verified", "escalated", "given_up")
+            for name in ("records", "verified", "escalated", "given_up", "left")
         )
-        return cls(records, verified, escalated, given_up, lost)
+        return cls(records, verified, escalated, given_up, lost, left)
 
 
 def is_left(kind: IntArray) -> NDArray[np.bool_]:
@@ -86,34 +105,19 @@ def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
     return whole[:, :4], whole[:, 4:8], whole[:, 8:12]
 
 
-def peg_places(records: Array, vise: Vise) -> tuple[Array, Array]:
-    """Places (N, 4, 2) of the pegs in mm from the first, with the right jaw at zero, and which move with it (N, 4)."""
-    whole = records[:, record.COLUMNS : record.PSI]
-    right = ~is_left(records[:, record.KIND].astype(np.int64))
-    height = whole[:, 4:] * vise.pitch[1] + right * vise.row_offset
-    return np.stack([whole[:, :4] * vise.pitch[0], height], axis=-1), right.astype(np.float64)
+def peg_places(row: Array, vise: Vise) -> list[tuple[float, float]]:
+    """Places of the four pegs of one record in mm from the first, with the right jaw at zero."""
+    _, columns, rows = (numbers[0] for numbers in peg_integers(row[None]))
+    right = ~is_left(row[[record.KIND]].astype(np.int64))[0]
+    height = rows * vise.pitch[1] + right * vise.row_offset
+    return [(float(x), float(y)) for x, y in zip(columns * vise.pitch[0], height, strict=True)]
 
 
-def unknowns(records: Array) -> tuple[Array, Array, Array]:
-    """Orientation (N,), tail (N, 2) and distance apart (N,) of records."""
-    return records[:, record.PSI], records[:, record.TAIL_X : record.TAIL_Y + 1], records[:, record.APART]
-
-
-def contacts_of(records: Array, problem: Problem) -> Contacts:
-    """The contacts of records as they are."""
-    rows = problem.rows[peg_integers(records)[0], :8]
-    return contacts_at(rows, *unknowns(records), *peg_places(records, problem.vise), problem.wrench_length)
-
-
-def rules_of(records: Array, problem: Problem) -> Rules:
-    """What records are judged by."""
-    return Rules(
-        problem.rows[peg_integers(records)[0]],
-        is_left(records[:, record.KIND].astype(np.int64)),
-        problem.contact_margin,
-        problem.vise.min_gap,
-        problem.wrench_length,
-    )
+def setting_of(problem: Problem) -> Array:
+    """What the kernels must know of a problem, see ``kernels.contacts``."""
+    vise = problem.vise
+    lengths = [*vise.pitch, vise.row_offset, vise.min_gap, vise.peg_radius]
+    return np.array([*lengths, problem.contact_margin, problem.wrench_length, problem.blur], np.float64)
 
 
 def box_reach(records: Array, length: float) -> Array:
@@ -122,182 +126,150 @@ def box_reach(records: Array, length: float) -> Array:
     return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
 
 
-def decided(records: Array, problem: Problem) -> tuple[Array, Account]:
+def decided(records: Array, problem: Problem, course: Course | None = None) -> tuple[Array, Account]:
     """Decide records.
 
     Parameters
     ----------
     records : (N, 19) from an engine, laid out as ``kernels.vise_checks`` says.
+    course : told how far the work has come, and asked whether to stop.
 
     Returns
     -------
     (those proven to be fixtures, with their solutions to the last digits; what became of all)
     """
+    course = course or Course(len(records))
     given_up = records[:, record.KIND] < 0.0
-    lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]]
-    records = records[~given_up]
-    contacts = polish(
-        problem.rows[peg_integers(records)[0], :8],
-        *unknowns(records),
-        *peg_places(records, problem.vise),
-        problem.wrench_length,
+    lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
+    chosen = records[~given_up] if lost else records
+    proven, rest = sifted(chosen, problem, setting_of(problem))
+    course.advance(len(records) - len(rest), len(proven))
+    settled, reasons, left = escalated(rest, problem, course)
+    if len(settled):
+        proven = np.concatenate([proven, settled])
+    account = Account(
+        len(records) - left, len(proven), len(rest) - left + len(lost), len(lost), (*lost, *reasons), left
     )
-    error = ROUNDINGS * coordinates(contacts) + problem.blur
-    verdicts = verdicts_on(records, contacts, error, problem)
-    is_open = verdicts == OPEN
-    settled, reasons = escalated(records[is_open], problem)
-    proven = np.concatenate([solved(records, contacts)[verdicts == PROVEN], settled])
-    left_open = int(is_open.sum()) + len(lost)
-    account = Account(len(records) + len(lost), len(proven), left_open, len(lost), (*lost, *reasons))
     return proven, account
 
 
-def verdicts_on(records: Array, contacts: Contacts, error: Array, problem: Problem) -> Verdicts:
-    """Verdicts on records from certificates of their solutions; open where another solution may be in the box."""
-    certified = certificate(contacts, problem.wrench_length, error)
-    verdicts = judged(contacts, certified, rules_of(records, problem))
-    psi, tail, apart = unknowns(records)
-    away = np.stack(
-        [
-            problem.wrench_length * np.abs(contacts.psi - psi),
-            np.abs(contacts.tail - tail).max(axis=1),
-            np.abs(contacts.apart - apart),
-        ]
-    ).max(axis=0, initial=0.0)
-    alone = away + box_reach(records, problem.wrench_length).max(axis=1, initial=0.0) <= certified.unique
-    verdicts = np.where(alone, verdicts, OPEN)
-    # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
-    clear = outline_distances(contacts.points.reshape(-1, 2), problem.outline).reshape(-1, 4).min(axis=1)
-    return np.where((verdicts == PROVEN) & (clear < problem.vise.peg_radius - TOUCH), DISCARDED, verdicts)
+def sifted(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+    """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
+    solutions = np.empty((len(records), 4))
+    verdicts = certified(records, problem.rows, problem.outline, setting, solutions)
+    is_proven = verdicts == PROVEN
+    proven = records[is_proven]
+    proven[:, record.PSI : record.REACH] = solutions[is_proven]
+    return proven, records[verdicts == OPEN]
 
 
-def solved(records: Array, contacts: Contacts) -> Array:
-    """Records with the unknowns of contacts."""
-    out = records.copy()
-    out[:, record.PSI], out[:, record.APART] = contacts.psi, contacts.apart
-    out[:, record.TAIL_X : record.TAIL_Y + 1] = contacts.tail
-    return out
-
-
-def escalated(records: Array, problem: Problem) -> tuple[Array, list[Undecided]]:
-    """Decide open records with the help of ball arithmetic: the fixtures among them, and what stays undecided."""
+def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
+    """Decide open records by the later stages: the fixtures among them, what stays undecided, and how many were left when
+    the work was stopped."""
     if len(records) == 0:
-        return records, []
-    from holdfast.listing.folds import exactly_polished
-
-    found: list[Array] = []
-
-    def refined(chosen: Array) -> Array:
-        """Take out what exact certificates decide, and return the rest."""
-        if len(chosen) == 0:
-            return chosen
-        places = peg_places(chosen, problem.vise)
-        contacts = exactly_polished(contacts_of(chosen, problem), *places, problem.wrench_length)
-        verdicts = verdicts_on(chosen, contacts, np.full(len(chosen), TINY), problem)
-        found.append(solved(chosen, contacts)[verdicts == PROVEN])
-        return np.asarray(chosen[verdicts == OPEN])
-
-    rest = merged(refined(records), problem)
-    for _ in range(FOLDINGS):
-        halves, rest = unfolded(rest, problem)
-        if len(halves) == 0:
+        return records, [], 0
+    setting = setting_of(problem)
+    setting[BLUR] = 0.0
+    proven, rest = sifted(records, problem, setting)
+    course.advance(len(records) - len(rest), len(proven))
+    together = merged(rest, problem)
+    course.advance(len(rest) - len(together), 0)
+    found, waiting, left = [proven], [together[:0]], 0
+    for k in range(0, len(together), OPEN_BLOCK):
+        block = together[k : k + OPEN_BLOCK]
+        if course.is_stopped:
+            left += len(together) - k
             break
-        rest = np.concatenate([rest, refined(halves)])
-    settled, reasons = settled_records(merged(rest, problem), problem)
-    return np.concatenate([*found, settled]), reasons
+        proven, rest = narrower(block, problem, setting)
+        found.append(proven)
+        waiting.append(rest)
+        course.advance(max(len(block) - len(rest), 0), len(proven))
+    settled, reasons, unsettled = settled_records(merged(np.concatenate(waiting), problem), problem, course)
+    return np.concatenate([*found, settled]), reasons, left + unsettled
 
 
-def unfolded(records: Array, problem: Problem) -> tuple[Array, Array]:
-    """Apply the fold lemma: boxes about single solutions instead of records that hold two, and the records left as they
-    are. Records without solutions, or where a rule is broken all along, are discarded."""
-    if len(records) == 0:
-        return records, records
-    from holdfast.listing.folds import fold
-
-    length = problem.wrench_length
-    reach = np.sqrt((box_reach(records, length) ** 2).sum(axis=1))
-    folds = fold(contacts_of(records, problem), reach, *peg_places(records, problem.vise), length)
-    rules = rules_of(records, problem)
-    # A rule that is broken at both ends is broken between, up to the bend of its number.
-    smallest = np.where(rules.features[..., 0] == 0.0, np.inf, rules.features[..., 6]).min(axis=1, initial=np.inf)
-    between = np.abs(np.stack(box_steps(folds.low, folds.high, length))).max(axis=0, initial=0.0)
-    bend = folds.radius + BENDS * between**2 * (1.0 / smallest + 1.0 / length)
-    with np.errstate(all="ignore"):
-        broken = (slacks(folds.low, bend, rules)[1] < 0.0) & (slacks(folds.high, bend, rules)[1] < 0.0)
-    left = (folds.at_low | folds.at_high) & ~(np.isfinite(bend) & broken.any(axis=0))
-    # A box is worth dividing only if the parts are much smaller.
-    split = left & folds.apart & (folds.near < 0.3 * reach)
-    halves = []
-    for end, there in ((folds.low, folds.at_low), (folds.high, folds.at_high)):
-        half = solved(records, end)[split & there]
-        half[:, record.REACH] = folds.near[split & there] / length
-        half[:, record.RADIUS] = folds.near[split & there]
-        halves.append(half)
-    return np.concatenate(halves), records[left & ~split]
+def narrower(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+    """Open records narrowed: the fixtures found, and the boxes that stay open."""
+    bounded = np.isfinite(records).all(axis=1)
+    known = records[bounded]
+    left, _, right = np.linalg.svd(jacobians(known, problem.rows, setting))
+    frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
+    verdicts, roots = narrowed(known, problem.rows, setting, frames)
+    proven, unsure = sifted(roots, problem, setting)
+    return proven, np.concatenate([records[~bounded], known[verdicts == OPEN], unsure])
 
 
 def merged(records: Array, problem: Problem) -> Array:
     """Records of the same pegs on the same features whose boxes overlap, as one with a box around all."""
     if len(records) < 2:
         return records
-    order = np.lexsort([records[:, record.PSI], *(records[:, k] for k in range(record.PSI - 1, -1, -1))])
+    order = np.lexsort([records[:, k] for k in range(record.PSI, -1, -1)])
+    records = records[order]
+    same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
     reach = box_reach(records, problem.wrench_length)
-    psi, tail, apart = unknowns(records)
-    middle = np.column_stack([problem.wrench_length * psi, tail, apart])
-    out: list[Array] = []
-    low = high = middle[order[0]]
-    for n, k in enumerate(order):
-        same = n > 0 and bool((records[k, : record.PSI] == records[order[n - 1], : record.PSI]).all())
-        bottom, top = middle[k] - reach[k], middle[k] + reach[k]
-        if same and np.isfinite(reach[k]).all() and bool((bottom <= high).all() and (low <= top).all()):
-            low, high = np.minimum(low, bottom), np.maximum(high, top)
-            center, half = (low + high) / 2.0, (high - low) / 2.0
-            row = out[-1]
-            row[record.PSI], row[record.APART] = center[0] / problem.wrench_length, center[3]
-            row[record.TAIL_X : record.TAIL_Y + 1] = center[1:3]
-            row[record.REACH], row[record.RADIUS] = (
-                half[0] / problem.wrench_length,
-                max(half[1], half[2], half[3] / 2.0),
-            )
+    middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
+    lows, highs = middle - reach, middle + reach
+    bounded = np.asarray(np.isfinite(reach).all(axis=1))
+    kept = np.ones(len(records), np.bool_)
+    last, low, high = 0, lows[0], highs[0]
+    for k in range(1, len(records)):
+        if same[k - 1] and bounded[k] and (lows[k] <= high).all() and (low <= highs[k]).all():
+            low, high = np.minimum(low, lows[k]), np.maximum(high, highs[k])
+            records[last] = around(records[last], low, high, problem.wrench_length)
+            kept[k] = False
         else:
-            low, high = bottom, top
-            out.append(records[k].copy())
-    return np.array(out)
+            last, low, high = k, lows[k], highs[k]
+    return np.asarray(records[kept])
 
 
-def box_steps(one: Contacts, two: Contacts, length: float) -> tuple[Array, ...]:
-    """Differences of the unknowns of contacts, (N,) each, in mm."""
-    tail = two.tail - one.tail
-    return length * (two.psi - one.psi), tail[:, 0], tail[:, 1], two.apart - one.apart
+def around(row: Array, low: Array, high: Array, length: float) -> Array:
+    """A record whose box holds what is between two corners, (4,) each in mm."""
+    center, half = (low + high) / 2.0, (high - low) / 2.0
+    out = row.copy()
+    out[record.PSI : record.REACH] = center[0] / length, *center[1:]
+    out[record.REACH], out[record.RADIUS] = half[0] / length, max(half[1], half[2], half[3] / 2.0)
+    return out
 
 
-def settled_records(records: Array, problem: Problem) -> tuple[Array, list[Undecided]]:
-    """Records settled one by one: the fixtures among them, and what stays undecided."""
-    from holdfast.listing.settling import Box, Limits, settle
-
-    limits = Limits(problem.contact_margin, problem.vise.min_gap, problem.wrench_length)
-    offsets, _ = peg_places(records, problem.vise)
-    reach = box_reach(records, problem.wrench_length)
+def settled_records(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
+    """Records settled one by one in ball arithmetic: the fixtures among them, what stays undecided, and how many were
+    left when the work was stopped."""
     found: list[Array] = []
     reasons: list[Undecided] = []
+    left = 0
     for k, row in enumerate(records):
-        if not np.isfinite(reach[k]).all():
-            reasons.append(undecided(row, problem, UNBOUNDED))
-            continue
-        features = problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)]
-        psi, x, y, apart = (float(v) for v in row[record.PSI : record.REACH])
-        turn, right, up, open_by = (float(v) for v in reach[k])
-        lefts = 2 if row[record.KIND] == 1.0 else 3
-        places = [(float(u), float(v)) for u, v in offsets[k]]
-        widths = (turn / problem.wrench_length, right, up, open_by)
-        outcome = settle(Box(features.tolist(), places, lefts, (psi, x, y, apart), widths), limits)
+        outcome = settled_record(row, problem, course)
+        if outcome is None:
+            left = len(records) - k
+            break
         if outcome.reason:
             reasons.append(undecided(row, problem, outcome.reason))
         for solution in outcome.fixtures:
             fixed = row.copy()
             fixed[record.PSI : record.REACH] = solution
             found.append(fixed)
-    return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons
+        course.advance(1, len(outcome.fixtures))
+    return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons, left
+
+
+def settled_record(row: Array, problem: Problem, course: Course) -> Settled | None:
+    """One record settled in ball arithmetic; None when the work was stopped before."""
+    from holdfast.listing.settling import Box, Limits, Settled, settle
+
+    length = problem.wrench_length
+    turn, right, up, slide = (float(v) for v in box_reach(row[None], length)[0])
+    if not np.isfinite([turn, right, up, slide]).all():
+        return Settled((), UNBOUNDED)
+    psi, x, y, apart = (float(v) for v in row[record.PSI : record.REACH])
+    box = Box(
+        features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
+        offsets=peg_places(row, problem.vise),
+        lefts=2 if row[record.KIND] == 1.0 else 3,
+        middle=(psi, x, y, apart),
+        reach=(turn / length, right, up, slide),
+    )
+    limits = Limits(problem.contact_margin, problem.vise.min_gap, length)
+    return settle(box, limits, lambda: course.is_stopped)
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:

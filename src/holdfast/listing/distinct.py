@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import evolve
 from numpy.typing import NDArray
 
 from holdfast.geometry.symmetry import rotations_onto_itself
-from holdfast.listing.finish import SAME_POSE, Candidates, standing
+from holdfast.kernels.standing import stand
+from holdfast.listing.finish import SAME_POSE, Candidates, changes, packed
 from holdfast.model.workpiece import Workpiece
 
 __all__ = ["count_distinct"]
@@ -16,26 +16,30 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def keys_and_pose(c: Candidates, angle: float, image: IntArray, size: float) -> tuple[IntArray, Array]:
-    """Fixtures after the part is turned onto itself: (N, 13) type, faces and holes, and (N,) a number for the pose.
+def keys_and_pose(
+    c: Candidates, face: IntArray, largest: int, angle: float, size: float
+) -> tuple[list[IntArray], Array]:
+    """Fixtures after the part is turned onto itself by an angle in radians: (N,) packed types, faces and holes, and (N,) a
+    number for the pose.
 
-    ``image`` maps the faces that ``c.feature`` holds; ``size`` in mm brings lengths to the scale of angles.
+    ``face`` (N, 4) are the faces that they then touch, none of a number above ``largest``; ``size`` in mm brings lengths to
+    the scale of angles.
     """
-    moved = standing(evolve(c, feature=image[c.feature], theta=c.theta - angle))
+    theta, column, row = c.theta - angle, c.column.copy(), c.row.copy()
+    order = np.empty((len(face), 4), np.int64)
+    stand(c.kind, theta, column, row, order, SAME_POSE)
+    face = np.ravel(face)[4 * np.arange(len(face))[:, None] + order]
     # Same faces, holes and orientation still leave a choice of places; the opening tells those apart.
-    return np.concatenate(
-        [moved.kind[:, None], moved.feature, moved.column, moved.row], axis=1
-    ), moved.theta + moved.opening / size
+    holes = ((column, column.max()), (row, row.max()))
+    return packed((c.kind[:, None], 2), (face, largest), *holes), theta + c.opening / size
 
 
-def precedes(a: IntArray, a_pose: Array, b: IntArray, b_pose: Array) -> NDArray[np.bool_]:
-    """Which rows of (key, pose) come before others in lexicographic order."""
-    before = np.zeros(len(a), np.bool_)
-    level = np.ones(len(a), np.bool_)
-    for k in range(a.shape[1]):
-        before |= level & (a[:, k] < b[:, k])
-        level &= a[:, k] == b[:, k]
-    return before | (level & (a_pose < b_pose - SAME_POSE))
+def precedes(a: list[IntArray], a_pose: Array, b: list[IntArray], b_pose: Array) -> NDArray[np.bool_]:
+    """Which of some packed keys and poses come before others in lexicographic order."""
+    before = a_pose < b_pose - SAME_POSE
+    for one, other in zip(reversed(a), reversed(b), strict=True):
+        before = (one < other) | ((one == other) & before)
+    return before
 
 
 def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece) -> dict[str, int]:
@@ -51,20 +55,20 @@ def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece) -> dict[
     faces = workpiece.faces
     numbers = np.array([f.number for f in faces])
     x0, y0, x1, y1 = workpiece.bounds
-    named = evolve(c, feature=face)
-    best: tuple[IntArray, Array] | None = None
+    best: tuple[list[IntArray], Array] | None = None
     for rotation in rotations_onto_itself([f.segment for f in faces]):
         image = np.zeros(int(numbers.max()) + 1, np.int64)
         image[numbers] = numbers[rotation.image]
-        key, pose = keys_and_pose(named, rotation.angle, image, x1 - x0 + y1 - y0)
+        key, pose = keys_and_pose(c, image[face], len(image), rotation.angle, x1 - x0 + y1 - y0)
         if best is not None:
             better = precedes(key, pose, *best)
-            key, pose = np.where(better[:, None], key, best[0]), np.where(better, pose, best[1])
+            key = [np.where(better, new, old) for new, old in zip(key, best[0], strict=True)]
+            pose = np.where(better, pose, best[1])
         best = key, pose
     assert best is not None
     key, pose = best
-    order = np.lexsort([pose, *(key[:, k] for k in range(key.shape[1] - 1, -1, -1))])
-    key, pose = key[order], pose[order]
-    fresh = np.ones(len(key), np.bool_)
-    fresh[1:] = (key[1:] != key[:-1]).any(axis=1) | (np.diff(pose) > 2 * SAME_POSE)
-    return {name: int((fresh & (key[:, 0] == k + 1)).sum()) for k, name in enumerate(("I", "II"))}
+    order = np.lexsort([pose, *reversed(key)])
+    fresh = changes([word[order] for word in key])
+    fresh[1:] |= np.diff(pose[order]) > 2 * SAME_POSE
+    counts = np.bincount(c.kind[order[fresh]], minlength=3)
+    return {"I": int(counts[1]), "II": int(counts[2])}

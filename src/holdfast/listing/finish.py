@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from math import pi, tau
+from collections.abc import Iterator
+from threading import Event
 from typing import Any
 
 import numpy as np
-from attrs import define, evolve
+from attrs import define
 from numpy.typing import NDArray
 
 from holdfast.kernels import vise_checks as record
-from holdfast.listing.deciding import Account, contacts_of, decided, is_left, peg_integers
-from holdfast.listing.problem import Problem
+from holdfast.kernels.standing import contacts_of, stand
+from holdfast.listing.deciding import Account, Course, decided, is_left, peg_integers, setting_of
+from holdfast.listing.problem import Problem, Progress
 from holdfast.model.result import FixtureTable
 from holdfast.model.vise import Vise
-from holdfast.statics.wrenches import clamping_force, null_vectors, outward_normals
 
-__all__ = ["Candidates", "finish", "placed", "standing", "twins"]
+__all__ = ["Candidates", "changes", "finish", "listed_once", "packed", "placed", "standing", "twins"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -26,6 +27,8 @@ SAME_POSE = 1e-6
 # Places nearer than this, in mm, are one.
 SAME_PLACE = 1e-6
 BLOCK = 1 << 16
+# Bits of a packed number.
+WORD = 63
 
 
 @define(frozen=True, eq=False)
@@ -58,21 +61,16 @@ class Candidates:
 
 
 CANDIDATE_FIELDS = ("kind", "feature", "column", "row", "theta", "point", "opening", "null", "force")
-PEG_FIELDS = ("feature", "column", "row", "point", "null", "force")
 
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
     """Proven records as candidates."""
+    count = len(records)
     feature, column, row = peg_integers(records)
-    contacts = contacts_of(records, problem)
+    point, opening, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
+    contacts_of(records, problem.rows, setting_of(problem), point, opening, null, force)
     kind = records[:, record.KIND].astype(np.int64)
-    left, theta = is_left(kind), -contacts.psi
-    normals = outward_normals(contacts.rows, contacts.points)
-    null = null_vectors(contacts.points, normals, problem.wrench_length)
-    clamp = clamping_force(null, normals, theta, left)
-    along = np.cos(theta)[:, None] * contacts.points[..., 0] - np.sin(theta)[:, None] * contacts.points[..., 1]
-    opening = np.where(left, np.inf, along).min(axis=1) - np.where(left, along, -np.inf).max(axis=1)
-    return Candidates(kind, feature, column, row, theta, contacts.points, opening, null, null / clamp[:, None])
+    return Candidates(kind, feature, column, row, -records[:, record.PSI], point, opening, null, force)
 
 
 def joined(parts: list[Candidates]) -> Candidates:
@@ -80,44 +78,58 @@ def joined(parts: list[Candidates]) -> Candidates:
     return Candidates(*(np.concatenate([getattr(p, name) for p in parts]) for name in CANDIDATE_FIELDS))
 
 
-def with_pegs_in(c: Candidates, order: IntArray) -> Candidates:
-    """The same fixtures with their pegs in another order, (N, 4) indices."""
-
-    def sorted_pegs(values: NDArray[Any]) -> NDArray[Any]:
-        return np.take_along_axis(values, order if values.ndim == 2 else order[..., None], axis=1)
-
-    return evolve(c, **{name: sorted_pegs(getattr(c, name)) for name in PEG_FIELDS})
-
-
-def half_turned(c: Candidates, which: NDArray[np.bool_]) -> Candidates:
-    """Turn the vise half way round under some Type I candidates: the jaws swap, rows and columns run the other way."""
-    sign = np.where(which, -1, 1)[:, None]
-    theta = np.where(which, c.theta - pi, c.theta)
-    moved = with_pegs_in(c, np.where(which[:, None], np.array([3, 2, 1, 0]), np.arange(4)))
-    return evolve(moved, column=sign * moved.column, row=sign * moved.row, theta=theta)
-
-
 def standing(c: Candidates) -> Candidates:
-    """Bring candidates to the one form each fixture is listed in.
+    """Bring candidates to the one form each fixture is listed in (``kernels.standing.stand``)."""
+    theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
+    order = np.empty((len(c.kind), 4), np.int64)
+    stand(c.kind, theta, column, row, order, SAME_POSE)
+    place = 4 * np.arange(len(order))[:, None] + order
+    point = c.point.reshape(-1, 2)[place]
+    feature, null, force = (np.ravel(values)[place] for values in (c.feature, c.null, c.force))
+    return Candidates(c.kind, feature, column, row, theta, point, c.opening, null, force)
 
-    Orientations are in [0, 2 pi), for Type I in [0, pi); columns count from the leftmost peg of each jaw, rows from the
-    lowest of all; pegs of a jaw are in the order of columns and rows.
+
+def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
+    """Whole numbers packed into as few numbers (N,) as hold them, in lexicographic order.
+
+    Parameters
+    ----------
+    columns : (N, K) numbers from 0 upward, each time with the largest there may be.
     """
-    c = evolve(c, theta=(c.theta + SAME_POSE) % tau - SAME_POSE)
-    c = half_turned(c, (c.kind == 1) & (c.theta >= pi - SAME_POSE))
-    left = is_left(c.kind)
-    far = np.int64(1) << 40
-    left_base = np.where(left, c.column, far).min(axis=1, keepdims=True)
-    right_base = np.where(left, far, c.column).min(axis=1, keepdims=True)
-    c = evolve(c, column=c.column - np.where(left, left_base, right_base), row=c.row - c.row.min(axis=1, keepdims=True))
-    key = np.where(left, 0, far) + c.column * (1 << 20) + c.row
-    return with_pegs_in(c, np.argsort(key, axis=1, kind="stable"))
+    words: list[IntArray] = []
+    free = 0
+    for numbers, largest in columns:
+        bits = int(largest).bit_length()
+        for k in range(numbers.shape[1]):
+            if free < bits or not words:
+                words.append(np.zeros(len(numbers), np.int64))
+                free = WORD
+            words[-1] = (words[-1] << bits) | numbers[:, k]
+            free -= bits
+    return words
 
 
-def same_holes_first(c: Candidates) -> IntArray:
-    """Order (N,) by type, holes and orientation."""
-    keys = [c.theta, *(c.row[:, k] for k in range(3, -1, -1)), *(c.column[:, k] for k in range(3, -1, -1)), c.kind]
-    return np.lexsort(keys)
+def packed_holes(c: Candidates) -> list[IntArray]:
+    """Types and holes of candidates, packed."""
+    return packed((c.kind[:, None], 2), *((numbers, numbers.max(initial=0)) for numbers in (c.column, c.row)))
+
+
+def changes(words: list[IntArray]) -> NDArray[np.bool_]:
+    """Which entries (N,) of packed numbers differ from the one before; the first does."""
+    fresh = np.zeros(len(words[0]), np.bool_)
+    fresh[:1] = True
+    for word in words:
+        fresh[1:] |= word[1:] != word[:-1]
+    return fresh
+
+
+def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
+    """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in all these."""
+    words = packed_holes(c)
+    order = np.lexsort([c.theta, *reversed(words)])
+    fresh = changes([word[order] for word in words])
+    fresh[1:] |= np.diff(c.theta[order]) > SAME_POSE
+    return order, np.cumsum(fresh)
 
 
 def listed_once(c: Candidates) -> Candidates:
@@ -128,20 +140,16 @@ def listed_once(c: Candidates) -> Candidates:
     """
     if len(c.kind) == 0:
         return c
-    c = c.take(same_holes_first(c))
-    holes = np.concatenate([c.kind[:, None], c.column, c.row], axis=1)
-    fresh = np.ones(len(holes), np.bool_)
-    fresh[1:] = (holes[1:] != holes[:-1]).any(axis=1) | (np.diff(c.theta) > SAME_POSE)
-    group = np.cumsum(fresh)
-    place = c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening
+    first, group = same_holes_first(c)
+    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening)[first]
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
     # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its place.
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
-    order = np.lexsort([*(c.feature[:, k] for k in range(3, -1, -1)), run])
-    return c.take(order[np.concatenate([[True], np.diff(run[order]) > 0])])
+    order = np.lexsort([*reversed(packed((run[:, None], len(run)), (c.feature[first], c.feature.max())))])
+    return c.take(first[order[np.concatenate([[True], np.diff(run[order]) > 0])]])
 
 
 def twins(c: Candidates, face: IntArray) -> tuple[IntArray, IntArray]:
@@ -154,55 +162,60 @@ def twins(c: Candidates, face: IntArray) -> tuple[IntArray, IntArray]:
     """
     if len(c.kind) == 0:
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
-    order = same_holes_first(c)
-    label = np.concatenate([c.kind[:, None], c.column, c.row], axis=1)[order]
-    fresh = np.ones(len(order), np.bool_)
-    fresh[1:] = (label[1:] != label[:-1]).any(axis=1) | (np.diff(c.theta[order]) > SAME_POSE)
+    order, sets = same_holes_first(c)
     group = np.empty(len(order), np.int64)
-    group[order] = np.cumsum(fresh)
+    group[order] = sets
+    words = packed((group[:, None], len(group)), (face, face.max()))
     margin = -np.round(c.null.min(axis=1), 9)
-    order = np.lexsort([c.point[:, 0, 1], c.point[:, 0, 0], margin, *(face[:, k] for k in range(3, -1, -1)), group])
-    label = np.concatenate([group[:, None], face], axis=1)[order]
-    other = np.zeros(len(order), np.bool_)
-    other[1:] = (label[1:] == label[:-1]).all(axis=1)
-    return order[~other], order[other]
+    order = np.lexsort([c.point[:, 0, 1], c.point[:, 0, 0], margin, *reversed(words)])
+    first = changes([word[order] for word in words])
+    return order[first], order[~first]
 
 
-def finish(records: list[Array], problem: Problem) -> tuple[Candidates, Account]:
+def finish(
+    records: list[Array], problem: Problem, progress: Progress | None = None, cancel: Event | None = None
+) -> tuple[Candidates, Account]:
     """Polish, decide, bring to the listed form and list once.
 
     Parameters
     ----------
     records : (N, 19) arrays from the kernels.
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    cancel : when set, only what needs no ball arithmetic and the like is decided.
 
     Returns
     -------
     (the fixtures, an account of all records)
     """
+    course = Course(sum(map(len, records)), progress, cancel)
     parts: list[Candidates] = []
     accounts: list[Account] = []
-    for block in merged_blocks(records) or [np.zeros((0, record.RECORD_LENGTH))]:
-        for k in range(0, max(len(block), 1), BLOCK):
-            proven, account = decided(block[k : k + BLOCK], problem)
-            parts.append(standing(candidates_of(proven, problem)))
-            accounts.append(account)
+    for block in blocks_of(records):
+        proven, account = decided(block, problem, course)
+        parts.append(standing(candidates_of(proven, problem)))
+        accounts.append(account)
     everything = joined(parts)
     vise = problem.vise
+    fits = placement(everything, vise)[3]
     if vise.rows is not None:
-        everything = everything.take(everything.row.max(axis=1, initial=0) < vise.rows)
-    return listed_once(everything.take(placement(everything, vise)[3])), Account.together(accounts)
+        fits &= everything.row.max(axis=1, initial=0) < vise.rows
+    if not fits.all():
+        everything = everything.take(fits)
+    return listed_once(everything), Account.together(accounts)
 
 
-def merged_blocks(records: list[Array]) -> list[Array]:
-    """Small arrays of records put together, for fewer and larger steps of array arithmetic."""
-    blocks: list[Array] = []
-    waiting: list[Array] = []
+def blocks_of(records: list[Array]) -> Iterator[Array]:
+    """Arrays of records put together and cut into blocks, for fewer steps of array arithmetic; at least one, if empty."""
+    waiting: list[Array] = [np.zeros((0, record.RECORD_LENGTH))]
+    count = 0
     for array in records:
         waiting.append(array)
-        if sum(map(len, waiting)) >= BLOCK:
-            blocks.append(np.concatenate(waiting))
-            waiting = []
-    return blocks + ([np.concatenate(waiting)] if waiting and sum(map(len, waiting)) else [])
+        count += len(array)
+        if count >= BLOCK:
+            together = np.concatenate(waiting)
+            waiting, count = [together[:0]], 0
+            yield from (together[k : k + BLOCK] for k in range(0, len(together), BLOCK))
+    yield np.concatenate(waiting)
 
 
 def placement(c: Candidates, vise: Vise) -> tuple[IntArray, IntArray, IntArray, NDArray[np.bool_]]:

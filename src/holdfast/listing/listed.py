@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from threading import Event
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from holdfast.listing.deciding import Account
 from holdfast.listing.distinct import count_distinct
 from holdfast.listing.finish import finish, placed, twins
-from holdfast.listing.problem import TYPES, Problem
+from holdfast.listing.problem import TYPES, Problem, Progress
 from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 
@@ -26,6 +27,8 @@ def listed_result(
     statistics: Mapping[str, int],
     cells: int = 0,
     examined: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
 ) -> Result:
     """Check, list once, rank and count the fixtures that an engine found.
 
@@ -38,13 +41,17 @@ def listed_result(
     statistics : see ``Result.statistics``.
     cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
         than the records).
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     """
-    candidates, account = finish(records, problem)
+    candidates, account = finish(records, problem, progress, cancel)
     first, others = twins(candidates, problem.faces[candidates.feature])
     listed = candidates.take(first)
     center = problem.workpiece.center
     everything = placed(listed, problem.faces, problem.vise, center)
-    kept_apart = placed(candidates.take(others), problem.faces, problem.vise, center)
+    kept_apart = FixtureTable.empty()
+    if len(others):
+        kept_apart = placed(candidates.take(others), problem.faces, problem.vise, center)
     ranked = everything.take(rank(everything))
     return Result(
         workpiece=problem.workpiece,
@@ -52,7 +59,7 @@ def listed_result(
         table=ranked if best is None else ranked.take(slice(0, best)),
         found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
         distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
-        complete=complete,
+        complete=complete and account.left == 0,
         contact_margin=problem.contact_margin,
         notes=notes(len(kept_apart), len(account.undecided)),
         statistics=statistics,
@@ -64,7 +71,7 @@ def listed_result(
 def proof_of(account: Account, cells: int, examined: int | None) -> Proof:
     """The account of a search for the result."""
     # A pair of chords that was given up counts as one candidate.
-    candidates = account.records if examined is None else examined + account.given_up
+    candidates = account.records if examined is None else examined + account.given_up - account.left
     kept = account.verified + len(account.undecided)
     # One candidate may hold two solutions, which then count as two.
     candidates = max(candidates, kept)

@@ -13,7 +13,7 @@ References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import pi
 
 import numpy as np
@@ -253,8 +253,13 @@ class Frame:
         return out, inside
 
 
-def settle(box: Box, limits: Limits) -> Settled:
-    """Find every fixture of a box, or say why that cannot be decided."""
+def never() -> bool:
+    """Nobody asks to stop."""
+    return False
+
+
+def settle(box: Box, limits: Limits, is_stopped: Callable[[], bool] = never) -> Settled | None:
+    """Find every fixture of a box, or say why that cannot be decided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
         frame = Frame.of(box, limits)
         waiting = [frame.start()]
@@ -263,6 +268,8 @@ def settle(box: Box, limits: Limits) -> Settled:
         while waiting:
             place = waiting.pop()
             looked_at += 1
+            if is_stopped():
+                return None
             if looked_at > MOST_BOXES:
                 return Settled(
                     (), "the contacts are a double solution, or so nearly that its clamping force is not decided"

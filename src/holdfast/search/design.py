@@ -21,6 +21,9 @@ from holdfast.search.vise_search import ViseSearch, lattice_steps
 
 __all__ = ["design"]
 
+# The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
+SEARCH = 0.9
+
 
 def design(
     workpiece: Workpiece,
@@ -71,7 +74,7 @@ def design(
     loose = loosened(problem.rows[:, :8])
     table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
     search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
-    records, complete = run_blocks(search.blocks(types), thread_count(threads), progress, cancel)
+    records, complete = run_blocks(search.blocks(types), thread_count(threads), stage(progress, 0.0, SEARCH), cancel)
     work = np.array(search.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0)
     result = listed_result(
         problem,
@@ -81,10 +84,19 @@ def design(
         statistics=statistics(search, table, work),
         cells=len(records),
         examined=int(work[CANDIDATES]),
+        progress=stage(progress, SEARCH, 1.0),
+        cancel=cancel,
     )
-    if complete and not any(result.found.values()) and not result.notes:
+    if result.complete and not any(result.found.values()) and not result.notes:
         return evolve(result, notes=(why_none(problem, table, int(work[CONTACTS])),))
     return result
+
+
+def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
+    """The progress of one stage of the work, from one fraction of the whole to another."""
+    if progress is None:
+        return None
+    return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
 def why_none(problem: Problem, table: CurveTable, contacts: int) -> str:
