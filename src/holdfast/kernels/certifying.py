@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.closure import minors, outward_normal
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.contacts import (
     BLUR,
     CONTACT_MARGIN,
@@ -77,7 +77,7 @@ TOUCH = 1e-7
 LEAST_REACH = 1e-9
 
 
-@compiled
+@inner
 def polish(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
     """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see ``contacts``)."""
     for _ in range(ROUNDS):
@@ -93,7 +93,7 @@ def polish(record: Array, features: Array, length: float, w: Array, points: Arra
     touch(record, features, length, w, points)
 
 
-@compiled
+@inner
 def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
     """What rounding and bends are relative to.
 
@@ -112,7 +112,7 @@ def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
     return (place + carrier, smallest)
 
 
-@compiled
+@inner
 def certificate(w: Array, size: float, smallest: float, length: float, blur: float) -> tuple[float, float]:
     """Certify the contacts in place.
 
@@ -157,7 +157,7 @@ def certificate(w: Array, size: float, smallest: float, length: float, blur: flo
     return (radius, unique) if radius < unique else (inf, 0.0)
 
 
-@compiled
+@inner
 def end_slack(record: Array, features: Array, points: Array, margin: float) -> float:
     """How far in mm the contact nearest to an end of its feature is from breaking the rule of ends."""
     least = inf
@@ -174,7 +174,7 @@ def end_slack(record: Array, features: Array, points: Array, margin: float) -> f
     return least
 
 
-@compiled
+@inner
 def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, float]:
     """How four contacts with forces ``null`` (4,) stand between the jaws.
 
@@ -194,7 +194,7 @@ def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, f
     return (right - left, push)
 
 
-@compiled
+@inner
 def sign_of(middle: float, doubt: float) -> int:
     """PROVEN when a number known up to a doubt is positive, DISCARDED when it is negative, else OPEN."""
     if middle - doubt > 0.0:
@@ -202,7 +202,7 @@ def sign_of(middle: float, doubt: float) -> int:
     return DISCARDED if middle + doubt < 0.0 else OPEN
 
 
-@compiled
+@inner
 def wrenches(record: Array, features: Array, length: float, pairs: Array, null: Array) -> float:
     """Fill in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place; its sum of sizes."""
     for k in range(4):
@@ -211,7 +211,7 @@ def wrenches(record: Array, features: Array, length: float, pairs: Array, null: 
     return minors(pairs[0], pairs[1], length, null)
 
 
-@compiled
+@inner
 def judged(
     record: Array, features: Array, setting: Array, radius: float, smallest: float, w: Array, pairs: Array, null: Array
 ) -> int:
@@ -241,7 +241,7 @@ def judged(
     return min(verdict, sign_of(sign * push - LEAST_CLAMPING * size, doubt))
 
 
-@compiled
+@inner
 def discs_around(outline: Array, margin: float) -> Array:
     """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
     discs = np.empty((outline.shape[0], 3))
@@ -256,7 +256,7 @@ def discs_around(outline: Array, margin: float) -> Array:
     return discs
 
 
-@compiled
+@inner
 def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
     """Whether four points are at least so many mm away from all of (S, 8) segments."""
     for k in range(4):
@@ -268,7 +268,7 @@ def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
     return True
 
 
-@compiled
+@inner
 def verdict_on(
     record: Array, features: Array, outline: Array, discs: Array, setting: Array, w: Array, pairs: Array, null: Array
 ) -> int:

@@ -32,7 +32,7 @@ from math import atan2, cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import (
     BLUR,
     BRANCH,
@@ -69,7 +69,7 @@ POSITION = 1.0
 ROUNDINGS = 32.0 * 1.2e-16
 
 
-@compiled
+@inner
 def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
     """Tail on line a, head on arc b: the head lies on the line moved by w, cut with the circle of b."""
     nx, ny = a[4], -a[3]
@@ -79,7 +79,7 @@ def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chor
     return (b[1] + rx - wx, b[2] + ry - wy, nx, ny, rx / b[6], ry / b[6])
 
 
-@compiled
+@inner
 def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
     """Tail on arc a, head on arc b: the tail lies on the circle of a and on that of b moved by -w."""
     cx, cy = b[1] - a[1], b[2] - a[2]
@@ -101,7 +101,7 @@ def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chor
     return (a[1] + rx, a[2] + ry, rx / a[6], ry / a[6], qx / b[6], qy / b[6])
 
 
-@compiled
+@inner
 def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
     """Tail and the two contact directions of a chord w from feature a to feature b.
 
@@ -128,13 +128,13 @@ def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_cho
     return arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
 
 
-@compiled
+@inner
 def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
     """The chord of length d in mm and direction alpha in radians; see ``chord_along``."""
     return chord_along(a, b, d * cos(alpha), d * sin(alpha), branch, are_one_chord_apart(a, b, d))
 
 
-@compiled
+@inner
 def parameter_on(row: Array, x: float, y: float) -> float:
     """Parameter of a point on a feature: mm on a line, radians in (-pi, pi] on an arc."""
     dx, dy = x - row[1], y - row[2]
@@ -143,7 +143,7 @@ def parameter_on(row: Array, x: float, y: float) -> float:
     return atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy)
 
 
-@compiled
+@inner
 def blur(a: Array, b: Array, d: float) -> float:
     """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
     size = abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d
@@ -156,19 +156,19 @@ def blur(a: Array, b: Array, d: float) -> float:
     return ROUNDINGS * size * spread
 
 
-@compiled
+@inner
 def curvature(row: Array) -> float:
     """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its feature."""
     return 0.0 if row[0] == 0.0 else 1.0 / row[6]
 
 
-@compiled
+@inner
 def regular_error(curve: Array) -> float:
     """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
     return 8.0 * curve[BLUR] + 4.0 * EXACT
 
 
-@compiled
+@inner
 def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
     """Write to a row of the curve table what does not change along the curve.
 
@@ -186,7 +186,7 @@ def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: 
         row[COINCIDENCE] = CONCENTRIC
 
 
-@compiled
+@inner
 def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
     """A chord of a curve at an orientation.
 
@@ -229,7 +229,7 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
     return (c[0], c[1], c[2], c[3], c[4], c[5], c[0] + p * c[2], c[1] + p * c[3], error, slope_error)
 
 
-@compiled
+@inner
 def valued(
     a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
 ) -> tuple[float, float, float, float]:
@@ -251,7 +251,7 @@ def valued(
     return (s, -p / a[6], state[8] / a[6] + 1e-15, state[9] / a[6])
 
 
-@compiled
+@inner
 def curve_value(a: Array, b: Array, curve: Array, psi: float, mode: float) -> tuple[float, float, float, float]:
     """Value and derivative over psi of a chord curve.
 

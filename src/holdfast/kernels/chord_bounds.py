@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import curvature
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import BRANCH, COINCIDENCE, LENGTH
 from holdfast.kernels.interval import (
     Interval,
@@ -57,7 +57,7 @@ CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 ANYTHING = (-inf, inf)
 
 
-@compiled
+@inner
 def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
     """Enclosure of ``line_to_arc``."""
     nx, ny = a[4], -a[3]
@@ -71,7 +71,7 @@ def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: floa
     return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[6], rx), iscale(1.0 / b[6], ry))
 
 
-@compiled
+@inner
 def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool) -> ChordBox:
     """Enclosure of ``arc_to_arc``."""
     cx, cy = b[1] - a[1], b[2] - a[2]
@@ -95,7 +95,7 @@ def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float
     return (ishift(a[1], rx), ishift(a[2], ry), iscale(1.0 / a[6], rx), iscale(1.0 / a[6], ry), qx, qy)
 
 
-@compiled
+@inner
 def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
     """Enclosure of the chord between two lines."""
     nx, ny = b[4], -b[3]
@@ -105,7 +105,7 @@ def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox
     return (ux, uy, (a[4], a[4]), (-a[3], -a[3]), (nx, nx), (ny, ny))
 
 
-@compiled
+@inner
 def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
     """Enclosure of ``chord_along`` for all w in a box."""
     branch = curve[BRANCH]
@@ -123,7 +123,7 @@ def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> C
     return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
 
 
-@compiled
+@inner
 def one_sided(turn: Interval, sign: float) -> Interval:
     """Cut a cross product known to keep its sign (0 at a tangency) to that side."""
     if sign > 0.0:
@@ -131,7 +131,7 @@ def one_sided(turn: Interval, sign: float) -> Interval:
     return (min(turn[0], 0.0), min(turn[1], 0.0))
 
 
-@compiled
+@inner
 def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
     r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
 
@@ -158,7 +158,7 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
     return iscale(0.5 / (a[6] * b[6]), isqrt(inside))
 
 
-@compiled
+@inner
 def arcs_motion(a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float) -> CenterMotion:
     """``center_motion`` between arcs of which each contact direction is nearly the other."""
     _, _, rx, ry, _, _ = chord
@@ -183,7 +183,7 @@ def arcs_motion(a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox,
     return (turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
 
 
-@compiled
+@inner
 def center_motion(a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float) -> CenterMotion:
     """Enclosures over alpha in [low, high] of what the instant centre's speed P' is made of.
 

@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import HEIGHT, State, chord_state, parameter_on, regular_error
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import BLUR, COINCIDENCE, KAPPA, LENGTH, MIDDLE, SHIFT
 from holdfast.kernels.through_motion import CONCENTRIC, TURN, from_coincidence, is_regular
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@inner
 def tail_radius(curve: Array, state: State, reach: float) -> float:
     """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians off.
 
@@ -43,7 +43,7 @@ def tail_radius(curve: Array, state: State, reach: float) -> float:
     return 5.0 * eta / turn + 1.3 * d / turn * reach
 
 
-@compiled
+@inner
 def root_error(square: float, doubt: float) -> float:
     """Error of a root of a number that may be ``doubt`` off (negative ones count as 0)."""
     if square <= 0.0:
@@ -51,7 +51,7 @@ def root_error(square: float, doubt: float) -> float:
     return min(sqrt(doubt), doubt / sqrt(square))
 
 
-@compiled
+@inner
 def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
     """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one there."""
     d, eta, kind = curve[LENGTH], curve[BLUR], curve[COINCIDENCE]
@@ -80,14 +80,14 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     return shift + eta + 1.01 * root_error(square, shift * (2.0 * a[6] + shift)) + 1.6 * a[6] * e / gap
 
 
-@compiled
+@inner
 def tail_disc(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
     """A disc (x, y, radius in mm) that holds the tails of a curve for all orientations within ``reach`` of psi."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
     return (state[0], state[1], disc_radius(a, b, curve, state, psi, reach + 1e-15))
 
 
-@compiled
+@inner
 def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
     """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to ``reach``."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
@@ -102,7 +102,7 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
     return (a[1], a[2], 1.1 * a[5])
 
 
-@compiled
+@inner
 def value_disc(a: Array, b: Array, curve: Array, psi: float, reach: float, mode: float) -> tuple[float, float]:
     """A middle value of a curve for orientations within ``reach`` of psi, and how far its values may be from it."""
     x, y, radius = tail_disc(a, b, curve, psi, reach)

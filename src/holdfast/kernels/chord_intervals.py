@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.chord import chord, parameter_on
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.through_motion import EXACT, are_concentric, are_one_chord_apart, beyond_line
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ SPARE = 1e-8
 ROUNDINGS = 32.0 * 1.2e-16
 
 
-@compiled
+@inner
 def add_event(events: Array, count: int, alpha: float, kind: float, error: float) -> int:
     """Append a direction, brought into [0, 2 pi), and a bound of its error to the events; return the new count."""
     alpha = alpha % TURN
@@ -52,7 +52,7 @@ def add_event(events: Array, count: int, alpha: float, kind: float, error: float
     return count + 1
 
 
-@compiled
+@inner
 def add_pair(events: Array, count: int, middle: float, cosine: float, kind: float, rounding: float) -> int:
     """Append both solutions of cos(alpha - middle) = cosine, if there are any; ``rounding`` bounds the cosine's error."""
     if abs(cosine) <= 1.0:
@@ -63,7 +63,7 @@ def add_pair(events: Array, count: int, middle: float, cosine: float, kind: floa
     return count
 
 
-@compiled
+@inner
 def point_on(row: Array, parameter: float) -> tuple[float, float]:
     """Point of a feature at a parameter."""
     if row[0] == 0.0:
@@ -72,7 +72,7 @@ def point_on(row: Array, parameter: float) -> tuple[float, float]:
     return (row[1] + row[6] * (c * row[3] - s * row[4]), row[2] + row[6] * (s * row[3] + c * row[4]))
 
 
-@compiled
+@inner
 def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: float, turned: float) -> int:
     """Directions at which the chord runs from an end of ``moving`` to the carrier of ``fixed``.
 
@@ -95,7 +95,7 @@ def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: fl
     return count
 
 
-@compiled
+@inner
 def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: float, turned: float) -> int:
     """Directions at which a chord between a line and an arc has parallel normals."""
     nx, ny = line[4], -line[3]
@@ -112,7 +112,7 @@ def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: f
     return add_pair(events, count, middle, (apart - arc[6]) / d, TANGENCY, rounding)
 
 
-@compiled
+@inner
 def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) -> int:
     """Directions at which a chord between two arcs has parallel normals."""
     dx, dy = b[1] - a[1], b[2] - a[2]
@@ -128,7 +128,7 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
     return add_gap(events, count, middle, apart, d, a, b, a[6] + b[6])
 
 
-@compiled
+@inner
 def add_gap(events: Array, count: int, middle: float, apart: float, d: float, a: Array, b: Array, gap: float) -> int:
     """Append the tangencies at which the centre of b, moved back by the chord, is ``gap`` away from the centre of a.
 
@@ -148,7 +148,7 @@ def add_gap(events: Array, count: int, middle: float, apart: float, d: float, a:
     return add_event(events, count, middle - gamma, TANGENCY, spread)
 
 
-@compiled
+@inner
 def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
     """All directions at which a chord may begin or cease to exist, sorted; return their number."""
     count = add_end_events(events, int(np.int64(0)), a, b, d, 0.0)
@@ -169,7 +169,7 @@ def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
     return count
 
 
-@compiled
+@inner
 def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
     """Whether a chord of a direction fits between the lines and circles that carry two features."""
     wx, wy = d * cos(alpha), d * sin(alpha)
@@ -183,7 +183,7 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
     return True
 
 
-@compiled
+@inner
 def only_touch(a: Array, b: Array, d: float) -> bool:
     """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or at none.
 
@@ -197,14 +197,14 @@ def only_touch(a: Array, b: Array, d: float) -> bool:
     return arc[0] != 0.0 and abs(apart) - d >= arc[6] - EXACT
 
 
-@compiled
+@inner
 def reaches(row: Array, x: float, y: float) -> bool:
     """Whether a point of a feature's carrier is on the feature, or past its end by no more than ``SPARE``."""
     spare = SPARE if row[0] == 0.0 else SPARE / row[6]
     return abs(parameter_on(row, x, y)) <= row[5] + spare
 
 
-@compiled
+@inner
 def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
     """Whether a chord of a direction lies on both features."""
     if not carriers_meet(a, b, d, alpha):
@@ -213,7 +213,7 @@ def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
     return reaches(a, c[0], c[1]) and reaches(b, c[0] + d * cos(alpha), c[1] + d * sin(alpha))
 
 
-@compiled
+@inner
 def is_alive(
     a: Array, b: Array, d: float, branch: float, low: float, high: float, kind_low: float, kind_high: float
 ) -> bool:
@@ -234,7 +234,7 @@ def is_alive(
     return high > low and abs(c[2] * c[5] - c[3] * c[4]) < STEADY
 
 
-@compiled
+@inner
 def chord_intervals(a: Array, b: Array, d: float) -> Array:
     """All ranges of direction of a chord of length d from feature a to feature b.
 
@@ -274,7 +274,7 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
     return out[:found]
 
 
-@compiled
+@inner
 def branch_intervals(
     events: Array, count: int, a: Array, b: Array, d: float, branch: float, out: Array, found: int
 ) -> int:

@@ -12,18 +12,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@inner
 def cross(ax: float, ay: float, bx: float, by: float) -> float:
     """Cross product of two vectors of the plane."""
     return ax * by - ay * bx
 
 
-@compiled
+@inner
 def minors(points: Array, normals: Array, length: float, out: Array) -> float:
     """Null vector of the four wrenches, not scaled: their signed 3x3 minors.
 
@@ -56,7 +56,7 @@ def minors(points: Array, normals: Array, length: float, out: Array) -> float:
     return abs(out[0]) + abs(out[1]) + abs(out[2]) + abs(out[3])
 
 
-@compiled
+@inner
 def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
     """Outward unit normal of a feature at a point on it."""
     if row[0] == 0.0:

@@ -12,25 +12,30 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from hashlib import sha256
 from pathlib import Path
+from threading import Lock
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config as numba_config
+from numba.core.caching import FunctionCache, NullCache
+from numba.core.runtime.nrt import rtsys
 
-__all__ = ["cache_folder", "compiled", "is_first_run"]
+__all__ = ["cache_folder", "compiled", "inner", "is_first_run"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FOLDERS_KEPT = 3
+# Whether kernels that only kernels call are made callable from Python too, for tests; it takes longer to compile.
+ALL_CALLABLE = os.environ.get("HOLDFAST_KERNELS") == "callable"
 
 
 def source_hash() -> str:
     """Hash of the package's sources, of where they are, and of the versions that compile them."""
     package = Path(__file__).resolve().parent
-    digest = sha256(f"{sys.version} numba {numba.__version__} {package}".encode())
+    digest = sha256(f"{sys.version} numba {numba.__version__} {package} {ALL_CALLABLE}".encode())
     for path in sorted(package.glob("*.py")):
         digest.update(path.name.encode())
         digest.update(path.read_bytes())
@@ -80,22 +85,68 @@ def is_first_run() -> bool:
     return folder is None or next(folder.rglob("type_one.type_one_cell-*.nbi"), None) is None
 
 
+class StoredCode(FunctionCache):
+    """Numba's cache of one function, without the wait before machine code is read.
+
+    Numba would first set up all it needs to compile, a fifth of a second. Code that is there needs only the allocator of
+    arrays; where it is not there, the compiler sets up the rest itself.
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The machine code stored for a signature, or None."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+
+
+class LateCache:
+    """The cache of a kernel, opened when the kernel is first called or compiled into another.
+
+    Most kernels are never looked up once those that call them are stored, and opening a cache touches the disk.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self.function = function
+        self.folder = folder
+
+    @cached_property
+    def opened(self) -> Any:
+        """Numba's cache; it reads the folder from a setting of the whole process, which is put back."""
+        config: Any = numba_config
+        with OPENING:
+            before = config.CACHE_DIR
+            config.CACHE_DIR = str(self.folder)
+            try:
+                return StoredCode(self.function)  # type: ignore[no-untyped-call]
+            except RuntimeError:
+                return NullCache()
+            finally:
+                config.CACHE_DIR = before
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.opened, name)
+
+
+OPENING = Lock()
+
+
 def compiled(function: Function) -> Function:
-    """Compile a kernel on first use, without the interpreter lock, and keep the machine code on disk if possible.
+    """Compile a kernel that Python calls on first use, without the interpreter lock, and keep the machine code on disk if
+    possible.
 
     Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments of slices,
     and long kernels that call other long kernels (every caller is optimized together with all it calls).
     """
+    kernel: Any = numba.njit(nogil=True, error_model="numpy")(function)
     folder = cache_folder()
-    if folder is None:
-        return cast(Function, numba.njit(nogil=True, error_model="numpy")(function))
-    # Numba reads the folder when it decorates; the setting of the rest of the process is put back.
-    config: Any = numba_config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(folder)
-    try:
-        return cast(Function, numba.njit(nogil=True, error_model="numpy", cache=True)(function))
-    except RuntimeError:
-        return cast(Function, numba.njit(nogil=True, error_model="numpy")(function))
-    finally:
-        config.CACHE_DIR = before
+    if folder is not None:
+        kernel._cache = LateCache(function, folder)
+    return cast(Function, kernel)
+
+
+def inner(function: Function) -> Function:
+    """Compile a kernel that only kernels call: its code becomes part of theirs, and is not kept or made callable itself."""
+    if ALL_CALLABLE:
+        return compiled(function)
+    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast(Function, numba.njit(nogil=True, error_model="numpy", **options)(function))

@@ -24,7 +24,7 @@ from math import cos, hypot, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.vise_checks import APART, COLUMNS, FEATURES, KIND, PSI, ROWS, TAIL_X, TAIL_Y
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ WORK_LENGTH = 18
 PITCH_X, PITCH_Y, ROW_OFFSET, MIN_GAP, PEG_RADIUS, CONTACT_MARGIN, WRENCH_LENGTH, BLUR = range(8)
 
 
-@compiled
+@inner
 def take_pegs(record: Array, setting: Array, w: Array) -> None:
     """Bring the pegs of a (19,) record to their places on the jaws, and the unknowns to its own."""
     w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
@@ -48,7 +48,7 @@ def take_pegs(record: Array, setting: Array, w: Array) -> None:
         w[STEP_Y, k] = record[ROWS + k] * setting[PITCH_Y] + w[SLIDE, k] * setting[ROW_OFFSET]
 
 
-@compiled
+@inner
 def touch(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
     """Fill in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
@@ -71,7 +71,7 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
         w[SLOPES + k, 3] = w[SLIDE, k] * (gx * cosine + gy * sine)
 
 
-@compiled
+@inner
 def invert(w: Array) -> float:
     """Invert the Jacobian by Gauss and Jordan's elimination with pivots by rows, and make the Newton step.
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import curve_value
 from holdfast.kernels.chord_discs import value_disc
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import HEAD, TAIL
 from holdfast.kernels.pieces import (
     BEND_HIGH,
@@ -64,7 +64,7 @@ STACK_LENGTH = 18
 ROUNDINGS = 8.0 * 1.2e-16
 
 
-@compiled
+@inner
 def value_at(
     psi: float, curve: int, features: Array, integers: IntArray, reals: Array, mode: float
 ) -> tuple[float, float, float, float]:
@@ -77,7 +77,7 @@ def value_at(
     return value, slope, error, spread
 
 
-@compiled
+@inner
 def first_guess(low: float, high: float, f_low: float, f_high: float, slope_low: float, slope_high: float) -> float:
     """Where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the straight line
     where its slopes vary too much for that."""
@@ -90,7 +90,7 @@ def first_guess(low: float, high: float, f_low: float, f_high: float, slope_low:
     return low + width * along
 
 
-@compiled
+@inner
 def solve(
     low: float,
     high: float,
@@ -144,7 +144,7 @@ def solve(
     return (psi, abs(rest) + error)
 
 
-@compiled
+@inner
 def targets(low: float, high: float, offset: float, period: float) -> tuple[int, int]:
     """First and last k with offset + k period in a closed range; a period of 0 stands for k = 0 alone."""
     if period == 0.0:
@@ -152,7 +152,7 @@ def targets(low: float, high: float, offset: float, period: float) -> tuple[int,
     return (int(ceil((low - offset) / period)), int(floor((high - offset) / period)))
 
 
-@compiled
+@inner
 def disc_bounds(
     low: float, high: float, curve: int, features: Array, integers: IntArray, reals: Array, mode: float
 ) -> tuple[float, float]:
@@ -163,21 +163,21 @@ def disc_bounds(
     return (value - radius, value + radius)
 
 
-@compiled
+@inner
 def value_between(piece: Array, psi: float) -> float:
     """Linear interpolation of a piece's value."""
     along = (psi - piece[LOW]) / (piece[HIGH] - piece[LOW])
     return piece[VALUE_LOW] + along * (piece[VALUE_HIGH] - piece[VALUE_LOW])
 
 
-@compiled
+@inner
 def sag(piece: Array) -> float:
     """How far a steady piece may be from its linear interpolation, by its bend and by the errors at its ends."""
     width = piece[HIGH] - piece[LOW]
     return piece[BEND_HIGH] * width * width / 8.0 + max(piece[VALUE_ERROR_LOW], piece[VALUE_ERROR_HIGH])
 
 
-@compiled
+@inner
 def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
     """Whether f may take a target, told from the ends of two steady pieces alone."""
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
@@ -188,7 +188,7 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
     return k <= last
 
 
-@compiled
+@inner
 def crossings(
     first: Array,
     second: Array,

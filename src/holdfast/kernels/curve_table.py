@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import write_curve
 from holdfast.kernels.chord_intervals import chord_intervals
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.curve_columns import (
     COSINE,
     CURVE_INTEGERS,
@@ -34,7 +34,7 @@ IntArray = NDArray[np.int64]
 ROUNDING = 1e-9
 
 
-@compiled
+@inner
 def reach(row: Array) -> float:
     """Largest distance of a feature's points from its middle (line) or centre (arc)."""
     return row[5] if row[0] == 0.0 else row[6]
@@ -112,7 +112,7 @@ def tail_curves(
     return integers[:count], reals[:count], whole[:upright_count], uprights[:upright_count], stretches[:stretch_count]
 
 
-@compiled
+@inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
     """Write the whole numbers of a curve or upright."""
     row[0], row[1], row[2], row[3], row[4] = tail, head, column_step, row_step, center

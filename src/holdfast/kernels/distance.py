@@ -7,12 +7,12 @@ from math import atan2, cos, hypot, inf, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@inner
 def segment_distance(x: float, y: float, row: Array) -> float:
     """Distance in mm from a point to one segment (row layout of ``segment_rows``)."""
     dx, dy = x - row[1], y - row[2]
@@ -30,7 +30,7 @@ def segment_distance(x: float, y: float, row: Array) -> float:
     return min(to_low, to_high)
 
 
-@compiled
+@inner
 def outline_distance(x: float, y: float, rows: Array) -> float:
     """Distance in mm from a point to the nearest of (N, 8) segments."""
     best = inf
@@ -48,7 +48,7 @@ def outline_distances(points: Array, rows: Array) -> Array:
     return out
 
 
-@compiled
+@inner
 def winding_angle(x: float, y: float, row: Array) -> float:
     """Angle in radians that one segment, run along its direction, turns around a point not on it."""
     dx, dy = x - row[1], y - row[2]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-@compiled
+@inner
 def grown(array: Array) -> Array:
     """A copy of a (N, M) array with room for twice as many rows."""
     out = np.empty((2 * array.shape[0], array.shape[1]))
@@ -21,7 +21,7 @@ def grown(array: Array) -> Array:
     return out
 
 
-@compiled
+@inner
 def grown_whole(array: IntArray) -> IntArray:
     """A copy of a (N, M) array of whole numbers with room for twice as many rows."""
     out = np.empty((2 * array.shape[0], array.shape[1]), np.int64)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import ceil, cos, floor, inf, pi, sqrt
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 
 Interval = tuple[float, float]
 
@@ -18,38 +18,38 @@ SMALLEST = 1e-300
 TURN = 2.0 * pi
 
 
-@compiled
+@inner
 def outward(low: float, high: float) -> Interval:
     """Widen a pair of rounded bounds."""
     return (low - ROUNDING * abs(low) - SMALLEST, high + ROUNDING * abs(high) + SMALLEST)
 
 
-@compiled
+@inner
 def iadd(a: Interval, b: Interval) -> Interval:
     """a + b."""
     return outward(a[0] + b[0], a[1] + b[1])
 
 
-@compiled
+@inner
 def isub(a: Interval, b: Interval) -> Interval:
     """a - b."""
     return outward(a[0] - b[1], a[1] - b[0])
 
 
-@compiled
+@inner
 def ineg(a: Interval) -> Interval:
     """-a."""
     return (-a[1], -a[0])
 
 
-@compiled
+@inner
 def imul(a: Interval, b: Interval) -> Interval:
     """a b."""
     p, q, r, s = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
     return outward(min(p, q, r, s), max(p, q, r, s))
 
 
-@compiled
+@inner
 def iscale(c: float, a: Interval) -> Interval:
     """c a for a number c."""
     if c >= 0.0:
@@ -57,14 +57,14 @@ def iscale(c: float, a: Interval) -> Interval:
     return outward(c * a[1], c * a[0])
 
 
-@compiled
+@inner
 def ishift(c: float, a: Interval) -> Interval:
     """c + a for a number c."""
     low, high = outward(c + a[0], c + a[1])
     return (low - ROUNDING * abs(c), high + ROUNDING * abs(c))
 
 
-@compiled
+@inner
 def isquare(a: Interval) -> Interval:
     """a squared."""
     low, high = a[0] * a[0], a[1] * a[1]
@@ -73,14 +73,14 @@ def isquare(a: Interval) -> Interval:
     return outward(min(low, high), max(low, high))
 
 
-@compiled
+@inner
 def isqrt(a: Interval) -> Interval:
     """Square root of the non-negative part of a."""
     low, high = outward(sqrt(max(a[0], 0.0)), sqrt(max(a[1], 0.0)))
     return (max(low, 0.0), high)
 
 
-@compiled
+@inner
 def idivide(a: Interval, b: Interval) -> Interval:
     """a / b; everything when b contains 0."""
     if b[0] <= 0.0 <= b[1]:
@@ -89,7 +89,7 @@ def idivide(a: Interval, b: Interval) -> Interval:
     return outward(min(p, q, r, s), max(p, q, r, s))
 
 
-@compiled
+@inner
 def icos(a: Interval) -> Interval:
     """Cosine of angles in radians."""
     if a[1] - a[0] >= TURN:
@@ -107,20 +107,20 @@ def icos(a: Interval) -> Interval:
     return (max(low, -1.0), min(high, 1.0))
 
 
-@compiled
+@inner
 def isin(a: Interval) -> Interval:
     """Sine of angles in radians."""
     quarter = pi / 2.0
     return icos(isub(a, (quarter, quarter)))
 
 
-@compiled
+@inner
 def idot(ax: Interval, ay: Interval, bx: Interval, by: Interval) -> Interval:
     """Scalar product of two vectors."""
     return iadd(imul(ax, bx), imul(ay, by))
 
 
-@compiled
+@inner
 def icross(ax: Interval, ay: Interval, bx: Interval, by: Interval) -> Interval:
     """Cross product of two vectors of the plane."""
     return isub(imul(ax, by), imul(ay, bx))

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.certifying import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, end_slack, sizes
 from holdfast.kernels.closure import minors
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.contacts import (
     BLUR,
     CONTACT_MARGIN,
@@ -82,7 +82,7 @@ DRIFT, TILT, ARM, ARM_BAND, MOMENT, MOMENT_BAND, PUSH, PUSH_BAND, ERROR, MINOR_B
 NUMBERS = 11
 
 
-@compiled
+@inner
 def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
     """Bring the unknowns to the middle of a part, z0 + V s, with what rounding leaves of the sum, in mm, at NEWTON."""
     for i in range(4):
@@ -97,7 +97,7 @@ def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> No
         w[NEWTON, i] = ((z[i] - (total - part)) + (step - part)) * scale
 
 
-@compiled
+@inner
 def spread(
     record: Array,
     features: Array,
@@ -149,7 +149,7 @@ def spread(
         b[PUSH_BAND, k] = tilt + turn + ROUNDINGS
 
 
-@compiled
+@inner
 def turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> tuple[float, float]:
     """Size of the cross product of two normals, and how much it varies over a part."""
     one, other = pairs[2, i, 0] * pairs[2, j, 1], pairs[2, i, 1] * pairs[2, j, 0]
@@ -161,7 +161,7 @@ def turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: A
     return (abs(cross), min(band, arcs_turned_by(record, features, i, j, pairs, w, b)))
 
 
-@compiled
+@inner
 def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> float:
     """How much the cross product of the normals of two arcs varies over a part; infinite for others.
 
@@ -177,7 +177,7 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
     return (b[TILT, i] * (apart + varies) + varies) / two[6] + ROUNDING
 
 
-@compiled
+@inner
 def is_broken(record: Array, features: Array, setting: Array, w: Array, pairs: Array, null: Array, b: Array) -> bool:
     """Whether some rule is broken everywhere in a part."""
     reach = 0.0
@@ -210,7 +210,7 @@ def is_broken(record: Array, features: Array, setting: Array, w: Array, pairs: A
     return not (may_clamp(1.0, size, w, null, b) or may_clamp(-1.0, size, w, null, b))
 
 
-@compiled
+@inner
 def may_clamp(sign: float, size: float, w: Array, null: Array, b: Array) -> bool:
     """Whether forces of one sign may close, and closing the vise clamp; the force is the left jaw's push, and as well what
     the right jaw takes up. ``size`` is the least that the sizes of the minors add up to."""
@@ -228,7 +228,7 @@ def may_clamp(sign: float, size: float, w: Array, null: Array, b: Array) -> bool
     return left >= LEAST_CLAMPING * size and right >= LEAST_CLAMPING * size
 
 
-@compiled
+@inner
 def combine(frame: Array, size: float, length: float, w: Array, b: Array, slopes: Array) -> None:
     """Fill in ``slopes`` (4, 4, 4): the Jacobian in the frame, how much each entry varies over a part, and of the combined
     values (row 0) and their errors (row 1); the last is work space."""
@@ -260,7 +260,7 @@ def combine(frame: Array, size: float, length: float, w: Array, b: Array, slopes
             slopes[2, 1, i] += abs(frame[0, k, i]) * b[ERROR, k]
 
 
-@compiled
+@inner
 def step(place: Array, slopes: Array, bounds: Array) -> int:
     """A step of Hansen and Sengupta.
 
@@ -304,7 +304,7 @@ def step(place: Array, slopes: Array, bounds: Array) -> int:
     return verdict
 
 
-@compiled
+@inner
 def begin(record: Array, frame: Array, length: float, place: Array) -> None:
     """The whole box of a record in its frame, a little larger."""
     turn = length * record[REACH] + LEAST_REACH
@@ -315,7 +315,7 @@ def begin(record: Array, frame: Array, length: float, place: Array) -> None:
         place[1, j] = (1.0 + RIM) * (abs(frame[1, 0, j]) * turn + tail * radius + 2.0 * abs(frame[1, 3, j]) * turn)
 
 
-@compiled
+@inner
 def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Array, root: Array) -> None:
     """Write a part with exactly one solution as a record: its middle, and how far the solution may be from there."""
     for k in range(PSI):
@@ -329,7 +329,7 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
         root[RADIUS] += max(max(abs(frame[1, 1, j]), abs(frame[1, 2, j])), abs(frame[1, 3, j]) / 2.0) * width
 
 
-@compiled
+@inner
 def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: float, whole: bool) -> int:
     """Put what remains of a part on the stack: ``whole`` or when it became much smaller in a direction where it was more
     than ``least`` mm wide, else in halves; the new height."""
@@ -352,7 +352,7 @@ def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: f
     return waiting + (1 if smaller else 2)
 
 
-@compiled
+@inner
 def narrow(
     record: Array,
     features: Array,

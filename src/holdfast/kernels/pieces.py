@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, valued
 from holdfast.kernels.chord_discs import tail_disc, value_disc
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import (
     COLUMN_STEP,
     END_STRETCH,
@@ -92,13 +92,13 @@ EDGE_LENGTH = 13
 MOST_TURN = 1.0
 
 
-@compiled
+@inner
 def unwrapped(value: float, near: float) -> float:
     """An angle moved by whole turns to be nearest to another."""
     return value + FULL_TURN * floor((near - value) / FULL_TURN + 0.5)
 
 
-@compiled
+@inner
 def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: float) -> None:
     """Write what a piece needs of a chord at one of its ends to a (13,) row."""
     cosine, sine = cos(psi), sin(psi)
@@ -120,7 +120,7 @@ def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: 
     edge[HEAD_Y] = side_b * (cosine * state[5] - sine * state[4])
 
 
-@compiled
+@inner
 def slope_range(
     slope_low: float, slope_high: float, bend_low: float, bend_high: float, width: float
 ) -> tuple[float, float]:
@@ -140,7 +140,7 @@ def slope_range(
     return (min(lowest, slope_low, slope_high), max(highest, slope_low, slope_high))
 
 
-@compiled
+@inner
 def value_bounds(
     value_low: float, value_high: float, lowest: float, highest: float, width: float
 ) -> tuple[float, float]:
@@ -163,7 +163,7 @@ def value_bounds(
     return (-inf, inf)
 
 
-@compiled
+@inner
 def bend_beside(
     stretch: Array, a: Array, d: float, reach: float, low: float, high: float, mode: float
 ) -> tuple[float, float]:
@@ -194,13 +194,13 @@ def bend_beside(
     return (-inf, inf)
 
 
-@compiled
+@inner
 def front(x: float, y: float) -> float:
     """A direction with positive x as y / (x + abs(y))."""
     return y / (x + abs(y))
 
 
-@compiled
+@inner
 def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
     """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there are none.
 
@@ -220,7 +220,7 @@ def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tupl
     return (-1.0, front(bx, by)) if turn > 0.0 else (front(bx, by), 1.0)
 
 
-@compiled
+@inner
 def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
     """Write the directions of the forces of a piece's pegs, from the normals at its ends."""
     for k in range(2):
@@ -240,7 +240,7 @@ def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
             row[PUSH_LEFT_LOW + 2 * k], row[PUSH_LEFT_HIGH + 2 * k] = -1.0, 1.0
 
 
-@compiled
+@inner
 def write_steady(
     row: Array, a: Array, curve: Array, low: Array, high: Array, stretch: Array, width: float, mode: float
 ) -> None:
@@ -280,7 +280,7 @@ def write_steady(
     row[STEADY] = 1.0
 
 
-@compiled
+@inner
 def write_beside(
     row: Array, a: Array, b: Array, curve: Array, stretch: Array, tangent_low: float, tangent_high: float, mode: float
 ) -> None:
@@ -309,7 +309,7 @@ def write_beside(
     row[STEADY] = 0.0
 
 
-@compiled
+@inner
 def end_slope(bend_low: float, bend_high: float, side: float) -> tuple[float, float]:
     """Slope at a tangency and its error: infinite, with the sign the bend gives it (side -1 at the low end, +1 at the high
     end), or unknown."""
@@ -320,7 +320,7 @@ def end_slope(bend_low: float, bend_high: float, side: float) -> tuple[float, fl
     return (0.0, inf)
 
 
-@compiled
+@inner
 def add_pieces(
     out: Array,
     count: int,
@@ -400,7 +400,7 @@ def add_pieces(
     return out, count
 
 
-@compiled
+@inner
 def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
     """Bring the positions at both ends of a piece on a whole circle to the turn of its inside."""
     width = row[HIGH] - row[LOW]
@@ -412,7 +412,7 @@ def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
         row[column] = unwrapped(row[column], middle)
 
 
-@compiled
+@inner
 def cell_pieces(
     cell_low: float,
     cell_high: float,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.certifying import held, wrenches
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.contacts import WORK_LENGTH, WRENCH_LENGTH, take_pegs, touch
 from holdfast.kernels.vise_checks import LEAST_SPAN
 
@@ -92,7 +92,7 @@ def stand(kind: IntArray, theta: Array, columns: IntArray, rows: IntArray, order
         row[0], row[1], row[2], row[3] = row[a], row[b], row[c], row[d]
 
 
-@compiled
+@inner
 def comes_before(column: IntArray, row: IntArray, one: int, other: int) -> bool:
     """Whether a peg stands before another in the order of columns and rows."""
     return column[one] < column[other] or (column[one] == column[other] and row[one] < row[other])

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import chord
 from holdfast.kernels.chord_bounds import center_motion
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import BRANCH, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
 from holdfast.kernels.growing import grown
 
@@ -47,7 +47,7 @@ DEPTH = 64
 MOST_MOTION = 2.5
 
 
-@compiled
+@inner
 def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high: float, sign: float) -> bool:
     """Write the stretch over [low, high] to a (14,) row; whether it is good enough, and not to be cut further.
 
@@ -70,7 +70,7 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
     return row[SPEED] <= max(10.0 * typical + 8.0 * curve[LENGTH], MOST_MOTION * curve[LENGTH] / (high - low))
 
 
-@compiled
+@inner
 def add_parts(
     out: Array,
     count: int,
@@ -108,7 +108,7 @@ def add_parts(
     return out, count
 
 
-@compiled
+@inner
 def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> tuple[Array, int]:
     """Append the stretches of a curve, in order, to ``out`` (grown as needed)."""
     low, high = curve[FROM], curve[TO]

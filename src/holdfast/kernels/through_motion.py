@@ -24,7 +24,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.curve_columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 from holdfast.kernels.interval import (
     Interval,
@@ -57,7 +57,7 @@ NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
 TURN = 2.0 * pi
 
 
-@compiled
+@inner
 def beyond_line(line: Array, arc: Array, d: float) -> float:
     """+1 or -1 when a line and an arc coincide along or against the line's normal, 0 when they do not."""
     apart = line[4] * (arc[1] - line[1]) - line[3] * (arc[2] - line[2])
@@ -68,7 +68,7 @@ def beyond_line(line: Array, arc: Array, d: float) -> float:
     return 0.0
 
 
-@compiled
+@inner
 def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
     """Whether two features are arcs of equal radius with centres one chord length apart."""
     if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
@@ -82,7 +82,7 @@ def are_concentric(a: Array, b: Array) -> bool:
     return a[0] != 0.0 and b[0] != 0.0 and hypot(a[1] - b[1], a[2] - b[2]) <= SAME_CENTER
 
 
-@compiled
+@inner
 def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
     """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see ``beyond_line``)."""
     if are_one_chord_apart(a, b, d):
@@ -98,13 +98,13 @@ def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
     return (NONE, 0.0, 0.0)
 
 
-@compiled
+@inner
 def from_coincidence(alpha: float, middle: float) -> float:
     """Angle in [-pi, pi) from the coincidence."""
     return (alpha - middle + pi) % TURN - pi
 
 
-@compiled
+@inner
 def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
     """Whether the regular formulas are the better ones at an angle from the coincidence."""
     if kind in (NONE, CONCENTRIC) or abs(gamma) > 1.0:
@@ -114,7 +114,7 @@ def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
     return d * (1.0 - cos(gamma)) <= radius
 
 
-@compiled
+@inner
 def shares_a_line(curve: Array, psi: float) -> bool:
     """Whether a chord is so near its coincidence that both contacts share one line of action."""
     kind = curve[COINCIDENCE]
@@ -123,7 +123,7 @@ def shares_a_line(curve: Array, psi: float) -> bool:
     return abs(from_coincidence(psi + curve[SHIFT], curve[MIDDLE])) <= SHARED
 
 
-@compiled
+@inner
 def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     """Tail and its derivative over psi near a coincidence.
 
@@ -169,7 +169,7 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     return (True, (arc[1] + rx, arc[2] + ry, vx, vy, rx, ry))
 
 
-@compiled
+@inner
 def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: float) -> MotionBox:
     """Enclosure of u - c_a, u' and u'' between two arcs."""
     radius = a[6]
@@ -193,7 +193,7 @@ def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: 
     return (rx, ry, vx, vy, ax, ay)
 
 
-@compiled
+@inner
 def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval, way: float) -> MotionBox:
     """Enclosure of the contact on the arc from its centre, and its two derivatives, for a line and an arc."""
     nx, ny, tx, ty = line[4], -line[3], line[3], line[4]
@@ -218,7 +218,7 @@ def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval,
     )
 
 
-@compiled
+@inner
 def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple[bool, MotionBox]:
     """Enclosures over alpha in [low, high] near a coincidence.
 

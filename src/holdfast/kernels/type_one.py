@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import HEIGHT
 from holdfast.kernels.chord_discs import chord_tail
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.crossing import MOST_ROOTS, MULTIPLE, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
 from holdfast.kernels.growing import grown
@@ -62,7 +62,7 @@ ROLE_X, ROLE_PUSH_LOW, ROLE_PUSH_HIGH, ROLE_VALUE_LEAST, ROLE_VALUE_MOST, ROLE_L
 ROLE_LENGTH = 8
 
 
-@compiled
+@inner
 def place_chord(
     pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, integers: IntArray, reals: Array
 ) -> None:
@@ -78,7 +78,7 @@ def place_chord(
     place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
 
 
-@compiled
+@inner
 def write_roles(pieces: Array, x_column: int, push_column: int, counting: bool, out: Array) -> int:
     """Write the (N, 8) roles of the pieces that may be on one jaw; return their number."""
     count = int(np.int64(0))
@@ -94,7 +94,7 @@ def write_roles(pieces: Array, x_column: int, push_column: int, counting: bool, 
     return count
 
 
-@compiled
+@inner
 def sort_roles(roles: Array, count: int, keys: Array, order: IntArray) -> None:
     """Write the order of roles by their places along x, the rightmost first (Shell's sort)."""
     for k in range(count):
@@ -112,7 +112,7 @@ def sort_roles(roles: Array, count: int, keys: Array, order: IntArray) -> None:
         step //= 3
 
 
-@compiled
+@inner
 def flat_slope(first: Array, second: Array) -> float:
     """A slope of the difference of heights below which two pieces do not clamp hard enough anywhere.
 
@@ -123,7 +123,7 @@ def flat_slope(first: Array, second: Array) -> float:
     return 0.9 * LEAST_CLAMPING * max(apart, 0.0)
 
 
-@compiled
+@inner
 def may_cross(left: Array, right: Array, row_offset: float, pitch_y: float, counting: bool) -> bool:
     """Whether two roles far enough apart may make a fixture: their pushes and their heights allow it.
 

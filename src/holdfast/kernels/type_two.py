@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import POSITION
 from holdfast.kernels.closure import outward_normal
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
 from holdfast.kernels.growing import grown
@@ -39,7 +39,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-@compiled
+@inner
 def place_triple(
     pegs: Array, one: int, two: int, psi: float, reach: float, features: Array, integers: IntArray, reals: Array
 ) -> None:
@@ -51,7 +51,7 @@ def place_triple(
     place_peg(pegs[2], x, y, integers[two, HEAD], column, row, radius)
 
 
-@compiled
+@inner
 def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
     """Lowest and highest value of a . q over a feature's points q (an arc counts as its whole circle)."""
     middle = ax * row[1] + ay * row[2]
@@ -62,7 +62,7 @@ def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
     return (middle - reach, middle + reach)
 
 
-@compiled
+@inner
 def row_meets(
     row: Array, ax: float, ay: float, height: float, error: float, side: float
 ) -> tuple[bool, float, float, float]:
@@ -94,7 +94,7 @@ def row_meets(
     return (True, row[1] + rise * ax + along * ay, row[2] + rise * ay - along * ax, radius + error)
 
 
-@compiled
+@inner
 def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length: float) -> None:
     """Write what right pegs need of three left pegs in place to (5, 3) rows.
 
@@ -131,7 +131,7 @@ def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length
     triple[4, 0] = abs(determinant)
 
 
-@compiled
+@inner
 def may_close(
     triple: Array, row: Array, x: float, y: float, radius: float, cx: float, cy: float, gap: float, limits: Array
 ) -> bool:
@@ -161,7 +161,7 @@ def may_close(
     return largest <= band
 
 
-@compiled
+@inner
 def add_right_pegs(
     out: Array,
     count: int,
@@ -215,7 +215,7 @@ def add_right_pegs(
     return out, count
 
 
-@compiled
+@inner
 def farthest_right(features: Array, low: float, high: float) -> float:
     """How far right in mm along x a peg that touches the part may stand, for psi in [low, high] (arcs as whole circles)."""
     psi, half = (low + high) / 2.0, (high - low) / 2.0

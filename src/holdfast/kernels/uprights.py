@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import blur, parameter_on
 from holdfast.kernels.chord_intervals import PARALLEL
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL
 from holdfast.kernels.curve_columns import FROM as CURVE_FROM
 from holdfast.kernels.curve_columns import TO as CURVE_TO
@@ -51,7 +51,7 @@ ROUNDING = 4e-15
 INSIDE = 1e-12
 
 
-@compiled
+@inner
 def line_uprights(a: Array, b: Array, d: float, out: Array) -> int:
     """Write the uprights between two parallel lines as (from, to, alpha) rows; return their number."""
     nx, ny = a[4], -a[3]
@@ -71,7 +71,7 @@ def line_uprights(a: Array, b: Array, d: float, out: Array) -> int:
     return count
 
 
-@compiled
+@inner
 def arc_uprights(a: Array, b: Array, d: float, out: Array) -> int:
     """Write the uprights between equal arcs one chord apart as (from, to, alpha) rows; return their number."""
     if not are_one_chord_apart(a, b, d):
@@ -91,7 +91,7 @@ def arc_uprights(a: Array, b: Array, d: float, out: Array) -> int:
     return count
 
 
-@compiled
+@inner
 def uprights_between(a: Array, b: Array, d: float) -> Array:
     """Uprights of a chord of length d from feature a to feature b.
 
@@ -110,7 +110,7 @@ def uprights_between(a: Array, b: Array, d: float) -> Array:
     return out[:count]
 
 
-@compiled
+@inner
 def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
     """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its range."""
     low, high = reals[curve, CURVE_FROM] - reals[curve, SHIFT], reals[curve, CURVE_TO] - reals[curve, SHIFT]
@@ -118,7 +118,7 @@ def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tu
     return (inside <= high + INSIDE + reach, min(max(inside, low), high))
 
 
-@compiled
+@inner
 def upright_reach(a: Array, b: Array, upright: Array) -> float:
     """How far in radians the orientation of an upright may be off.
 
@@ -134,7 +134,7 @@ def upright_reach(a: Array, b: Array, upright: Array) -> float:
     return ROUNDING + (error + 4.0 * (abs(hypot(b[1] - a[1], b[2] - a[2]) - d) + abs(a[6] - b[6]))) / d
 
 
-@compiled
+@inner
 def place_upright(
     pegs: Array,
     x: float,
@@ -159,7 +159,7 @@ def place_upright(
     )
 
 
-@compiled
+@inner
 def tail_inside(row: Array, upright: Array, x: float, y: float, radius: float) -> bool:
     """Whether a tail known to a radius in mm may lie in an upright's range on its feature."""
     spare = radius + 1e-10

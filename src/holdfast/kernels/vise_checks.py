@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from holdfast.kernels.chord import parameter_on
 from holdfast.kernels.closure import minors, outward_normal
-from holdfast.kernels.compiling import compiled
+from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL
 from holdfast.kernels.pieces import CURVE, HIGH, LOW
 
@@ -56,7 +56,7 @@ ROUNDING = 1e-14
 MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS = range(4)
 
 
-@compiled
+@inner
 def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> bool:
     """Whether a contact may lie on its feature, at least ``margin`` mm from its ends (a whole circle has none).
 
@@ -70,13 +70,13 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
     return (row[5] - abs(s)) * scale >= margin - slack - 1.2 * radius
 
 
-@compiled
+@inner
 def place_peg(peg: Array, x: float, y: float, feature: int, column: float, line: float, radius: float) -> None:
     """Write one peg to its (6,) place in a work array."""
     peg[0], peg[1], peg[2], peg[3], peg[4], peg[5] = x, y, feature, column, line, radius
 
 
-@compiled
+@inner
 def is_fixture(
     pegs: Array, lefts: float, psi: float, reach: float, features: Array, limits: Array, work: Array, null: Array
 ) -> tuple[int, float]:
@@ -144,7 +144,7 @@ def is_fixture(
     return (2, first_right - first_left)
 
 
-@compiled
+@inner
 def share_a_jaw(one: IntArray, two: IntArray, limits: Array) -> bool:
     """Whether the heads of two chords with a common tail, given by their whole numbers, are different holes of one jaw."""
     k, m = one[COLUMN_STEP], two[COLUMN_STEP]
@@ -153,7 +153,7 @@ def share_a_jaw(one: IntArray, two: IntArray, limits: Array) -> bool:
     return max(k, m, 0) - min(k, m, 0) <= limits[MOST_COLUMN_STEPS]
 
 
-@compiled
+@inner
 def write_record(row: Array, kind: float, pegs: Array, psi: float, apart: float, reach: float) -> None:
     """Write four pegs in place to a (19,) row of the records."""
     row[KIND], row[PSI], row[APART], row[REACH] = kind, psi, apart, reach
@@ -165,7 +165,7 @@ def write_record(row: Array, kind: float, pegs: Array, psi: float, apart: float,
         row[ROWS + k] = pegs[k, 4]
 
 
-@compiled
+@inner
 def write_given_up(row: Array, kind: float, first: Array, second: Array, integers: IntArray) -> None:
     """Write a pair of pieces that was given up, with the middle of their common range, to a (19,) row of the records."""
     for k in range(RECORD_LENGTH):
