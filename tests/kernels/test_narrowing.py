@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import ladders
 from exact_chords import exactly
-from holdfast.kernels import narrowing
+from holdfast.kernels import drifts, narrowing
 from holdfast.kernels.certifying import DISCARDED, OPEN
 from holdfast.kernels.vise_checks import APART, PSI, RADIUS, RECORD_LENGTH, TAIL_X, TAIL_Y
 from holdfast.listing.settling import Box, Limits, settle
@@ -103,10 +103,10 @@ def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None
 
     def still(*arguments: object) -> None:
         spread(*arguments)
-        arguments[-1][narrowing.TILT] = 0.0  # type: ignore[index]
-        arguments[-1][narrowing.ARM_BAND] = 0.0  # type: ignore[index]
-        arguments[-1][narrowing.MOMENT_BAND] = 0.0  # type: ignore[index]
-        arguments[-1][narrowing.PUSH_BAND] = 0.0  # type: ignore[index]
+        arguments[-1][drifts.TILT] = 0.0  # type: ignore[index]
+        arguments[-1][drifts.ARM_BAND] = 0.0  # type: ignore[index]
+        arguments[-1][drifts.MOMENT_BAND] = 0.0  # type: ignore[index]
+        arguments[-1][drifts.PUSH_BAND] = 0.0  # type: ignore[index]
 
     height = -2.5 + 1e-2
     with exactly():
