@@ -106,7 +106,7 @@ def test_the_account_of_the_search_is_one_line(run: Any, searched: dict[str, Any
     searched["result"] = fake_result(7, proof=fake_proof(0))
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
     assert told(outcome) == [
-        "Proven: 82,764 candidates, 1,324 verified, 32 decided in ball arithmetic, none undecided.",
+        "Proven: 82,764 candidates, 1,324 verified, 32 decided by interval arithmetic, none undecided.",
         f"Written to {tmp_path / 'r.json'}.",
     ]
     assert outcome.stderr == ""
@@ -120,7 +120,7 @@ def test_the_algebra_goes_through_no_cells(run: Any, searched: dict[str, Any]) -
     """Its candidates come from polynomials, and each is proven by itself."""
     searched["result"] = fake_result(7, proof=fake_proof(0, cells=0, discarded_by_bound=0, verified=1))
     assert told(run("design", "widget", *VISE)) == [
-        "Proven one by one: 1 candidate of the polynomials, 1 verified, 32 decided in ball arithmetic, none undecided."
+        "Proven one by one: 1 candidate of the polynomials, 1 verified, 32 decided by interval arithmetic, none undecided."
     ]
 
 
@@ -131,7 +131,7 @@ def test_what_is_undecided_is_said_plainly(
     """The first few with their reasons, and where to find the others."""
     searched["result"] = fake_result(7, proof=fake_proof(count))
     lines = told(run("design", "widget", *VISE, "--out", tmp_path / "r.json"))
-    total = f"{82_764 + count:,} candidates, 1,324 verified, 32 decided in ball arithmetic, {count} undecided:"
+    total = f"{82_764 + count:,} candidates, 1,324 verified, 32 decided by interval arithmetic, {count} undecided:"
     assert lines[0] == f"Not proven throughout: {total}"
     named = [f"  Type {'I' * (k % 2 + 1)} on faces 0, 1, 2, 4 at {7.25 * k:.6f} degrees: reason {k}." for k in range(3)]
     assert lines[1 : 1 + min(count, 3)] == named[:count]

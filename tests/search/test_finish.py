@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from holdfast.listing.finish import Candidates, listed_once, standing, twins
+from holdfast.listing.finish import Candidates, changes, listed_once, packed, standing, twins
 
 
 def candidates(count: int) -> Candidates:
@@ -78,3 +78,17 @@ def test_orientations_at_the_ends_of_the_half_turn_are_one() -> None:
     assert (np.abs(standing(turned).theta) < 1e-8).all()
     below = evolve(here, theta=np.array([pi - 1e-9, 2 * pi - 1e-9]))
     assert (np.abs(standing(below).theta) < 1e-8).all()
+
+
+def test_packed_numbers_keep_their_order() -> None:
+    """Rows of whole numbers, packed into one number or several, are ordered as they were."""
+    random = np.random.default_rng(5)
+    for most, width in ((1, 2), (9, 4), (1000, 9), (1 << 40, 3)):
+        numbers = random.integers(0, most + 1, (300, width))
+        words = packed((numbers[:, :1], most), (numbers[:, 1:], most))
+        assert len(words) == -(-width // (63 // int(most).bit_length()))
+        order, packed_order = np.lexsort(numbers.T[::-1]), np.lexsort(words[::-1])
+        assert np.array_equal(numbers[order], numbers[packed_order])
+        fresh = np.ones(300, np.bool_)
+        fresh[1:] = (numbers[order][1:] != numbers[order][:-1]).any(axis=1)
+        assert np.array_equal(changes([word[order] for word in words]), fresh)

@@ -131,7 +131,7 @@ def proof_counts(proof: Proof) -> str:
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
         candidates += " of the polynomials"
-    return f"{candidates}, {proof.verified:,} verified, {settled:,} decided in ball arithmetic"
+    return f"{candidates}, {proof.verified:,} verified, {settled:,} decided by interval arithmetic"
 
 
 def undecided_words(item: Undecided) -> str:

@@ -47,7 +47,6 @@ from holdfast.kernels.contacts import (
 )
 from holdfast.kernels.distance import segment_distance
 from holdfast.kernels.vise_checks import (
-    APART,
     FEATURES,
     GAP_SLACK,
     LEAST_CLAMPING,
@@ -57,8 +56,6 @@ from holdfast.kernels.vise_checks import (
     RADIUS,
     REACH,
     ROUNDING,
-    TAIL_X,
-    TAIL_Y,
 )
 
 Array = NDArray[np.float64]
@@ -241,19 +238,16 @@ def judged(
     return min(verdict, sign_of(sign * push - LEAST_CLAMPING * size, doubt))
 
 
-@inner
 def discs_around(outline: Array, margin: float) -> Array:
     """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
-    discs = np.empty((outline.shape[0], 3))
-    for n in range(outline.shape[0]):
-        half, radius, wide = outline[n, 5], outline[n, 6], 0.0
-        if outline[n, 0] != 0.0:
-            # The disc on the chord, of an arc up to a half circle.
-            wide = radius * cos(half) if half < pi / 2.0 else 0.0
-            half = radius * sin(half) if half < pi / 2.0 else radius
-        discs[n, 0], discs[n, 1] = outline[n, 1] + wide * outline[n, 3], outline[n, 2] + wide * outline[n, 4]
-        discs[n, 2] = 1.001 * (half + margin) * (half + margin)
-    return discs
+    half, radius = outline[:, 5], outline[:, 6]
+    # The disc on the chord, for an arc up to a half circle.
+    short = np.where(outline[:, 0] == 0.0, 0.0, np.minimum(half, pi / 2.0))
+    wide = np.where(half < pi / 2.0, radius * np.cos(short), 0.0)
+    reach = np.where(outline[:, 0] == 0.0, half, radius * np.sin(short)) + margin
+    return np.stack(
+        [outline[:, 1] + wide * outline[:, 3], outline[:, 2] + wide * outline[:, 4], 1.001 * reach**2], axis=1
+    )
 
 
 @inner
@@ -268,40 +262,17 @@ def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
     return True
 
 
-@inner
-def verdict_on(
-    record: Array, features: Array, outline: Array, discs: Array, setting: Array, w: Array, pairs: Array, null: Array
-) -> int:
-    """The verdict on one record; leaves its solution in place."""
-    length = setting[WRENCH_LENGTH]
-    points = pairs[0]
-    take_pegs(record, setting, w)
-    polish(record, features, length, w, points)
-    size, smallest = sizes(record, features, points)
-    radius, unique = certificate(w, size, smallest, length, setting[BLUR])
-    away = length * abs(w[UNKNOWNS, 0] - record[PSI])
-    away = max(away, max(abs(w[UNKNOWNS, 1] - record[TAIL_X]), abs(w[UNKNOWNS, 2] - record[TAIL_Y])))
-    away = max(away, abs(w[UNKNOWNS, 3] - record[APART]))
-    # The exact contact may be this far, where apart is the worst known.
-    box = 2.0 * (record[RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
-    if not (radius < inf and away + box <= unique):
-        return OPEN
-    verdict = judged(record, features, setting, radius, smallest, w, pairs, null)
-    # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
-    if verdict == PROVEN and not is_clear(points, outline, discs, setting[PEG_RADIUS] - TOUCH):
-        return DISCARDED
-    return verdict
-
-
 @compiled
-def certified(records: Array, features: Array, outline: Array, setting: Array, solutions: Array) -> Verdicts:
+def certified(
+    records: Array, features: Array, outline: Array, discs: Array, setting: Array, solutions: Array
+) -> Verdicts:
     """Decide records one by one.
 
     Parameters
     ----------
     records : (N, 19), see ``kernels.vise_checks``; none of them given up.
     features : (F, 10) rows with the slack of their ends.
-    outline : (S, 8) the part's faces.
+    outline, discs : (S, 8) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     setting : see ``kernels.contacts``.
     solutions : (N, 4) receives the unknowns.
 
@@ -309,11 +280,25 @@ def certified(records: Array, features: Array, outline: Array, setting: Array, s
     -------
     (N,) verdicts; open where another solution may be in the record's box
     """
-    verdicts = np.empty(records.shape[0], np.int8)
-    discs = discs_around(outline, setting[PEG_RADIUS])
+    verdicts = np.full(records.shape[0], OPEN, np.int8)
+    length = setting[WRENCH_LENGTH]
     w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
+    points = pairs[0]
     for n in range(records.shape[0]):
-        verdicts[n] = verdict_on(records[n], features, outline, discs, setting, w, pairs, null)
+        record = records[n]
+        take_pegs(record, setting, w)
+        polish(record, features, length, w, points)
+        size, smallest = sizes(record, features, points)
+        radius, unique = certificate(w, size, smallest, length, setting[BLUR])
+        away = 0.0
         for k in range(4):
             solutions[n, k] = w[UNKNOWNS, k]
+            away = max(away, abs(w[UNKNOWNS, k] - record[PSI + k]) * (length if k == 0 else 1.0))
+        # The exact contact may be this far, where apart is the worst known.
+        box = 2.0 * (record[RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
+        if radius < inf and away + box <= unique:
+            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
+            # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
+            if verdicts[n] == PROVEN and not is_clear(points, outline, discs, setting[PEG_RADIUS] - TOUCH):
+                verdicts[n] = DISCARDED
     return verdicts

@@ -20,7 +20,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from holdfast.kernels import vise_checks as record
-from holdfast.kernels.certifying import LEAST_REACH, OPEN, PROVEN, certified
+from holdfast.kernels.certifying import LEAST_REACH, OPEN, PROVEN, certified, discs_around
 from holdfast.kernels.contacts import BLUR
 from holdfast.kernels.narrowing import jacobians, narrowed
 from holdfast.listing.problem import Problem, Progress
@@ -156,7 +156,8 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
 def sifted(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
     """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
     solutions = np.empty((len(records), 4))
-    verdicts = certified(records, problem.rows, problem.outline, setting, solutions)
+    discs = discs_around(problem.outline, problem.vise.peg_radius)
+    verdicts = certified(records, problem.rows, problem.outline, discs, setting, solutions)
     is_proven = verdicts == PROVEN
     proven = records[is_proven]
     proven[:, record.PSI : record.REACH] = solutions[is_proven]

@@ -39,7 +39,7 @@ class Proof:
     discarded_by_bound : candidates that break a rule everywhere within their error.
     verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from two sides, as
         at a joint, counts twice.
-    escalated : candidates that double precision could not decide: they went on to ball arithmetic, or were given up.
+    escalated : candidates that their certificates left open: they went on to interval arithmetic, or were given up.
     undecided : what that could not decide either.
     """
 
