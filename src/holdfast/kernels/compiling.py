@@ -148,5 +148,5 @@ def inner(function: Function) -> Function:
     """Compile a kernel that only kernels call: its code becomes part of theirs, and is not kept or made callable itself."""
     if ALL_CALLABLE:
         return compiled(function)
-    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     return cast(Function, numba.njit(nogil=True, error_model="numpy", **options)(function))

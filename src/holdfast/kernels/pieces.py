@@ -90,6 +90,8 @@ TAIL_X, TAIL_Y, HEAD_X, HEAD_Y, EDGE_ACROSS = range(8, 13)
 EDGE_LENGTH = 13
 # The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
+# The same for directions of sums of two normals.
+LITTLE_TURN = 0.1
 
 
 @inner
@@ -221,16 +223,45 @@ def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tupl
 
 
 @inner
-def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
-    """Write the directions of the forces of a piece's pegs, from the normals at its ends."""
+def shared_push(ax: float, ay: float, bx: float, by: float, share: float, doubt: float) -> tuple[float, float]:
+    """``push_range`` of two unit vectors when neither force is less than ``share`` of the other."""
+    if share <= 0.0:
+        return push_range(ax, ay, bx, by, doubt)
+    px, py, qx, qy = ax + share * bx, ay + share * by, bx + share * ax, by + share * ay
+    one, two = sqrt(px * px + py * py), sqrt(qx * qx + qy * qy)
+    return push_range(px / one, py / one, qx / two, qy / two, doubt)
+
+
+@inner
+def sum_is_long(edge: Array, share: float) -> bool:
+    """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a normal."""
+    cosine = edge[TAIL_X] * edge[HEAD_X] + edge[TAIL_Y] * edge[HEAD_Y]
+    return 1.0 + 2.0 * share * cosine + share * share >= 0.25
+
+
+@inner
+def write_pushes(row: Array, low: Array, high: Array, share: float, turned: float, turn: float) -> None:
+    """Write the directions of the forces of a piece's pegs, from the normals at its ends.
+
+    The hull of both ends is told, widened by as much as directions may sag between them. A normal sags by no more than
+    ``turned``. With a ``share`` (see ``shared_push``) sums p of two normals are meant: when normals turn by no more than
+    ``turn`` in all, abs(p'') w^2 / 8 is at most turned + turn^2 / 4, and p, nowhere shorter than 0.4, may be seen under
+    twice that over 0.4.
+    """
+    doubt = turned
+    if share > 0.0:
+        if turn <= LITTLE_TURN and sum_is_long(low, share) and sum_is_long(high, share):
+            doubt = 5.0 * (2.0 * turned + turn * turn / 4.0)
+        else:
+            share = 0.0
     for k in range(2):
         # Pegs push against the outward normals; the right jaw's pegs push with -F.
         sign = -1.0 if k == 0 else 1.0
-        bottom, top = push_range(
-            sign * low[TAIL_X], sign * low[TAIL_Y], sign * low[HEAD_X], sign * low[HEAD_Y], 2.0 * doubt
+        bottom, top = shared_push(
+            sign * low[TAIL_X], sign * low[TAIL_Y], sign * low[HEAD_X], sign * low[HEAD_Y], share, 2.0 * doubt
         )
-        first, last = push_range(
-            sign * high[TAIL_X], sign * high[TAIL_Y], sign * high[HEAD_X], sign * high[HEAD_Y], 2.0 * doubt
+        first, last = shared_push(
+            sign * high[TAIL_X], sign * high[TAIL_Y], sign * high[HEAD_X], sign * high[HEAD_Y], share, 2.0 * doubt
         )
         row[PUSH_LEFT_LOW + 2 * k] = min(bottom, first) - 4.0 * doubt - HAIR
         row[PUSH_LEFT_HIGH + 2 * k] = max(top, last) + 4.0 * doubt + HAIR
@@ -242,7 +273,15 @@ def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
 
 @inner
 def write_steady(
-    row: Array, a: Array, curve: Array, low: Array, high: Array, stretch: Array, width: float, mode: float
+    row: Array,
+    a: Array,
+    curve: Array,
+    low: Array,
+    high: Array,
+    stretch: Array,
+    width: float,
+    share: float,
+    mode: float,
 ) -> None:
     """Write the enclosures of a piece whose instant centre moves at a bounded speed."""
     speed, sag = stretch[SPEED], width * width / 8.0
@@ -269,8 +308,9 @@ def write_steady(
     row[X_RIGHT] = max(low[EDGE_X], high[EDGE_X]) + doubt
     if mode == HEIGHT:
         arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width
-        if (curved * arm + 1.0) * width <= MOST_TURN:
-            write_pushes(row, low, high, turned)
+        turn = (curved * arm + 1.0) * width
+        if turn <= MOST_TURN:
+            write_pushes(row, low, high, share, turned, turn)
         else:
             row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
     # The slope of y . P is bounded by |P| + K.
@@ -329,6 +369,7 @@ def add_pieces(
     reals: Array,
     stretches: Array,
     pitch_x: float,
+    share: float,
     index: int,
     low: float,
     high: float,
@@ -340,6 +381,7 @@ def add_pieces(
 
     Parameters
     ----------
+    share : see ``shared_push``.
     low, high : psi in radians, inside the curve's range and inside one cell.
     base : psi at the low end of the curve's range.
     edges : (2, 13) work space.
@@ -385,7 +427,7 @@ def add_pieces(
         if circles and steady:
             unwind(row, a, b, curve)
         if steady:
-            write_steady(row, a, curve, at_low, at_high, stretch, right - left, mode)
+            write_steady(row, a, curve, at_low, at_high, stretch, right - left, share, mode)
         else:
             write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
             if circles:
@@ -422,6 +464,7 @@ def cell_pieces(
     reals: Array,
     stretches: Array,
     pitch_x: float,
+    least_margin: float,
     mode: float,
 ) -> Array:
     """Pieces of curves inside one cell.
@@ -433,12 +476,15 @@ def cell_pieces(
     features : (F, 8) rows.
     integers, reals, stretches : (C, 7), (C, 14) and (S, 13) curve table.
     pitch_x : column pitch in mm.
+    least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
+        m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
 
     Returns
     -------
     (N, 26) array, in the order of the curves
     """
+    share = least_margin / (1.0 - 3.0 * least_margin)
     out = np.empty((64, PIECE_LENGTH))
     edges = np.empty((2, EDGE_LENGTH))
     count = int(np.int64(0))
@@ -451,6 +497,19 @@ def cell_pieces(
             left, right = max(low, cell_low), min(low + span, cell_high)
             if right - left > 0.0:
                 out, count = add_pieces(
-                    out, count, features, integers, reals, stretches, pitch_x, index, left, right, low, mode, edges
+                    out,
+                    count,
+                    features,
+                    integers,
+                    reals,
+                    stretches,
+                    pitch_x,
+                    share,
+                    index,
+                    left,
+                    right,
+                    low,
+                    mode,
+                    edges,
                 )
     return out[:count]

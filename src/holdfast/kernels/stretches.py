@@ -33,7 +33,7 @@ STRETCH_LENGTH = 14
 
 # Widest and narrowest stretches in radians, and the length to which those beside a tangency are cut.
 WIDEST = 0.25
-NARROWEST = 1e-3
+NARROWEST = 1e-7
 BESIDE = 4e-3
 # Each part of a stretch beside a tangency is this much shorter than the one before it; the last between two arcs, and
 # between a line and an arc, where the chord may run along the line (as at a tangent joint of the part) and pass the
@@ -44,7 +44,7 @@ LAST_OF_ARCS, LAST_OF_LINE = 1e-8, 1e-12
 LAST = 1e-7
 DEPTH = 64
 # How far P may move over a stretch, in chord lengths.
-MOST_MOTION = 2.5
+MOST_MOTION = 1.0
 
 
 @inner
@@ -67,7 +67,7 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
         row[SPEED] = size / row[LEAST_CUBE] * (1.0 + 1e-12)
     middle = (least + most) / 2.0
     typical = hypot(x[0] + x[1], y[0] + y[1]) / (2.0 * middle * middle * middle)
-    return row[SPEED] <= max(10.0 * typical + 8.0 * curve[LENGTH], MOST_MOTION * curve[LENGTH] / (high - low))
+    return row[SPEED] <= max(4.0 * typical + 4.0 * curve[LENGTH], MOST_MOTION * curve[LENGTH] / (high - low))
 
 
 @inner

@@ -39,6 +39,7 @@ from holdfast.kernels.pieces import (
 from holdfast.kernels.vise_checks import (
     GAP_SLACK,
     LEAST_CLAMPING,
+    LEAST_MARGIN,
     MIN_GAP,
     PEG_LENGTH,
     RECORD_LENGTH,
@@ -178,7 +179,18 @@ def type_one_cells(
     both_offsets = floor(2.0 * row_offset / pitch_y + 0.5)
     once = abs(both_offsets - 2.0 * row_offset / pitch_y) <= 1e-12
     for cell in range(edges.shape[0] - 1):
-        pieces = cell_pieces(edges[cell], edges[cell + 1], members, loose, integers, reals, stretches, pitch_x, HEIGHT)
+        pieces = cell_pieces(
+            edges[cell],
+            edges[cell + 1],
+            members,
+            loose,
+            integers,
+            reals,
+            stretches,
+            pitch_x,
+            limits[LEAST_MARGIN],
+            HEIGHT,
+        )
         lefts, rights = np.empty((pieces.shape[0], ROLE_LENGTH)), np.empty((pieces.shape[0], ROLE_LENGTH))
         left_count = write_roles(pieces, X_LEFT, PUSH_LEFT_LOW, counting, lefts)
         right_count = write_roles(pieces, X_RIGHT, PUSH_RIGHT_LOW, counting, rights)

@@ -23,6 +23,7 @@ from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, FOUND, HAIR
 from holdfast.kernels.vise_checks import (
     GAP_SLACK,
     LEAST_CLAMPING,
+    LEAST_MARGIN,
     MIN_GAP,
     PEG_LENGTH,
     RECORD_LENGTH,
@@ -37,6 +38,10 @@ from holdfast.kernels.vise_checks import (
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+# Columns of a role: what the pairing of pieces looks at.
+ROLE_LOW, ROLE_HIGH, ROLE_VALUE_LEAST, ROLE_VALUE_MOST, ROLE_PIECE, ROLE_TAIL = range(6)
+ROLE_LENGTH = 6
 
 
 @inner
@@ -153,12 +158,14 @@ def may_close(
     t = (x * ny - y * nx) / length
     # As in ``is_fixture``: how far a minor may be off.
     band = 20.0 * swing + 4.0 * doubt / length + ROUNDING
-    if triple[4, 0] <= band:
+    determinant = triple[4, 0]
+    if determinant <= band:
         return True
-    largest = -np.inf
+    smallest = total = determinant
     for k in range(3):
-        largest = max(largest, triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
-    return largest <= band
+        entry = -(triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
+        smallest, total = min(smallest, entry), total + abs(entry)
+    return smallest + band > limits[LEAST_MARGIN] * (total - 4.0 * band)
 
 
 @inner
@@ -227,6 +234,23 @@ def farthest_right(features: Array, low: float, high: float) -> float:
     return most
 
 
+@inner
+def write_triple_roles(pieces: Array, integers: IntArray, farthest: float, out: Array) -> int:
+    """Write the (N, 6) roles, what their pairing looks at, of the pieces that leave room for a right peg; return their
+    number."""
+    count = int(np.int64(0))
+    for k in range(pieces.shape[0]):
+        row = pieces[k]
+        if row[X_LEFT] > farthest:
+            continue
+        role = out[count]
+        role[ROLE_VALUE_LEAST], role[ROLE_VALUE_MOST] = row[VALUE_LEAST] - HAIR, row[VALUE_MOST] + HAIR
+        role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
+        role[ROLE_TAIL] = integers[int(row[CURVE]), TAIL]
+        count += 1
+    return count
+
+
 @compiled
 def type_two_cells(
     edges: Array,
@@ -254,32 +278,32 @@ def type_two_cells(
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
     for cell in range(edges.shape[0] - 1):
         pieces = cell_pieces(
-            edges[cell], edges[cell + 1], members, loose, integers, reals, stretches, pitch_x, POSITION
+            edges[cell], edges[cell + 1], members, loose, integers, reals, stretches, pitch_x, 0.0, POSITION
         )
         farthest = farthest_right(loose, edges[cell], edges[cell + 1]) - limits[MIN_GAP] + GAP_SLACK + HAIR
-        for i in range(pieces.shape[0]):
-            first = pieces[i]
+        roles = np.empty((pieces.shape[0], ROLE_LENGTH))
+        role_count = write_triple_roles(pieces, integers, np.inf if counting else farthest, roles)
+        for i in range(role_count):
+            role = roles[i]
+            first = pieces[int(role[ROLE_PIECE])]
             one = int(first[CURVE])
             tail = integers[one, TAIL]
-            if first[X_LEFT] > farthest and not counting:
-                continue
             # A tail on a whole circle may be counted from either side of the seam.
             circle = loose[tail, 0] != 0.0 and loose[tail, 5] >= pi
             period = 2.0 * pi if circle else 0.0
             for j in range(i - 1, -1, -1):
-                second = pieces[j]
-                two = int(second[CURVE])
-                if integers[two, TAIL] != tail:
+                other = roles[j]
+                if other[ROLE_TAIL] != role[ROLE_TAIL]:
                     break
                 stats[PAIRS] += 1
-                if first[LOW] >= second[HIGH] or second[LOW] >= first[HIGH]:
+                if role[ROLE_LOW] >= other[ROLE_HIGH] or other[ROLE_LOW] >= role[ROLE_HIGH]:
                     continue
                 if not circle and (
-                    first[VALUE_LEAST] > second[VALUE_MOST] + HAIR or second[VALUE_LEAST] > first[VALUE_MOST] + HAIR
+                    role[ROLE_VALUE_LEAST] > other[ROLE_VALUE_MOST] or other[ROLE_VALUE_LEAST] > role[ROLE_VALUE_MOST]
                 ):
                     continue
-                if second[X_LEFT] > farthest and not counting:
-                    continue
+                second = pieces[int(other[ROLE_PIECE])]
+                two = int(second[CURVE])
                 if not share_a_jaw(integers[one], integers[two], limits):
                     continue
                 if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:

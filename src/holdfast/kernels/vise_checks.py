@@ -53,7 +53,8 @@ LEAST_SPAN = 1e-7
 ROUNDING = 1e-14
 
 # Indices into the limits handed to the kernels.
-MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS = range(4)
+MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS, LEAST_MARGIN = range(5)
+LIMITS = 5
 
 
 @inner
@@ -87,7 +88,8 @@ def is_fixture(
     pegs : (4, 6) places; the first ``lefts`` on the left jaw.
     psi, reach : orientation of the pegs in the workpiece's frame, and how far it may be off, in radians.
     features : (F, 10) rows with the slack of their ends.
-    limits : min gap, contact margin and wrench length in mm, and the largest column difference on one jaw.
+    limits : min gap, contact margin and wrench length in mm, the largest column difference on one jaw, and the smallest
+        closure margin of interest.
     work : (8, 2) work space.
     null : (4,) receives the null vector, not scaled.
 
@@ -129,7 +131,8 @@ def is_fixture(
     low, high = min(null[0], null[1], null[2], null[3]), max(null[0], null[1], null[2], null[3])
     sign = 1.0 if high >= -low else -1.0
     smallest = low if sign > 0.0 else -high
-    if smallest + band <= LEAST_CLOSURE * (size - 4.0 * band) or size + 4.0 * band <= LEAST_SPAN:
+    least = max(LEAST_CLOSURE, limits[LEAST_MARGIN])
+    if smallest + band <= least * (size - 4.0 * band) or size + 4.0 * band <= LEAST_SPAN:
         return (1, 0.0)
     clamp = 0.0
     for k in range(int(lefts)):

@@ -6,16 +6,18 @@ from collections.abc import Mapping
 from threading import Event
 
 import numpy as np
+from attrs import evolve
 from numpy.typing import NDArray
 
+from holdfast.listing.best import BestFixtures, margin_digits
 from holdfast.listing.deciding import Account
 from holdfast.listing.distinct import count_distinct
-from holdfast.listing.finish import finish, placed, twins
+from holdfast.listing.finish import Candidates, finish, placed, twins
 from holdfast.listing.problem import TYPES, Problem, Progress
 from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 
-__all__ = ["listed_result"]
+__all__ = ["best_result", "listed_result"]
 
 
 def listed_result(
@@ -45,6 +47,61 @@ def listed_result(
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     """
     candidates, account = finish(records, problem, progress, cancel)
+    result = result_of(
+        problem, candidates, account, complete=complete, statistics=statistics, cells=cells, examined=examined
+    )
+    return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
+
+
+def best_result(
+    problem: Problem,
+    kept: BestFixtures,
+    *,
+    complete: bool,
+    statistics: Mapping[str, int],
+    cells: int,
+    examined: int,
+) -> Result:
+    """The result of a search for the best fixtures only; parameters as for :func:`listed_result`.
+
+    How many fixtures there are in all is not known: those that could not be among the best were not examined.
+    """
+    candidates, account = kept.finished()
+    faces = problem.faces[candidates.feature]
+    first, others = twins(candidates, faces)
+    order = first[np.lexsort([np.arange(len(first)), -margin_digits(candidates.null[first])])][: kept.most]
+    chosen = np.zeros(len(candidates.kind), np.bool_)
+    chosen[order] = True
+    # A twin is kept with the fixture it resembles.
+    holes = np.concatenate([candidates.kind[:, None], faces, candidates.column, candidates.row], axis=1)
+    listed = {tuple(row) for row in holes[order].tolist()}
+    chosen[others] = [tuple(row) in listed for row in holes[others].tolist()]
+    result = result_of(
+        problem,
+        candidates.take(chosen),
+        account,
+        complete=complete,
+        statistics=statistics,
+        cells=cells,
+        examined=examined,
+    )
+    if not complete or (len(first) <= kept.most and kept.margin == 0.0):
+        return result
+    note = f"Only the best {kept.most} were sought, so how many fixtures there are in all was not counted."
+    return evolve(result, notes=(note, *result.notes))
+
+
+def result_of(
+    problem: Problem,
+    candidates: Candidates,
+    account: Account,
+    *,
+    complete: bool,
+    statistics: Mapping[str, int],
+    cells: int,
+    examined: int | None,
+) -> Result:
+    """The result of fixtures that are listed once; parameters as for :func:`listed_result`."""
     first, others = twins(candidates, problem.faces[candidates.feature])
     listed = candidates.take(first)
     center = problem.workpiece.center
@@ -56,7 +113,7 @@ def listed_result(
     return Result(
         workpiece=problem.workpiece,
         vise=problem.vise,
-        table=ranked if best is None else ranked.take(slice(0, best)),
+        table=ranked,
         found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
         distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
         complete=complete and account.left == 0,
@@ -82,7 +139,7 @@ def rank(table: FixtureTable) -> NDArray[np.intp]:
     """Order of a table in identity order by closure margin, largest first; equal to 9 digits stay in order."""
     if len(table) == 0:
         return np.zeros(0, np.intp)
-    return np.argsort(-np.round(table.null_vector.min(axis=1), 9), kind="stable")
+    return np.argsort(-margin_digits(table.null_vector), kind="stable")
 
 
 def notes(twin_count: int, undecided_count: int) -> tuple[str, ...]:

@@ -87,7 +87,8 @@ class Result:
     ----------
     workpiece, vise : what was asked.
     table : the fixtures listed, ranked.
-    found : how many fixtures of each type exist ("I", "II"); more than are listed when only the best were kept.
+    found : how many fixtures of each type were found ("I", "II"); more than are listed when an engine found all and only
+        the best were kept.
     distinct : how many sets they form when fixtures that a rotation of the part onto itself carries into each other
         count once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
@@ -95,7 +96,7 @@ class Result:
     notes : remarks a user should read, one sentence each.
     twins : fixtures with the same holes, faces and orientation as one listed, where the workpiece lies in another place.
     statistics : how much work the search was: numbers of contact features, chord curves, uprights, pairs of curves
-        compared, and simultaneous contacts (all four inside their features, before closure, jaw order and clamping).
+        compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`holdfast.model.proof.Proof`; None for a result that came without.
     """
 

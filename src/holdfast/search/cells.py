@@ -31,10 +31,12 @@ class Block:
     ----------
     work : does it and returns records.
     cost : a guess of how long it takes, in any unit.
+    cells : how many cells it works on.
     """
 
     work: Callable[[], Records]
     cost: float
+    cells: int = 1
 
 
 def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
@@ -59,25 +61,37 @@ def thread_count(threads: int | None) -> int:
 
 
 def run_blocks(
-    blocks: Sequence[Block], threads: int, progress: Progress | None, cancel: Event | None
-) -> tuple[list[Records], bool]:
+    blocks: Sequence[Block],
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    receive: Callable[[Records], None] | None = None,
+) -> tuple[list[Records], list[Block]]:
     """Do all blocks on some threads.
+
+    Parameters
+    ----------
+    receive : called from this thread with the records of each block as it is done; they are then not kept.
 
     Returns
     -------
-    (records of the blocks done, in the order of the blocks; whether all were done)
+    (records of the blocks done, in the order of the blocks; those blocks)
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: list[Records | None] = [None] * len(blocks)
     done_cost, found = 0.0, 0
+    done: list[Block] = []
     for index, records in finished_blocks(blocks, threads, cancel):
-        results[index] = records
+        if receive is None:
+            results[index] = records
+        else:
+            receive(records)
         done_cost += blocks[index].cost
         found += len(records)
+        done.append(blocks[index])
         if progress is not None:
             progress(min(done_cost / total, 1.0), found)
-    kept = [records for records in results if records is not None]
-    return kept, len(kept) == len(blocks)
+    return [records for records in results if records is not None], done
 
 
 def finished_blocks(blocks: Sequence[Block], threads: int, cancel: Event | None) -> Iterator[tuple[int, Records]]:

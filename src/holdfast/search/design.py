@@ -10,13 +10,15 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from holdfast.contact.curves import CurveTable, center_numbers, curve_table, loosened
-from holdfast.kernels.type_one import CANDIDATES, CONTACTS, PAIRS, STATISTICS
-from holdfast.listing.listed import listed_result
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, PAIRS, STATISTICS
+from holdfast.listing.best import BestFixtures
+from holdfast.listing.listed import best_result, listed_result
 from holdfast.listing.problem import TYPES, Problem, Progress, check_options
 from holdfast.model.result import Result
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 from holdfast.search.cells import run_blocks, thread_count
+from holdfast.search.contacts import count_contacts
 from holdfast.search.vise_search import ViseSearch, lattice_steps
 
 __all__ = ["design"]
@@ -43,7 +45,7 @@ def design(
     workpiece, vise : what to hold and what to hold it in.
     types : "I" (two pegs on each jaw), "II" (three and one), or both.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
-    best : list only this many, the best ones; None lists all.
+    best : seek and list only this many, the best ones; None lists all.
     threads : how many threads share the work; None for one on each processor. The result does not depend on it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
@@ -74,21 +76,28 @@ def design(
     loose = loosened(problem.rows[:, :8])
     table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
     search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
-    records, complete = run_blocks(search.blocks(types), thread_count(threads), stage(progress, 0.0, SEARCH), cancel)
+    blocks = search.blocks(types)
+    kept = None if best is None else BestFixtures(problem, best, cancel)
+    receive = None if kept is None else lambda records: search.seek(kept.add(records))
+    records, done = run_blocks(blocks, thread_count(threads), stage(progress, 0.0, SEARCH), cancel, receive)
     work = np.array(search.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0)
-    result = listed_result(
-        problem,
-        records,
-        complete=complete,
-        best=best,
-        statistics=statistics(search, table, work),
-        cells=len(records),
-        examined=int(work[CANDIDATES]),
-        progress=stage(progress, SEARCH, 1.0),
-        cancel=cancel,
-    )
+    complete, figures, examined = len(done) == len(blocks), statistics(search, table, work), int(work[CANDIDATES])
+    cells = sum(block.cells for block in done)
+    if kept is not None:
+        result = best_result(problem, kept, complete=complete, statistics=figures, cells=cells, examined=examined)
+    else:
+        result = listed_result(
+            problem,
+            records,
+            complete=complete,
+            statistics=figures,
+            cells=cells,
+            examined=examined,
+            progress=stage(progress, SEARCH, 1.0),
+            cancel=cancel,
+        )
     if result.complete and not any(result.found.values()) and not result.notes:
-        return evolve(result, notes=(why_none(problem, table, int(work[CONTACTS])),))
+        return evolve(result, notes=(why_none(problem, table, int(work[CONTACTS]), threads),))
     return result
 
 
@@ -99,7 +108,7 @@ def stage(progress: Progress | None, low: float, high: float) -> Progress | None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def why_none(problem: Problem, table: CurveTable, contacts: int) -> str:
+def why_none(problem: Problem, table: CurveTable, contacts: int, threads: int | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
     arcs = problem.rows[:, 0] != 0.0
     if arcs.all() and len(set(center_numbers(problem.rows).tolist())) == 1:
@@ -109,12 +118,10 @@ def why_none(problem: Problem, table: CurveTable, contacts: int) -> str:
         )
     if len(table) + len(table.upright_integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
-    if contacts == 0:
+    # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
+    if contacts == 0 and count_contacts(problem.workpiece, problem.vise, threads=threads) == 0:
         return "No four pegs of the two jaws can touch the part at the same time inside their faces."
-    return (
-        f"Of {contacts:,} sets of four pegs that touch the part at the same time none keeps the smallest gap, closes and "
-        "clamps."
-    )
+    return "Four pegs can touch the part at the same time, but no such set keeps the smallest gap, closes and clamps."
 
 
 def statistics(search: ViseSearch, table: CurveTable, work: NDArray[np.int64]) -> dict[str, int]:
@@ -124,5 +131,6 @@ def statistics(search: ViseSearch, table: CurveTable, work: NDArray[np.int64]) -
         "chord_curves": len(table),
         "uprights": len(table.upright_integers),
         "curve_pairs": int(work[PAIRS]),
-        "simultaneous_contacts": int(work[CONTACTS]),
+        "crossings_sought": int(work[CROSSED]),
+        "contacts_examined": int(work[CONTACTS]),
     }

@@ -16,9 +16,11 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from holdfast.contact.curves import CurveTable, LatticeSteps
+from holdfast.kernels.curve_columns import FROM, TO
 from holdfast.kernels.type_one import STATISTICS, type_one_cells
 from holdfast.kernels.type_two import type_two_cells
 from holdfast.kernels.uprights import upright_type_one, upright_type_two
+from holdfast.kernels.vise_checks import LEAST_MARGIN
 from holdfast.model.vise import Vise
 from holdfast.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
 
@@ -26,8 +28,12 @@ __all__ = ["ViseSearch", "lattice_steps"]
 
 Array = NDArray[np.float64]
 
-CELLS_PER_HALF_TURN = 96
-CELLS_PER_BLOCK = 6
+# Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
+CELLS_PER_PITCH = 10.0
+FEWEST_CELLS, MOST_CELLS = 96, 1024
+# Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
+PAIRS_PER_BLOCK = 2e6
+LEAST_BLOCKS = 16
 
 
 def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
@@ -60,6 +66,7 @@ class ViseSearch:
     contact_margin : in mm.
     wrench_length : L in mm.
     counting : count all simultaneous contacts instead of looking for fixtures only.
+    limits : what bounds a fixture, see ``kernels.vise_checks``.
     stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
@@ -72,20 +79,34 @@ class ViseSearch:
     counting: bool = False
     stats: list[NDArray[np.int64]] = field(factory=list)
 
+    limits: Array = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        """Write the limits as the kernels take them (see ``kernels.vise_checks``)."""
+        vise = self.vise
+        self.limits = np.array([vise.min_gap, self.contact_margin, self.wrench_length, vise.columns - 1.0, 0.0])
+
+    def seek(self, margin: float) -> None:
+        """Leave out what cannot reach a closure margin; blocks that run take note of it with their next cell."""
+        self.limits[LEAST_MARGIN] = margin
+
     @property
-    def limits(self) -> Array:
-        """The limits as the kernels take them (see ``kernels.vise_checks``)."""
-        return np.array([self.vise.min_gap, self.contact_margin, self.wrench_length, self.vise.columns - 1.0])
+    def alive(self) -> float:
+        """How many chord curves exist at an orientation, on average."""
+        return float((self.table.reals[:, TO] - self.table.reals[:, FROM]).sum()) / tau
 
     def blocks(self, types: Collection[str]) -> list[Block]:
         """Blocks of work that together find all fixtures of the given types ("I", "II")."""
+        # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
+        cells = int(min(max(CELLS_PER_PITCH * self.wrench_length / self.vise.pitch[1], FEWEST_CELLS), MOST_CELLS))
+        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // LEAST_BLOCKS))
         blocks: list[Block] = []
         for name, half_turns in (("I", 1), ("II", 2)):
             if name not in types:
                 continue
-            edges = cell_edges(half_turns, half_turns * CELLS_PER_HALF_TURN)
-            for first in range(0, len(edges) - 1, CELLS_PER_BLOCK):
-                blocks.append(self.crossing_block(name, edges[first : first + CELLS_PER_BLOCK + 1]))
+            edges = cell_edges(half_turns, half_turns * cells)
+            for first in range(0, len(edges) - 1, together):
+                blocks.append(self.crossing_block(name, edges[first : first + together + 1]))
             for cell, uprights in enumerate(self.upright_cells(half_turns, edges)):
                 if len(uprights):
                     blocks.append(self.upright_block(name, float(edges[cell]), float(edges[cell + 1]), uprights))
@@ -104,13 +125,18 @@ class ViseSearch:
         """The crossings of some neighbouring cells."""
         kernel = type_one_cells if name == "I" else type_two_cells
         members = members_of_cell(self.table, float(edges[0]), float(edges[-1]))
-        return Block(partial(self.cross, kernel, edges, members, self.tally()), 1.0)
+        weight = 1.0 if name == "I" else 0.5
+        return Block(
+            partial(self.cross, kernel, edges, members, self.tally()), 1.0 + weight * len(members) ** 2, len(edges) - 1
+        )
 
     def upright_block(self, name: str, low: float, high: float, uprights: NDArray[np.int64]) -> Block:
         """The uprights of one cell."""
         kernel = upright_type_one if name == "I" else upright_type_two
         members = members_of_cell(self.table, low, high)
-        return Block(partial(self.meet_uprights, kernel, uprights, members, self.tally()), 0.1)
+        return Block(
+            partial(self.meet_uprights, kernel, uprights, members, self.tally()), 1.0 + len(uprights) * len(members)
+        )
 
     def tally(self) -> NDArray[np.int64]:
         """A new row of statistics for a kernel to add to."""
