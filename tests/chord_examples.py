@@ -8,8 +8,9 @@ from random import Random
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import chord
+from holdfast.kernels.chord import chord, write_curve
 from holdfast.kernels.chord_intervals import chord_intervals
+from holdfast.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 from strategies import random_row
 
 Array = NDArray[np.float64]
@@ -52,6 +53,23 @@ def random_ranges(random: Random, kinds: tuple[str, str], least: float = 1e-6) -
         ranges = ranges[ranges[:, 1] - ranges[:, 0] > least]
         if len(ranges):
             return a, b, d, ranges
+
+
+def curve_row(
+    a: Array,
+    b: Array,
+    d: float,
+    branch: float,
+    shift: float = 0.0,
+    ends: tuple[float, float] = (0.0, TURN),
+    tangents: tuple[float, float] = (0.0, 0.0),
+) -> Array:
+    """A row of the curve table, for directions between two ends, of which some may be tangencies."""
+    row = np.zeros(CURVE_REALS)
+    write_curve(row, a, b, d, branch, shift)
+    row[FROM], row[TO] = ends
+    row[TANGENT_FROM], row[TANGENT_TO] = tangents
+    return row
 
 
 def turn_at(a: Array, b: Array, d: float, alpha: float, branch: float) -> float:

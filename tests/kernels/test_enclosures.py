@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, inf, isfinite, pi
+from math import cos, hypot, inf, isfinite, pi, sin
 from random import Random
 
 import numpy as np
@@ -11,10 +11,10 @@ from flint import arb
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from chord_examples import KINDS, arc_row, line_row, random_ranges, turn_at
+from chord_examples import KINDS, arc_row, curve_row, line_row, random_ranges, turn_at
 from exact_chords import exact_chord, exactly, within
-from holdfast.kernels.chord import HEIGHT, POSITION, chord, curve_value, tail_radius
-from holdfast.kernels.chord_bounds import chord_tail, tail_disc, value_disc
+from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, curve_value
+from holdfast.kernels.chord_discs import chord_tail, tail_disc, tail_radius, value_disc
 from holdfast.kernels.through_motion import EXACT, NONE, coincidence
 from strategies import seeds
 
@@ -38,10 +38,10 @@ def near_an_end(random: Random, pair: tuple[str, str], depth: float) -> Place:
     return a, b, d, low + part * (high - low), branch, (low, high)
 
 
-def directions(random: Random, alpha: float, reach: float, ends: tuple[float, float]) -> list[arb]:
+def directions(random: Random, alpha: arb, reach: float, ends: tuple[float, float]) -> list[arb]:
     """Directions within ``reach`` of alpha, inside a range."""
     parts = (-1.0, -0.4, 0.0, random.uniform(-1, 1), 1.0)
-    return [min(max(arb(alpha) + arb(reach) * part, arb(ends[0])), arb(ends[1])) for part in parts]
+    return [min(max(alpha + arb(reach) * part, arb(ends[0])), arb(ends[1])) for part in parts]
 
 
 def difference(mode: float, row: np.ndarray, one: float, two: arb) -> arb:
@@ -60,19 +60,20 @@ def test_values_and_slopes_are_within_their_errors(seed, pair, depth, mode):
     for _ in range(20):
         a, b, d, alpha, branch, _ = near_an_end(random, pair, depth)
         shift = random.uniform(-pi, pi)
-        value, slope, error, spread = curve_value(a, b, d, alpha, branch, shift, mode)
+        curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
+        value, slope, error, spread = curve_value(a, b, curve, psi, mode)
         with exactly():
-            exact = exact_chord(a, b, d, arb(alpha), branch)
+            exact = exact_chord(a, b, d, arb(psi) + shift, branch)
             if exact is None:
                 assert not isfinite(error)
                 continue
-            expected = exact.height(arb(alpha) - shift) if mode == HEIGHT else exact.position()
-            detail = (a.tolist(), b.tolist(), d, alpha, branch, shift, mode)
+            expected = exact.height(arb(psi)) if mode == HEIGHT else exact.position()
+            detail = (a.tolist(), b.tolist(), d, psi, branch, shift, mode)
             if isfinite(error):
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
                 assert within(slope, expected[1], spread) or spread == inf, detail
             else:
-                value, error = value_disc(a, b, d, alpha, branch, 2e-15, shift, mode)
+                value, error = value_disc(a, b, curve, psi, 2e-15, mode)
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
 
 
@@ -84,7 +85,7 @@ def test_errors_are_small_away_from_tangencies(seed, pair):
     low, high, branch, *_ = ranges[0]
     alpha = (low + high) / 2.0
     assume(abs(turn_at(a, b, d, alpha, branch)) > 0.1)
-    _, _, error, spread = curve_value(a, b, d, alpha, branch, 0.3, HEIGHT)
+    _, _, error, spread = curve_value(a, b, curve_row(a, b, d, branch, 0.3), alpha - 0.3, HEIGHT)
     assert error < 1e-9
     assert spread < 1e-6
 
@@ -96,15 +97,17 @@ def test_tails_are_within_their_radius(seed, pair, depth, reach):
     random = Random(seed)
     for _ in range(20):
         a, b, d, alpha, branch, ends = near_an_end(random, pair, depth)
-        c = chord(a, b, d, alpha, branch)
-        near = tail_radius(a, b, d, c, reach)
+        shift = random.choice([0.0, random.uniform(-pi, pi)])
+        curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
+        state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
+        near = tail_radius(curve, state, reach)
         discs = [
-            (c[0], c[1], near),
-            chord_tail(a, b, d, alpha, branch, reach),
-            tail_disc(a, b, d, alpha, branch, reach),
+            (state[0], state[1], near),
+            chord_tail(a, b, curve, psi, reach),
+            tail_disc(a, b, curve, psi, reach),
         ]
         with exactly():
-            for place in directions(random, alpha, reach, ends):
+            for place in directions(random, arb(psi) + shift, reach, ends):
                 exact = exact_chord(a, b, d, place, branch)
                 if exact is None:
                     # Within ``reach`` there is no tangency where a radius is known.
@@ -113,7 +116,7 @@ def test_tails_are_within_their_radius(seed, pair, depth, reach):
                 for x, y, radius in discs:
                     if isfinite(radius):
                         away = ((exact.tail[0] - x) ** 2 + (exact.tail[1] - y) ** 2).sqrt()
-                        assert away <= radius, (a.tolist(), b.tolist(), d, alpha, branch, reach, place)
+                        assert away <= radius, (a.tolist(), b.tolist(), d, psi, shift, branch, reach, place)
 
 
 @given(seeds, kinds, depths, st.floats(2.0, 15.0).map(lambda exponent: 10.0**-exponent), modes)
@@ -123,14 +126,22 @@ def test_discs_hold_the_values_of_a_branch(seed, pair, depth, reach, mode):
     for _ in range(20):
         a, b, d, alpha, branch, ends = near_an_end(random, pair, depth)
         shift = random.uniform(-pi, pi)
-        value, radius = value_disc(a, b, d, alpha, branch, reach, shift, mode)
+        curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
+        value, radius = value_disc(a, b, curve, psi, reach, mode)
         with exactly():
-            for place in directions(random, alpha, reach, ends):
+            for place in directions(random, arb(psi) + shift, reach, ends):
                 exact = exact_chord(a, b, d, place, branch)
                 if exact is None or not isfinite(radius):
                     continue
                 expected = exact.height(place - shift)[0] if mode == HEIGHT else exact.position()[0]
-                assert abs(difference(mode, a, value, expected)) <= radius, (a.tolist(), b.tolist(), d, alpha, branch)
+                assert abs(difference(mode, a, value, expected)) <= radius, (
+                    a.tolist(),
+                    b.tolist(),
+                    d,
+                    psi,
+                    shift,
+                    branch,
+                )
 
 
 def coincident(random: Random, off: float) -> tuple[np.ndarray, np.ndarray, float, float]:
@@ -167,14 +178,15 @@ def test_errors_hold_through_a_coincidence(mode, off):
         a, b, d, middle = coincident(random, off)
         gamma = random.choice([1, -1]) * 10.0 ** random.uniform(-9, -0.3)
         alpha, branch, shift = middle + gamma, random.choice([1.0, -1.0]), random.uniform(-pi, pi)
-        value, slope, error, spread = curve_value(a, b, d, alpha, branch, shift, mode)
+        curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
+        value, slope, error, spread = curve_value(a, b, curve, psi, mode)
         if off <= EXACT:
             a, b = snapped
         with exactly():
-            exact = exact_chord(a, b, d, arb(alpha), branch)
+            exact = exact_chord(a, b, d, arb(psi) + shift, branch)
             if exact is None or not isfinite(error):
                 continue
-            expected = exact.height(arb(alpha) - shift) if mode == HEIGHT else exact.position()
+            expected = exact.height(arb(psi)) if mode == HEIGHT else exact.position()
             finite += 1
             detail = (a.tolist(), b.tolist(), d, alpha, branch, shift)
             off_by = abs(difference(mode, a, value, expected[0]))
