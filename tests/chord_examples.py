@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import cos, hypot, pi, sin
 from random import Random
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import chord, write_curve
 from holdfast.kernels.chord_intervals import chord_intervals
 from holdfast.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
+from holdfast.kernels.through_motion import NONE, coincidence
 from strategies import random_row
 
 Array = NDArray[np.float64]
@@ -141,6 +143,19 @@ SPECIAL = (
 )
 
 
+def is_rounded_coincidence(a: Array, b: Array, d: float) -> bool:
+    """Whether a chord is at a coincidence up to rounding only: its exact motion there is not that of the search's part."""
+    if coincidence(a, b, d)[0] == NONE:
+        return False
+    p, q, size = [Fraction(float(v)) for v in a], [Fraction(float(v)) for v in b], Fraction(float(d))
+    dx, dy = q[1] - p[1], q[2] - p[2]
+    if p[0] and q[0]:
+        return p[6] != q[6] or dx * dx + dy * dy != size * size
+    line, radius = (q, p[6]) if p[0] else (p, q[6])
+    apart = abs(line[4] * dx - line[3] * dy)
+    return line[3] ** 2 + line[4] ** 2 != 1 or abs(size - radius) != apart
+
+
 def any_ranges(random: Random, least: float = 1e-9) -> tuple[Array, Array, float, Array]:
     """A chord that exists, in a special position as often as not, with its ranges no narrower than ``least`` radians."""
     while True:
@@ -148,6 +163,8 @@ def any_ranges(random: Random, least: float = 1e-9) -> tuple[Array, Array, float
             a, b, d = random_chord(random, (random.choice(KINDS), random.choice(KINDS)))
         else:
             a, b, d = random.choice(SPECIAL)(random)
+        if is_rounded_coincidence(a, b, d):
+            continue
         ranges = chord_intervals(a, b, d)
         ranges = ranges[ranges[:, 1] - ranges[:, 0] > least]
         if len(ranges):

@@ -10,7 +10,7 @@ import pytest
 from flint import arb
 from hypothesis import given
 
-from chord_examples import SPECIAL, any_ranges, curve_row, random_ranges, turn_at
+from chord_examples import SPECIAL, any_ranges, curve_row, is_rounded_coincidence, random_ranges, turn_at
 from exact_chords import cross, dot, exact_chord, exact_speed, exactly
 from holdfast.kernels.chord_bounds import center_motion, turn_size
 from holdfast.kernels.chord_intervals import chord_intervals
@@ -117,6 +117,8 @@ def test_what_stretches_tell_holds_in_special_positions(make):
     random, checked = Random(51), 0
     while checked < 600:
         a, b, d = make(random)
+        if is_rounded_coincidence(a, b, d):
+            continue
         for curve in curves_of(a, b, d, chord_intervals(a, b, d)):
             if curve[TO] - curve[FROM] > 1e-9:
                 checked += sum(check_stretch(a, b, curve, row, random) for row in stretches_of(a, b, curve))
