@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot
 from random import Random
 
@@ -40,6 +41,22 @@ def random_table(random: Random, count: int = 4, first: str = "") -> tuple[Array
         rows[0] = random_row(random, first)
     features = np.array(rows)
     return features, curve_table(features, lattice(random.uniform(8, 14), 2, 2))
+
+
+def special_table(random: Random, make: Callable[[Random], tuple[Array, Array, float]]) -> tuple[Array, CurveTable]:
+    """Two features in a special position (see ``chord_examples.SPECIAL``) and their chords on a lattice of that pitch."""
+    a, b, d = make(random)
+    features = np.array([a, b])
+    return features, curve_table(features, lattice(d / random.choice([1, 1, 2]), 2, 2))
+
+
+def steps_of(table: CurveTable) -> LatticeSteps:
+    """The lattice steps of one length that a table's first curve has."""
+    length, pitch = float(table.reals[0, LENGTH]), pitch_of(table)
+    whole = np.array(
+        [(k, m) for k in (-1, 0, 1) for m in (-1, 0, 1) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
+    )
+    return LatticeSteps(np.array([length]), np.array([0, len(whole)]), whole, np.arctan2(whole[:, 1], whole[:, 0]))
 
 
 def pitch_of(table: CurveTable) -> float:
