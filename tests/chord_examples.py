@@ -49,7 +49,7 @@ def random_chord(random: Random, kinds: tuple[str, str]) -> tuple[Array, Array, 
 
 def long_wedge(random: Random) -> tuple[Array, Array, float]:
     """Two long lines that are nearly parallel, and a short chord."""
-    turn, half = random.uniform(-pi, pi), random.uniform(50.0, 2000.0)
+    turn, half = random.uniform(-pi, pi), 10 ** random.uniform(1.0, 3.5)
     a = line_row(random.uniform(-5, 5), random.uniform(-5, 5), turn, half)
     tilt = random.choice([1, -1]) * 10 ** random.uniform(-7, -0.5)
     b = line_row(a[1] + random.uniform(-5, 5), a[2] + random.uniform(-5, 5), turn + tilt, half)

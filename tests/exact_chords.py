@@ -12,7 +12,7 @@ from typing import Any
 from attrs import frozen
 from flint import arb, arb_mat, ctx
 
-__all__ = ["BITS", "ExactChord", "exact_chord", "exact_solution", "exact_speed", "exactly", "within"]
+__all__ = ["BITS", "ExactChord", "exact_chord", "exact_distance", "exact_solution", "exact_speed", "exactly", "within"]
 
 BITS = 200
 Row = Sequence[float]
@@ -137,6 +137,14 @@ def exact_chord(a: Row, b: Row, d: float, alpha: arb, branch: float) -> ExactCho
     if line_first:
         return ExactChord(minus(on_arc, step), n, touched, step, a)
     return ExactChord(on_arc, touched, n, step, a)
+
+
+def exact_distance(row: Row, point: Point) -> arb:
+    """Distance of a point from the line or circle that carries a feature."""
+    delta, t = minus(point, middle(row)), tangent(row)
+    if row[0] == 0.0:
+        return abs(cross(t, delta))
+    return abs(dot(delta, delta).sqrt() - float(row[6]))
 
 
 def exact_speed(a: Row, b: Row, d: float, alpha: arb, branch: float) -> Point | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, hypot, inf, isfinite, pi, sin
 from random import Random
 
@@ -11,14 +12,17 @@ from flint import arb
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from chord_examples import KINDS, arc_row, curve_row, line_row, random_ranges, turn_at
-from exact_chords import exact_chord, exactly, within
+from chord_examples import KINDS, SPECIAL, arc_row, curve_row, is_rounded_coincidence, line_row, random_ranges, turn_at
+from exact_chords import dot, exact_chord, exact_distance, exactly, minus, within
 from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, curve_value
 from holdfast.kernels.chord_discs import chord_tail, tail_disc, tail_radius, value_disc
-from holdfast.kernels.through_motion import EXACT, NONE, coincidence
+from holdfast.kernels.chord_intervals import chord_intervals
+from holdfast.kernels.curve_columns import BLUR, COINCIDENCE
+from holdfast.kernels.through_motion import CONCENTRIC, EXACT, NONE
 from strategies import seeds
 
 kinds = st.tuples(st.sampled_from(KINDS), st.sampled_from(KINDS))
+positions = kinds | st.sampled_from(SPECIAL)
 # How near to an end of its range a chord is looked at, as a part of the range: tangencies are ends.
 depths = st.floats(0.0, 13.0).map(lambda exponent: 0.5 * 10.0**-exponent)
 modes = st.sampled_from([HEIGHT, POSITION])
@@ -27,11 +31,19 @@ modes = st.sampled_from([HEIGHT, POSITION])
 Place = tuple[np.ndarray, np.ndarray, float, float, float, tuple[float, float]]
 
 
-def near_an_end(random: Random, pair: tuple[str, str], depth: float) -> Place:
-    """A chord near an end of a range: features, length, direction, branch, and the range. Coincidences come further down."""
+def near_an_end(random: Random, position: tuple[str, str] | Callable, depth: float) -> Place:
+    """A chord near an end of a range: features, length, direction, branch, and the range.
+
+    Its features are of two kinds, or in a special position. Coincidences within rounding come further down.
+    """
     while True:
-        a, b, d, ranges = random_ranges(random, pair)
-        if coincidence(a, b, d)[0] == NONE:
+        if callable(position):
+            a, b, d = position(random)
+            ranges = chord_intervals(a, b, d)
+            ranges = ranges[ranges[:, 1] - ranges[:, 0] > 1e-6]
+        else:
+            a, b, d, ranges = random_ranges(random, position)
+        if len(ranges) and not is_rounded_coincidence(a, b, d):
             break
     low, high, branch, *_ = (float(v) for v in ranges[random.randrange(len(ranges))])
     part = depth if random.random() < 0.5 else 1.0 - depth
@@ -53,12 +65,12 @@ def difference(mode: float, row: np.ndarray, one: float, two: arb) -> arb:
     return off
 
 
-@given(seeds, kinds, depths, modes)
-def test_values_and_slopes_are_within_their_errors(seed, pair, depth, mode):
+@given(seeds, positions, depths, modes)
+def test_values_and_slopes_are_within_their_errors(seed, position, depth, mode):
     """|value - exact| <= told error, and the same for the slope; where no error is told, a disc holds the value."""
     random = Random(seed)
     for _ in range(20):
-        a, b, d, alpha, branch, _ = near_an_end(random, pair, depth)
+        a, b, d, alpha, branch, _ = near_an_end(random, position, depth)
         shift = random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
         value, slope, error, spread = curve_value(a, b, curve, psi, mode)
@@ -77,6 +89,26 @@ def test_values_and_slopes_are_within_their_errors(seed, pair, depth, mode):
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
 
 
+@given(seeds, positions, depths)
+def test_computed_contacts_are_off_their_features_by_no_more_than_the_blur(seed, position, depth):
+    """The distances of a computed tail and head from the carriers of their features are within the blur told."""
+    random = Random(seed)
+    for _ in range(20):
+        a, b, d, alpha, branch, _ = near_an_end(random, position, depth)
+        shift = random.uniform(-pi, pi)
+        curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
+        if curve[COINCIDENCE] not in (NONE, CONCENTRIC):
+            continue
+        ux, uy, *_ = chord_state(a, b, curve, psi, cos(psi), sin(psi))
+        with exactly():
+            place = arb(psi) + shift
+            if exact_chord(a, b, d, place, branch) is None:
+                continue
+            head = (ux + d * place.cos(), uy + d * place.sin())
+            for row, point in ((a, (arb(ux), arb(uy))), (b, head)):
+                assert exact_distance(row, point) <= curve[BLUR], (a.tolist(), b.tolist(), d, psi, shift, branch)
+
+
 @given(seeds, kinds)
 def test_errors_are_small_away_from_tangencies(seed, pair):
     """The bounds are of use: in the middle of things a value is known to 1e-9 mm, and its slope nearly so."""
@@ -90,13 +122,13 @@ def test_errors_are_small_away_from_tangencies(seed, pair):
     assert spread < 1e-6
 
 
-@given(seeds, kinds, depths, st.floats(3.0, 16.0).map(lambda exponent: 10.0**-exponent) | st.just(0.0))
-def test_tails_are_within_their_radius(seed, pair, depth, reach):
+@given(seeds, positions, depths, st.floats(3.0, 16.0).map(lambda exponent: 10.0**-exponent) | st.just(0.0))
+def test_tails_are_within_their_radius(seed, position, depth, reach):
     """The exact tail at every direction within ``reach`` lies in the disc told by ``tail_radius``, ``chord_tail`` and
     ``tail_disc``."""
     random = Random(seed)
     for _ in range(20):
-        a, b, d, alpha, branch, ends = near_an_end(random, pair, depth)
+        a, b, d, alpha, branch, ends = near_an_end(random, position, depth)
         shift = random.choice([0.0, random.uniform(-pi, pi)])
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
         state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
@@ -113,18 +145,29 @@ def test_tails_are_within_their_radius(seed, pair, depth, reach):
                     # Within ``reach`` there is no tangency where a radius is known.
                     assert not isfinite(near)
                     continue
-                for x, y, radius in discs:
+                # Of a chord past the end of its feature only the disc is told.
+                inside = a[0] != 0.0 or abs(exact.position()[0]) <= float(a[5])
+                for x, y, radius in discs if inside else discs[::2]:
                     if isfinite(radius):
-                        away = ((exact.tail[0] - x) ** 2 + (exact.tail[1] - y) ** 2).sqrt()
-                        assert away <= radius, (a.tolist(), b.tolist(), d, psi, shift, branch, reach, place)
+                        away = minus(exact.tail, (arb(x), arb(y)))
+                        assert dot(away, away) <= arb(radius) * arb(radius), (
+                            a.tolist(),
+                            b.tolist(),
+                            d,
+                            psi,
+                            shift,
+                            branch,
+                            reach,
+                            place,
+                        )
 
 
-@given(seeds, kinds, depths, st.floats(2.0, 15.0).map(lambda exponent: 10.0**-exponent), modes)
-def test_discs_hold_the_values_of_a_branch(seed, pair, depth, reach, mode):
+@given(seeds, positions, depths, st.floats(2.0, 15.0).map(lambda exponent: 10.0**-exponent), modes)
+def test_discs_hold_the_values_of_a_branch(seed, position, depth, reach, mode):
     """|value - exact| <= radius for all directions within ``reach``, tangency or not, which lie on the branch."""
     random = Random(seed)
     for _ in range(20):
-        a, b, d, alpha, branch, ends = near_an_end(random, pair, depth)
+        a, b, d, alpha, branch, ends = near_an_end(random, position, depth)
         shift = random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
         value, radius = value_disc(a, b, curve, psi, reach, mode)
@@ -193,3 +236,43 @@ def test_errors_hold_through_a_coincidence(mode, off):
             assert off_by <= error, ("value", float(off_by), error, gamma, detail)
             assert within(slope, expected[1], spread) or spread == inf, ("slope", gamma, detail)
     assert finite > 30
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-13, 5e-12])
+def test_tails_hold_through_a_coincidence(off):
+    """The exact tail within ``reach`` of an orientation is within the radius told, of a part in which lengths agree and of
+    one in which they do not quite, away from the coincidence itself."""
+    random = Random(8)
+    checked = 0
+    for _ in range(600):
+        state = random.getstate()
+        snapped = coincident(random, 0.0)[:2]
+        random.setstate(state)
+        a, b, d, middle = coincident(random, off)
+        gamma = random.choice([1, -1]) * 10.0 ** random.uniform(-9, 0.4)
+        reach = 10.0 ** random.uniform(-15, -2)
+        branch, shift = random.choice([1.0, -1.0]), random.uniform(-pi, pi)
+        curve, psi = curve_row(a, b, d, branch, shift), middle + gamma - shift
+        discs = [tail_disc(a, b, curve, psi, reach), chord_tail(a, b, curve, psi, reach)]
+        with exactly():
+            for part in (-1.0, 0.0, 0.7, 1.0):
+                place = arb(psi) + shift + reach * part
+                if (gamma > 0) != bool(place - middle > 0):
+                    continue
+                exact = exact_chord(*snapped, d, place, branch)
+                if exact is None:
+                    continue
+                checked += 1
+                for x, y, radius in discs:
+                    away = minus(exact.tail, (arb(x), arb(y)))
+                    assert dot(away, away) <= arb(radius) * arb(radius), (
+                        a.tolist(),
+                        b.tolist(),
+                        d,
+                        psi,
+                        shift,
+                        branch,
+                        reach,
+                        gamma,
+                    )
+    assert checked > 500
