@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, pi
+from math import cos, hypot, isfinite, pi, sin
 from random import Random
 
 import numpy as np
@@ -14,7 +14,19 @@ from chord_examples import SPECIAL, is_rounded_coincidence
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, special_table, steps_of
 from exact_chords import dot, exact_chord, exact_speed, exactly, plus
 from holdfast.contact.curves import curve_table
-from holdfast.kernels.curve_columns import BRANCH, COLUMN_STEP, HEAD, LENGTH, SHIFT, TAIL
+from holdfast.kernels.chord import chord_state
+from holdfast.kernels.curve_columns import (
+    BRANCH,
+    COLUMN_STEP,
+    FROM,
+    HEAD,
+    LENGTH,
+    SHIFT,
+    TAIL,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
+)
 from holdfast.kernels.pieces import (
     ACROSS_LEAST,
     ACROSS_MOST,
@@ -34,6 +46,7 @@ from holdfast.kernels.pieces import (
     VALUE_MOST,
     X_LEFT,
     X_RIGHT,
+    largest_part,
     push_range,
 )
 from strategies import seeds
@@ -52,6 +65,19 @@ def places(random: Random, low: float, high: float) -> list[float]:
     """Orientations across a piece, both ends among them."""
     inner = (low + (high - low) * part for part in (1e-5, 0.2, 0.5, random.random(), 0.8, 1 - 1e-5))
     return [low, *(min(max(place, low), high) for place in inner), high]
+
+
+def beyond(piece, curve) -> list[float]:
+    """Orientations beyond a piece that ends at a tangency, by as much as the tangency may be off."""
+    out = []
+    if piece[STEADY] == 0.0:
+        for end, tangency, error in (
+            (piece[LOW], curve[FROM] - curve[SHIFT], -curve[TANGENT_FROM]),
+            (piece[HIGH], curve[TO] - curve[SHIFT], curve[TANGENT_TO]),
+        ):
+            if error and abs((end - tangency + pi) % (2 * pi) - pi) < 4e-15:
+                out += [float(end + error), float(end + error / 2)]
+    return out
 
 
 def outward(row, point) -> tuple[arb, arb]:
@@ -82,7 +108,7 @@ def check_piece(features, table, piece, mode, random: Random) -> int:
     scale = 1.0 if a[0] == 0.0 else arb(float(a[6]))
     checked = 0
     with exactly():
-        for place in places(random, float(piece[LOW]), float(piece[HIGH])):
+        for place in places(random, float(piece[LOW]), float(piece[HIGH])) + beyond(piece, table.reals[curve]):
             psi = arb(place)
             chord, speed = exact_chord(a, b, d, psi + shift, branch), exact_speed(a, b, d, psi + shift, branch)
             if chord is None or speed is None:
@@ -212,6 +238,39 @@ def angle_range(one: float, two: float) -> list[float]:
     turn = (two - one + pi) % (2 * pi) - pi
     angles = [(one + turn * k / 40 + pi) % (2 * pi) - pi for k in range(41)]
     return [angle for angle in angles if abs(angle) < pi / 2]
+
+
+def test_what_the_errors_of_the_instant_centre_allow_is_told():
+    """y . P at the ends of a steady piece is enclosed with its error, and the bend allows for an instant centre that is as
+    far off: both errors grow without bound towards a tangency."""
+    random, checked = Random(63), 0
+    while checked < 300:
+        features, table = special_table(random, random.choice(SPECIAL))
+        for curve in random.sample(range(len(table)), min(4, len(table))):
+            a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
+            low = float(table.reals[curve, 0] - table.reals[curve, SHIFT]) + 10 ** random.uniform(-12, -3)
+            pieces = pieces_of(features, table, low, low + 10 ** random.uniform(-9, -4), HEIGHT)
+            for piece in pieces[(pieces[:, CURVE] == curve) & (pieces[:, STEADY] == 1.0)]:
+                for psi in (float(piece[LOW]), float(piece[HIGH])):
+                    state = chord_state(a, b, table.reals[curve], psi, cos(psi), sin(psi))
+                    across = cos(psi) * state[7] - sin(psi) * state[6]
+                    assert piece[ACROSS_LEAST] <= across - state[9] <= across + state[9] <= piece[ACROSS_MOST]
+                    assert piece[BEND_HIGH] >= (hypot(state[6], state[7]) + state[9]) * (1 - 1e-12)
+                    checked += 1
+
+
+@given(seeds)
+def test_largest_part_bounds_a_direction_that_turns(seed):
+    """A direction that turns evenly from one to another, by less than half a turn, has no larger part along x between."""
+    random = Random(seed)
+    for _ in range(100):
+        one = random.choice([random.uniform(-pi, pi), 0.0, pi / 2, pi])
+        turn = random.uniform(-1, 1)
+        told = largest_part(cos(one), sin(one), cos(one + turn), sin(one + turn))
+        most = max(abs(cos(one + turn * k / 50)) for k in range(51))
+        assert told >= most - 1e-12
+        if most < 0.7:
+            assert told <= most + 1e-12
 
 
 @given(seeds)
