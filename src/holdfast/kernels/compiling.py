@@ -25,6 +25,8 @@ __all__ = ["cache_folder", "compiled", "is_first_run"]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FOLDERS_KEPT = 3
+# The module and the kernel that every search compiles, and that takes longest.
+LONGEST_KERNEL = ("type_one", "type_one_cells")
 
 
 def source_hash() -> str:
@@ -77,7 +79,7 @@ def is_first_run() -> bool:
     Reading a part compiles a few small ones, which do not count.
     """
     folder = cache_folder()
-    return folder is None or next(folder.rglob("type_one.type_one_cell-*.nbi"), None) is None
+    return folder is None or next(folder.rglob(f"{'.'.join(LONGEST_KERNEL)}-*.nbi"), None) is None
 
 
 def compiled(function: Function) -> Function:
