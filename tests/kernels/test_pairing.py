@@ -190,6 +190,8 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
             number = crossings(first, second, loose, integers, reals, POSITION, 0.0, period, 0.0, stack, roots)
             for root in range(number):
                 psi, reach = roots[root, PSI], roots[root, RADIUS]
+                if reach >= 1e-6:
+                    continue
                 cx, cy = cos(psi), sin(psi)
                 place_triple(pegs, one, two, psi, reach, features, integers, reals)
                 write_triple(triple, pegs, psi, features, length)
@@ -248,6 +250,8 @@ def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, in
         vise.row_offset,
         limits,
     )
+    # A root known to a wide range only passes for a fixture too easily, where none is in that range.
+    rows = rows[rows[:, REACH] < 1e-6]
     contacts, fixtures = rows[rows[:, VERDICT] > 0], rows[rows[:, VERDICT] == 2]
     assert contacts[:, COUNTED].all() and contacts[:, MEETS].all()
     assert fixtures[:, PUSHES].all()
