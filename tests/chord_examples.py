@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import cos, hypot, pi, sin
 from random import Random
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import chord
+from holdfast.kernels.chord import chord, write_curve
 from holdfast.kernels.chord_intervals import chord_intervals
+from holdfast.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
+from holdfast.kernels.through_motion import NONE, coincidence
 from strategies import random_row
 
 Array = NDArray[np.float64]
@@ -44,6 +47,130 @@ def random_chord(random: Random, kinds: tuple[str, str]) -> tuple[Array, Array, 
     return a, b, d
 
 
+def long_wedge(random: Random) -> tuple[Array, Array, float]:
+    """Two long lines that are nearly parallel, and a short chord."""
+    turn, half = random.uniform(-pi, pi), 10 ** random.uniform(1.0, 3.5)
+    a = line_row(random.uniform(-5, 5), random.uniform(-5, 5), turn, half)
+    tilt = random.choice([1, -1]) * 10 ** random.uniform(-7, -0.5)
+    b = line_row(a[1] + random.uniform(-5, 5), a[2] + random.uniform(-5, 5), turn + tilt, half)
+    return a, b, random.uniform(2.0, 12.0)
+
+
+def nearly_one_chord_apart(random: Random) -> tuple[Array, Array, float]:
+    """Two nearly equal arcs whose centres are nearly one chord apart."""
+    a, d, way = (
+        arc_row(random.uniform(-9, 9), 3.0, random.uniform(1, 15)),
+        random.uniform(3, 30),
+        random.uniform(-pi, pi),
+    )
+    away, wider = (random.choice([0.0, 10 ** random.uniform(-8, -1)]) for _ in range(2))
+    b = arc_row(a[1] + (d + away) * cos(way), a[2] + (d + away) * sin(way), a[6] + wider)
+    return a, b, d
+
+
+def coincident_arcs(random: Random) -> tuple[Array, Array, float]:
+    """Two equal arcs whose centres are exactly one chord apart."""
+    radius, step = random.randint(8, 60) / 4, random.choice([(3, 4), (-4, 3), (5, 12), (8, -15)])
+    return arc_row(1.0, -2.0, radius), arc_row(1.0 + step[0], -2.0 + step[1], radius), hypot(*step)
+
+
+def coincident_line(random: Random) -> tuple[Array, Array, float]:
+    """A line and an arc whose centre is exactly as far beyond it as the chord is longer than the radius."""
+    radius, d = random.randint(8, 60) / 4, random.randint(16, 100) / 4
+    pair = [line_row(0.5, -3.0, 0.0, 40.0), arc_row(2.0, -3.0 - (d - radius), radius)]
+    if random.random() < 0.5:
+        pair.reverse()
+    return pair[0], pair[1], d
+
+
+def tangent_joint(random: Random) -> tuple[Array, Array, float]:
+    """A line that runs into an arc without a corner, in either order: a chord along the line is a smooth tangency."""
+    turn, radius, half = random.uniform(-pi, pi), random.uniform(0.5, 20), random.uniform(3, 30)
+    side = random.choice([1, -1])
+    line = line_row(random.uniform(-20, 20), random.uniform(-20, 20), turn, half)
+    end = line[1:3] + half * line[3:5]
+    center = end + side * radius * np.array([-line[4], line[3]])
+    first, sweep = turn - side * pi / 2, random.uniform(0.5, 3.0)
+    arc = arc_row(center[0], center[1], radius, first + side * sweep / 2, sweep / 2, side)
+    pair = (line, arc) if random.random() < 0.5 else (arc, line)
+    return *pair, random.uniform(1, 2 * half)
+
+
+def unlike_arcs(random: Random) -> tuple[Array, Array, float]:
+    """A tiny arc or a small fillet beside a huge arc, in either order."""
+    big, small = random.uniform(100, 900), 10 ** random.uniform(-1.5, 0.5)
+    away = big + random.uniform(-30, 30)
+    arcs = [arc_row(0.0, -away, big, pi / 2, random.uniform(0.05, 1)), arc_row(random.uniform(-9, 9), 0.0, small)]
+    if random.random() < 0.5:
+        arcs.reverse()
+    return arcs[0], arcs[1], random.uniform(1, 40)
+
+
+def nearly_touching(random: Random) -> tuple[Array, Array, float]:
+    """Arcs whose chord exists in a narrow range of directions only, or passes near a tangency."""
+    a, b = arc_row(random.uniform(-9, 9), 3.0, random.uniform(1, 15)), arc_row(0.0, 0.0, random.uniform(1, 15))
+    d, way, inside = random.uniform(3, 30), random.uniform(-pi, pi), 10 ** random.uniform(-9, -1)
+    apart = abs(d + random.choice([1, -1]) * (random.choice([a[6] + b[6], abs(a[6] - b[6])]) - inside))
+    b[1:3] = a[1] + apart * cos(way), a[2] + apart * sin(way)
+    return a, b, d
+
+
+def nearly_a_diameter(random: Random) -> tuple[Array, Array, float]:
+    """A chord between concentric circles, or of one circle, nearly along a line through the centre."""
+    a = arc_row(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(2, 15))
+    b = arc_row(a[1], a[2], random.choice([a[6], random.uniform(1, 20)]))
+    return a, b, a[6] + b[6] - 10 ** random.uniform(-9, -1)
+
+
+def turning_fillet(random: Random) -> tuple[Array, Array, float]:
+    """A line and a small fillet."""
+    pair = [line_row(0.0, 0.0, 0.0, 40.0), arc_row(random.uniform(-5, 5), random.uniform(1, 9), random.uniform(0.3, 2))]
+    if random.random() < 0.5:
+        pair.reverse()
+    return pair[0], pair[1], random.uniform(2, 15)
+
+
+SPECIAL = (
+    long_wedge,
+    nearly_one_chord_apart,
+    coincident_arcs,
+    coincident_line,
+    tangent_joint,
+    unlike_arcs,
+    nearly_touching,
+    nearly_a_diameter,
+    turning_fillet,
+)
+
+
+def is_rounded_coincidence(a: Array, b: Array, d: float) -> bool:
+    """Whether a chord is at a coincidence up to rounding only: its exact motion there is not that of the search's part."""
+    if coincidence(a, b, d)[0] == NONE:
+        return False
+    p, q, size = [Fraction(float(v)) for v in a], [Fraction(float(v)) for v in b], Fraction(float(d))
+    dx, dy = q[1] - p[1], q[2] - p[2]
+    if p[0] and q[0]:
+        return p[6] != q[6] or dx * dx + dy * dy != size * size
+    line, radius = (q, p[6]) if p[0] else (p, q[6])
+    apart = abs(line[4] * dx - line[3] * dy)
+    return line[3] ** 2 + line[4] ** 2 != 1 or abs(size - radius) != apart
+
+
+def any_ranges(random: Random, least: float = 1e-9) -> tuple[Array, Array, float, Array]:
+    """A chord that exists, in a special position as often as not, with its ranges no narrower than ``least`` radians."""
+    while True:
+        if random.random() < 0.4:
+            a, b, d = random_chord(random, (random.choice(KINDS), random.choice(KINDS)))
+        else:
+            a, b, d = random.choice(SPECIAL)(random)
+        if is_rounded_coincidence(a, b, d):
+            continue
+        ranges = chord_intervals(a, b, d)
+        ranges = ranges[ranges[:, 1] - ranges[:, 0] > least]
+        if len(ranges):
+            return a, b, d, ranges
+
+
 def random_ranges(random: Random, kinds: tuple[str, str], least: float = 1e-6) -> tuple[Array, Array, float, Array]:
     """A random chord that exists, with its ranges no narrower than ``least`` radians."""
     while True:
@@ -52,6 +179,23 @@ def random_ranges(random: Random, kinds: tuple[str, str], least: float = 1e-6) -
         ranges = ranges[ranges[:, 1] - ranges[:, 0] > least]
         if len(ranges):
             return a, b, d, ranges
+
+
+def curve_row(
+    a: Array,
+    b: Array,
+    d: float,
+    branch: float,
+    shift: float = 0.0,
+    ends: tuple[float, float] = (0.0, TURN),
+    tangents: tuple[float, float] = (0.0, 0.0),
+) -> Array:
+    """A row of the curve table, for directions between two ends, of which some may be tangencies."""
+    row = np.zeros(CURVE_REALS)
+    write_curve(row, a, b, d, branch, shift)
+    row[FROM], row[TO] = ends
+    row[TANGENT_FROM], row[TANGENT_TO] = tangents
+    return row
 
 
 def turn_at(a: Array, b: Array, d: float, alpha: float, branch: float) -> float:

@@ -1,6 +1,12 @@
-"""Settings of the whole suite: property tests draw the same examples every time and know no deadline."""
+"""Settings of the whole suite: property tests draw the same examples every time and know no deadline; kernels that only
+kernels call can be called by tests too."""
 
 from __future__ import annotations
+
+import os
+
+# Before the first kernel is imported.
+os.environ.setdefault("HOLDFAST_KERNELS", "callable")
 
 from hypothesis import HealthCheck, settings
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot
 from random import Random
 
@@ -13,6 +14,7 @@ from chord_examples import KINDS, random_chord
 from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table
 from holdfast.kernels.chord import HEIGHT, POSITION
 from holdfast.kernels.crossing import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
+from holdfast.kernels.curve_columns import COLUMN_STEP, LENGTH, ROW_STEP
 from holdfast.kernels.pieces import cell_pieces
 from strategies import random_row
 
@@ -41,16 +43,39 @@ def random_table(random: Random, count: int = 4, first: str = "") -> tuple[Array
     return features, curve_table(features, lattice(random.uniform(8, 14), 2, 2))
 
 
-def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode: int, flatness: float = 2.0) -> Array:
+def special_table(random: Random, make: Callable[[Random], tuple[Array, Array, float]]) -> tuple[Array, CurveTable]:
+    """Two features in a special position (see ``chord_examples.SPECIAL``) and their chords on a lattice of that pitch."""
+    a, b, d = make(random)
+    features = np.array([a, b])
+    return features, curve_table(features, lattice(d / random.choice([1, 1, 2]), 2, 2))
+
+
+def steps_of(table: CurveTable) -> LatticeSteps:
+    """The lattice steps of one length that a table's first curve has."""
+    length, pitch = float(table.reals[0, LENGTH]), pitch_of(table)
+    whole = np.array(
+        [(k, m) for k in (-1, 0, 1) for m in (-1, 0, 1) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
+    )
+    return LatticeSteps(np.array([length]), np.array([0, len(whole)]), whole, np.arctan2(whole[:, 1], whole[:, 0]))
+
+
+def pitch_of(table: CurveTable) -> float:
+    """Pitch in mm of the square lattice of a table's curves."""
+    steps = table.integers[0, [COLUMN_STEP, ROW_STEP]]
+    return float(table.reals[0, LENGTH] / hypot(*steps))
+
+
+def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode: float) -> Array:
     """All pieces of a table's curves in a cell."""
     members = np.arange(len(table))
-    return cell_pieces(low, high, members, features, table.integers, table.reals, mode, flatness)
+    pitch = pitch_of(table) if len(table) else 1.0
+    return cell_pieces(low, high, members, features, table.integers, table.reals, table.stretches, pitch, mode)
 
 
-def cross(first, second, features, table, mode, offset, period) -> Array:
+def cross(first, second, features, table, mode, offset, period, flat=0.0) -> Array:
     """Roots (N, 3) of two pieces: orientation, radius and multiple of the period."""
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    number = crossings(first, second, features, table.integers, table.reals, mode, offset, period, stack, roots)
+    number = crossings(first, second, features, table.integers, table.reals, mode, offset, period, flat, stack, roots)
     assert number >= 0
     return roots[:number].copy()
 

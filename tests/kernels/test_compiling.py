@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -109,3 +110,9 @@ def test_the_cache_is_named_by_the_environment(monkeypatch, tmp_path):
     assert compiling.user_cache() == tmp_path / "holdfast"
     monkeypatch.delenv("XDG_CACHE_HOME")
     assert compiling.user_cache() == Path("~/.cache/holdfast").expanduser()
+
+
+def test_the_kernel_by_which_a_first_run_is_told_exists():
+    """A first run is told by the stored code of one kernel: one of that name is there, and its code is stored."""
+    module, name = compiling.LONGEST_KERNEL
+    assert hasattr(import_module(f"holdfast.kernels.{module}"), name)

@@ -13,25 +13,17 @@ from chord_examples import arc_row
 from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
 from holdfast.contact.curves import LatticeSteps, curve_table
+from holdfast.kernels.curve_columns import BRANCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TANGENT_FROM, TANGENT_TO, TO
 from holdfast.kernels.pieces import (
     BEND_HIGH,
     BEND_LOW,
-    BRANCH,
     CURVE,
-    FROM,
-    HEAD,
     HIGH,
-    LENGTH,
     LOW,
-    SHIFT,
     SLOPE_ERROR_HIGH,
     SLOPE_ERROR_LOW,
     SLOPE_HIGH,
     SLOPE_LOW,
-    TAIL,
-    TANGENT_FROM,
-    TANGENT_TO,
-    TO,
     VALUE_ERROR_HIGH,
     VALUE_ERROR_LOW,
     VALUE_HIGH,
@@ -141,7 +133,7 @@ def test_two_branches_agree_at_their_tangency():
         pieces = pieces_of(features, table, -3.0, 3.0, HEIGHT)
         at_tangency = {}
         for piece in pieces:
-            key = tuple(table.integers[int(piece[CURVE])])
+            key = tuple(table.integers[int(piece[CURVE]), :4])
             for end, value, error, slope in (
                 (piece[LOW], piece[VALUE_LOW], piece[VALUE_ERROR_LOW], piece[SLOPE_LOW]),
                 (piece[HIGH], piece[VALUE_HIGH], piece[VALUE_ERROR_HIGH], piece[SLOPE_HIGH]),
@@ -207,4 +199,4 @@ def test_a_chord_of_one_circle_takes_few_pieces_however_near_it_is_to_the_diamet
     steps = LatticeSteps(np.array([16 - gap]), np.array([0, 1]), np.array([[1, 0]]), np.array([0.0]))
     table = curve_table(features, steps)
     assert len(table) >= 2
-    assert len(pieces_of(features, table, 0.1, 0.13, mode, 1.2)) <= 8 * len(table)
+    assert len(pieces_of(features, table, 0.1, 0.13, mode)) <= 8 * len(table)

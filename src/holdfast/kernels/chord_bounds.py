@@ -139,22 +139,24 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
     X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
     g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
     """
+    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of their rounding.
+    cx, cy = outward(b[1] - a[1], b[1] - a[1]), outward(b[2] - a[2], b[2] - a[2])
     if a[0] == 0.0 and b[0] == 0.0:
-        size = abs(a[3] * b[4] - a[4] * b[3])
-        return outward(size, size)
+        turn = icross((a[3], a[3]), (a[4], a[4]), (b[3], b[3]), (b[4], b[4]))
+        return isqrt(isquare(turn))
     if a[0] == 0.0 or b[0] == 0.0:
-        line, arc, side = (a, b, 1.0) if a[0] == 0.0 else (b, a, -1.0)
-        fixed = side * (line[4] * (line[1] - arc[1]) - line[3] * (line[2] - arc[2]))
+        line, arc = (a, b) if a[0] == 0.0 else (b, a)
+        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same direction.
+        fixed = isub(iscale(line[4], cx), iscale(line[3], cy))
         normal = atan2(-line[3], line[4])
-        across = ishift(fixed, iscale(d, icos((low - normal, high - normal))))
+        across = isub(fixed, iscale(d, icos((low - normal, high - normal))))
         inside = imul(isub((arc[6], arc[6]), across), ishift(arc[6], across))
         return iscale(1.0 / arc[6], isqrt(inside))
-    cx, cy = b[1] - a[1], b[2] - a[2]
-    apart, middle = hypot(cx, cy), atan2(cy, cx)
+    apart, middle = isqrt(iadd(isquare(cx), isquare(cy))), atan2(b[2] - a[2], b[1] - a[1])
     half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
-    square = ishift((apart - d) * (apart - d), iscale(4.0 * apart * d, isquare(half)))
-    less, more = (a[6] - b[6]) * (a[6] - b[6]), (a[6] + b[6]) * (a[6] + b[6])
-    inside = imul(isub(square, (less, less)), isub((more, more), square))
+    square = iadd(isquare(ishift(-d, apart)), iscale(4.0 * d, imul(apart, isquare(half))))
+    less, more = outward(a[6] - b[6], a[6] - b[6]), outward(a[6] + b[6], a[6] + b[6])
+    inside = imul(isub(square, isquare(less)), isub(isquare(more), square))
     return iscale(0.5 / (a[6] * b[6]), isqrt(inside))
 
 

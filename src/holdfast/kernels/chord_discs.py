@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from holdfast.kernels.chord import HEIGHT, State, chord_state, parameter_on, regular_error
 from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import BLUR, COINCIDENCE, KAPPA, LENGTH, MIDDLE, SHIFT
-from holdfast.kernels.through_motion import CONCENTRIC, TURN, from_coincidence, is_regular
+from holdfast.kernels.through_motion import CONCENTRIC, EXACT, NONE, TURN, from_coincidence, is_regular
 
 Array = NDArray[np.float64]
 
@@ -52,24 +52,8 @@ def root_error(square: float, doubt: float) -> float:
 
 
 @inner
-def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
-    """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one there."""
-    d, eta, kind = curve[LENGTH], curve[BLUR], curve[COINCIDENCE]
-    if kind == CONCENTRIC:
-        return a[6] * reach + eta
-    radius = a[6] if a[0] != 0.0 else b[6]
-    gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
-    if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
-        return regular_error(curve) + 2.6 * (d + radius) * reach
-    e = d * reach + eta
-    if a[0] == 0.0 and b[0] == 0.0:
-        return 1.1 * e / abs(state[2] * state[5] - state[3] * state[4])
-    if a[0] == 0.0:
-        half = b[6] * (a[3] * state[4] + a[4] * state[5])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * b[6] + e))
-    if b[0] == 0.0:
-        half = a[6] * (b[3] * state[2] + b[4] * state[3])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * a[6] + e))
+def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float:
+    """How far in mm a tail on an arc may be from a computed one when the chord, to another arc, is known to ``e``."""
     gap = hypot(a[6] * state[2] - b[6] * state[4], a[6] * state[3] - b[6] * state[5])
     if gap <= 2.0 * e:
         return 2.2 * a[6]
@@ -78,6 +62,33 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
     square = (a[6] - along) * (a[6] + along)
     return shift + eta + 1.01 * root_error(square, shift * (2.0 * a[6] + shift)) + 1.6 * a[6] * e / gap
+
+
+@inner
+def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
+    """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one there."""
+    d, eta, kind = curve[LENGTH], curve[BLUR], curve[COINCIDENCE]
+    if kind == CONCENTRIC:
+        # The chord turns about the centre as it is; nearly along a diameter its place is known less well than its length.
+        return a[6] * reach + arcs_radius(a, b, state, eta, eta)
+    radius = a[6] if a[0] != 0.0 else b[6]
+    gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
+    if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
+        return regular_error(curve) + 2.6 * (d + radius) * reach
+    e = d * reach + eta
+    if kind != NONE:
+        # Lengths may be off those of the coincidence, at which the computed chord may be taken.
+        e += EXACT
+        eta += regular_error(curve)
+    if a[0] == 0.0 and b[0] == 0.0:
+        return 1.1 * e / abs(state[2] * state[5] - state[3] * state[4])
+    if a[0] == 0.0:
+        half = b[6] * (a[3] * state[4] + a[4] * state[5])
+        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * b[6] + e))
+    if b[0] == 0.0:
+        half = a[6] * (b[3] * state[2] + b[4] * state[3])
+        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * a[6] + e))
+    return arcs_radius(a, b, state, e, eta)
 
 
 @inner
@@ -92,7 +103,9 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
     """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to ``reach``."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
     radius = tail_radius(curve, state, reach)
-    if not isfinite(radius) or curve[COINCIDENCE] != 0.0:
+    if curve[COINCIDENCE] != NONE:
+        radius += regular_error(curve)
+    if not isfinite(radius) or curve[COINCIDENCE] != NONE:
         radius = min(radius, disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.
     if a[0] != 0.0:

@@ -30,6 +30,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 FOLDERS_KEPT = 3
 # Whether kernels that only kernels call are made callable from Python too, for tests; it takes longer to compile.
 ALL_CALLABLE = os.environ.get("HOLDFAST_KERNELS") == "callable"
+# The module and the kernel that every search compiles, and that takes longest.
+LONGEST_KERNEL = ("type_one", "type_one_cells")
 
 
 def source_hash() -> str:
@@ -82,7 +84,7 @@ def is_first_run() -> bool:
     Reading a part compiles a few small ones, which do not count.
     """
     folder = cache_folder()
-    return folder is None or next(folder.rglob("type_one.type_one_cell-*.nbi"), None) is None
+    return folder is None or next(folder.rglob(f"{'.'.join(LONGEST_KERNEL)}-*.nbi"), None) is None
 
 
 class StoredCode(FunctionCache):

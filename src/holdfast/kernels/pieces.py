@@ -84,10 +84,10 @@ SAME = 2e-15
 HAIR = 1e-9
 
 # Entries of an edge: value, slope, their errors, place of the tail along x, |P|, bound of how far P is from tail and head,
-# bound of the tail's error, the outward normals of tail and head in the vise's frame, and y . P.
+# bound of the tail's error, the outward normals of tail and head in the vise's frame, y . P, and bound of the error of P.
 EDGE_VALUE, EDGE_SLOPE, EDGE_VALUE_ERROR, EDGE_SLOPE_ERROR, EDGE_X, EDGE_CENTER, EDGE_ARM, EDGE_ERROR = range(8)
-TAIL_X, TAIL_Y, HEAD_X, HEAD_Y, EDGE_ACROSS = range(8, 13)
-EDGE_LENGTH = 13
+TAIL_X, TAIL_Y, HEAD_X, HEAD_Y, EDGE_ACROSS, EDGE_CENTER_ERROR = range(8, 14)
+EDGE_LENGTH = 14
 # The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
 # The same for directions of sums of two normals.
@@ -102,7 +102,7 @@ def unwrapped(value: float, near: float) -> float:
 
 @inner
 def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: float) -> None:
-    """Write what a piece needs of a chord at one of its ends to a (13,) row."""
+    """Write what a piece needs of a chord at one of its ends to a (14,) row."""
     cosine, sine = cos(psi), sin(psi)
     state = chord_state(a, b, curve, psi, cosine, sine)
     edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = valued(
@@ -114,6 +114,7 @@ def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: 
     edge[EDGE_ARM] = sqrt(ax * ax + ay * ay) + curve[LENGTH]
     edge[EDGE_ERROR] = state[8]
     edge[EDGE_ACROSS] = cosine * py - sine * px
+    edge[EDGE_CENTER_ERROR] = state[9]
     side_a = 1.0 if a[0] == 0.0 else a[7]
     side_b = 1.0 if b[0] == 0.0 else b[7]
     edge[TAIL_X] = side_a * (cosine * state[2] + sine * state[3])
@@ -272,6 +273,14 @@ def write_pushes(row: Array, low: Array, high: Array, share: float, turned: floa
 
 
 @inner
+def largest_part(one_x: float, one_y: float, two_x: float, two_y: float) -> float:
+    """Largest size of the part along x of a unit vector that turns evenly from one to another, less than half way round."""
+    if one_y * two_y <= 0.0:
+        return 1.0
+    return max(abs(one_x), abs(two_x))
+
+
+@inner
 def write_steady(
     row: Array,
     a: Array,
@@ -285,13 +294,19 @@ def write_steady(
 ) -> None:
     """Write the enclosures of a piece whose instant centre moves at a bounded speed."""
     speed, sag = stretch[SPEED], width * width / 8.0
-    center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width
-    error = max(low[EDGE_ERROR], high[EDGE_ERROR])
+    error, blurred = max(low[EDGE_ERROR], high[EDGE_ERROR]), max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR])
+    center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width + blurred
+    arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width + blurred
     curved = curve[KAPPA]
+    turn = (curved * arm + 1.0) * width
+    turns_little = turn <= MOST_TURN
     turned = curved * (speed * sag + 2.0 * error) + HAIR * width + SAME
     if mode == HEIGHT:
         # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
-        tail, head = max(abs(low[TAIL_X]), abs(high[TAIL_X])), max(abs(low[HEAD_X]), abs(high[HEAD_X]))
+        tail = head = 1.0
+        if turns_little:
+            tail = largest_part(low[TAIL_X], low[TAIL_Y], high[TAIL_X], high[TAIL_Y])
+            head = largest_part(low[HEAD_X], low[HEAD_Y], high[HEAD_X], high[HEAD_Y])
         swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
         bend = (center + min(speed, swing)) * (1.0 + HAIR)
     else:
@@ -307,14 +322,12 @@ def write_steady(
     row[X_LEFT] = min(low[EDGE_X], high[EDGE_X]) - doubt
     row[X_RIGHT] = max(low[EDGE_X], high[EDGE_X]) + doubt
     if mode == HEIGHT:
-        arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width
-        turn = (curved * arm + 1.0) * width
-        if turn <= MOST_TURN:
+        if turns_little:
             write_pushes(row, low, high, share, turned, turn)
         else:
             row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
     # The slope of y . P is bounded by |P| + K.
-    doubt = 0.5 * (center + speed) * width + error + HAIR
+    doubt = 0.5 * (center + speed) * width + blurred + HAIR
     row[ACROSS_LEAST] = min(low[EDGE_ACROSS], high[EDGE_ACROSS]) - doubt
     row[ACROSS_MOST] = max(low[EDGE_ACROSS], high[EDGE_ACROSS]) + doubt
     row[STEADY] = 1.0
@@ -325,8 +338,10 @@ def write_beside(
     row: Array, a: Array, b: Array, curve: Array, stretch: Array, tangent_low: float, tangent_high: float, mode: float
 ) -> None:
     """Write the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
-    width, middle = row[HIGH] - row[LOW], (row[LOW] + row[HIGH]) / 2.0
-    x, y, radius = tail_disc(a, b, curve, middle, width / 2.0)
+    middle = (row[LOW] + row[HIGH]) / 2.0
+    # The end at a tangency may lie a hair beyond.
+    reach = (row[HIGH] - row[LOW]) / 2.0 + max(tangent_low, tangent_high)
+    x, y, radius = tail_disc(a, b, curve, middle, reach)
     size = hypot(x, y) + radius
     row[BEND_LOW], row[BEND_HIGH] = bend_beside(stretch, a, curve[LENGTH], size, row[LOW], row[HIGH], mode)
     # Where the branches meet the slope is infinite, with the sign the bend gives it.
@@ -340,9 +355,9 @@ def write_beside(
     if tangent_high > 0.0 or not isfinite(row[VALUE_ERROR_HIGH]):
         row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high, mode)
     row[SLOPE_LEAST], row[SLOPE_MOST] = -inf, inf
-    value, doubt = value_disc(a, b, curve, middle, width / 2.0, mode)
+    value, doubt = value_disc(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
-    place, doubt = cos(middle) * x + sin(middle) * y, radius + size * width / 2.0 + HAIR
+    place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + HAIR
     row[X_LEFT], row[X_RIGHT] = place - doubt, place + doubt
     row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
     row[ACROSS_LEAST], row[ACROSS_MOST] = -inf, inf
@@ -384,7 +399,7 @@ def add_pieces(
     share : see ``shared_push``.
     low, high : psi in radians, inside the curve's range and inside one cell.
     base : psi at the low end of the curve's range.
-    edges : (2, 13) work space.
+    edges : (2, 14) work space.
     """
     a, b, curve = features[integers[index, TAIL]], features[integers[index, HEAD]], reals[index]
     circles = mode == POSITION and a[0] != 0.0 and a[5] >= pi
@@ -474,7 +489,7 @@ def cell_pieces(
     cell_low, cell_high : psi in radians, less than a turn apart.
     members : (M,) indices of the curves to consider, ascending.
     features : (F, 8) rows.
-    integers, reals, stretches : (C, 7), (C, 14) and (S, 13) curve table.
+    integers, reals, stretches : (C, 7), (C, 14) and (S, 14) curve table.
     pitch_x : column pitch in mm.
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
         m / (1 - 3 m) of any other.

@@ -187,7 +187,7 @@ def upright_type_one(
 ) -> Array:
     """All Type I fixtures that rest on one of the ``chosen`` uprights and on a curve of ``members``.
 
-    Parameters and result as for ``type_one_cell``.
+    Parameters and result as for ``type_one_cells``.
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
@@ -256,7 +256,7 @@ def upright_type_two(
 ) -> Array:
     """All Type II fixtures two of whose left pegs form one of the ``chosen`` uprights from the shared tail.
 
-    Parameters and result as for ``type_one_cell``.
+    Parameters and result as for ``type_one_cells``.
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
