@@ -69,7 +69,7 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     """All pieces of a table's curves in a cell."""
     members = np.arange(len(table))
     pitch = pitch_of(table) if len(table) else 1.0
-    return cell_pieces(low, high, members, features, table.integers, table.reals, table.stretches, pitch, mode)
+    return cell_pieces(low, high, members, features, table.integers, table.reals, table.stretches, pitch, 0.0, mode)
 
 
 def cross(first, second, features, table, mode, offset, period, flat=0.0) -> Array:

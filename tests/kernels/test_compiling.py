@@ -39,11 +39,11 @@ def copy(tmp_path: Path) -> Path:
     for name in ("__init__.py", "kernels/__init__.py", "kernels/compiling.py"):
         shutil.copy(source / name, package / name)
     text = (source / "kernels" / "distance.py").read_text()
-    head, callee = text.split("@compiled\ndef segment_distance", 1)
-    callee, caller = callee.split("@compiled\ndef outline_distance(", 1)
+    head, callee = text.split("@inner\ndef segment_distance", 1)
+    callee, caller = callee.split("@inner\ndef outline_distance(", 1)
     # The callee moves to a file of its own, so that the caller's file stays as it is when the callee changes.
-    (package / "kernels" / "callee.py").write_text(head + "@compiled\ndef segment_distance" + callee)
-    bridge = "from holdfast.kernels.callee import segment_distance\n\n\n@compiled\ndef outline_distance("
+    (package / "kernels" / "callee.py").write_text(head + "@inner\ndef segment_distance" + callee)
+    bridge = "from holdfast.kernels.callee import segment_distance\n\n\n@inner\ndef outline_distance("
     (package / "kernels" / "distance.py").write_text(head + bridge + caller)
     return tmp_path / "source"
 

@@ -82,7 +82,7 @@ def pieces_in(search: ViseSearch, low: float, high: float, mode: float) -> np.nd
     table = search.table
     members = np.arange(len(table))
     pitch = search.vise.pitch[0]
-    return cell_pieces(low, high, members, search.loose, table.integers, table.reals, table.stretches, pitch, mode)
+    return cell_pieces(low, high, members, search.loose, table.integers, table.reals, table.stretches, pitch, 0.0, mode)
 
 
 @numba.njit

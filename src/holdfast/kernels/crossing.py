@@ -126,7 +126,8 @@ def solve(
         value_two, slope_two, error_two, _ = value_at(psi, two, features, integers, reals, mode)
         rest = value_two - value_one - target
         error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
-        if abs(rest) <= error:
+        # Nothing is gained where rounding is the larger part of what is left.
+        if abs(rest) <= 0.05 * error:
             break
         if (rest > 0.0) == rising:
             high = psi
