@@ -76,8 +76,8 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
         return regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
-    if kind != NONE:
-        # Lengths may be off those of the coincidence, at which the computed chord may be taken.
+    if is_regular(kind, radius, d, gamma):
+        # The computed chord is that of a part with exactly the lengths of the coincidence, others within reach are not.
         e += EXACT
         eta += regular_error(curve)
     if a[0] == 0.0 and b[0] == 0.0:
