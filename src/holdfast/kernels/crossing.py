@@ -190,6 +190,12 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
 
 
 @inner
+def is_inside(psi: float, end: float, slope: float) -> bool:
+    """Whether an orientation is not an end of a piece. The end at a tangency, known to no better, counts within rounding."""
+    return psi != end and not (isinf(slope) and abs(psi - end) <= SAME)
+
+
+@inner
 def crossings(
     first: Array,
     second: Array,
@@ -227,13 +233,13 @@ def crossings(
     e1, g1, e2, g2 = first[VALUE_ERROR_LOW], first[SLOPE_ERROR_LOW], second[VALUE_ERROR_LOW], second[SLOPE_ERROR_LOW]
     c1, q1 = first[VALUE_ERROR_HIGH], first[SLOPE_ERROR_HIGH]
     c2, q2 = second[VALUE_ERROR_HIGH], second[SLOPE_ERROR_HIGH]
-    if low != first[LOW]:
+    if is_inside(low, first[LOW], first[SLOPE_LOW]):
         v1, s1, e1, g1 = value_at(low, one, features, integers, reals, mode)
-    if low != second[LOW]:
+    if is_inside(low, second[LOW], second[SLOPE_LOW]):
         v2, s2, e2, g2 = value_at(low, two, features, integers, reals, mode)
-    if high != first[HIGH]:
+    if is_inside(high, first[HIGH], first[SLOPE_HIGH]):
         w1, t1, c1, q1 = value_at(high, one, features, integers, reals, mode)
-    if high != second[HIGH]:
+    if is_inside(high, second[HIGH], second[SLOPE_HIGH]):
         w2, t2, c2, q2 = value_at(high, two, features, integers, reals, mode)
     rounding = ROUNDINGS * (abs(v1) + abs(v2) + abs(w1) + abs(w2) + abs(offset))
     found = 0

@@ -351,9 +351,9 @@ def write_beside(
         row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = end_slope(row[BEND_LOW], row[BEND_HIGH], 1.0)
     # There, or nearly there, the value is bounded by a disc, a hair beyond the end included.
     if tangent_low > 0.0 or not isfinite(row[VALUE_ERROR_LOW]):
-        row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low, mode)
+        row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low + SAME, mode)
     if tangent_high > 0.0 or not isfinite(row[VALUE_ERROR_HIGH]):
-        row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high, mode)
+        row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high + SAME, mode)
     row[SLOPE_LEAST], row[SLOPE_MOST] = -inf, inf
     value, doubt = value_disc(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
