@@ -20,7 +20,6 @@ from holdfast.cli.options import (
 )
 from holdfast.cli.progress import INTERRUPTED, ask_to_stop, search_progress
 from holdfast.cli.values import choice, counting_number, length, optional_length, pitches, whole_number
-from holdfast.cli.warming import second_compiler
 from holdfast.errors import InputError
 
 if TYPE_CHECKING:
@@ -168,7 +167,11 @@ def design(
     workpiece = load_part(part, unit, layer, part_number, join_tolerance).workpiece
     first_run = is_first_run()
     start = perf_counter()
-    with second_compiler(first_run), ask_to_stop() as cancel, search_progress(first_run) as progress:
+    with ask_to_stop() as cancel, search_progress(first_run) as progress:
+        if first_run and engine == "curves":
+            from holdfast.cli.warming import compile_kernels
+
+            compile_kernels(cancel)
         result = find_fixtures(
             workpiece,
             vise,

@@ -1,7 +1,7 @@
-"""A second process that compiles kernels beside the search on a first run.
+"""Compiling on a first run, shared with a second process.
 
-Numba compiles one kernel at a time in a process. While the search compiles what it needs first, another process compiles
-what it needs last and leaves it in the cache folder, where the search finds it in time. It changes nothing but the wait.
+The second process compiles the kernels of the search while this one compiles those that come before and after it; the cache
+folder hands the code over. It changes nothing but the wait.
 """
 
 from __future__ import annotations
@@ -9,27 +9,42 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from threading import Event
+from time import sleep
 
-__all__ = ["second_compiler"]
+from holdfast.kernels.compiling import cache_folder
 
-SEARCH = (
-    "import holdfast; "
-    "holdfast.design(holdfast.load('oblongPart'), holdfast.Vise(pitch=10, columns=1, peg_radius=3), types=['II'], threads=1)"
-)
+__all__ = ["compile_kernels"]
+
+SECOND_PROCESS = "from holdfast.kernels.preparing import prepare_crossings; prepare_crossings()"
+# Seconds between looks at the second process.
+NAP = 0.05
 
 
-@contextmanager
-def second_compiler(first_run: bool) -> Iterator[None]:
-    """Compile the kernels of Type II in another process while the context lasts, if there is a processor for it."""
-    if not first_run or (os.cpu_count() or 1) < 2:
-        yield
+def compile_kernels(cancel: Event) -> None:
+    """Compile the kernels of a search, with the help of another process if there is a processor for it.
+
+    Parameters
+    ----------
+    cancel : when set, the rest is left to the search.
+    """
+    if (os.cpu_count() or 1) < 2 or cache_folder() is None or not sys.executable:
         return
+    from holdfast.kernels.preparing import prepare_table_and_listing
+
     silent = subprocess.DEVNULL
-    process = subprocess.Popen([sys.executable, "-c", SEARCH], stdin=silent, stdout=silent, stderr=silent)
+    path = os.pathsep.join(entry for entry in sys.path if entry)
+    process = subprocess.Popen(
+        [sys.executable, "-c", SECOND_PROCESS],
+        env={**os.environ, "PYTHONPATH": path},
+        stdin=silent,
+        stdout=silent,
+        stderr=silent,
+    )
     try:
-        yield
+        prepare_table_and_listing()
+        while process.poll() is None and not cancel.is_set():
+            sleep(NAP)
     finally:
         process.terminate()
         process.wait()
