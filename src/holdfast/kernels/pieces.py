@@ -223,7 +223,11 @@ def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tupl
 
 @compiled
 def write_pushes(row: Array, low: Array, high: Array, doubt: float) -> None:
-    """Write the directions of the forces of a piece's pegs, from the normals at its ends."""
+    """Write the directions of the forces of a piece's pegs, from the normals at its ends.
+
+    Inside a curve X keeps its sign, so the normals do not pass through opposite directions: the lowest and the highest
+    direction between the pushes are where one of them is at an end of the piece, or square to x.
+    """
     for k in range(2):
         # Pegs push against the outward normals; the right jaw's pegs push with -F.
         sign = -1.0 if k == 0 else 1.0
