@@ -148,8 +148,8 @@ def blur(a: Array, b: Array, d: float) -> float:
     """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
     size = abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d
     if a[0] == 0.0 and b[0] == 0.0:
-        # Nearly parallel lines meet far from their middles.
-        size += a[5] + b[5]
+        # Nearly parallel lines are touched far from their middles.
+        size = min(size / abs(a[3] * b[4] - a[4] * b[3]), size + a[5] + b[5])
     spread = 1.0
     if a[0] != 0.0 and b[0] != 0.0:
         # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.

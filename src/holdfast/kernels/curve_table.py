@@ -65,7 +65,7 @@ def tail_curves(
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
     whole, uprights = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, UPRIGHT_REALS))
     stretches = np.empty((64, STRETCH_LENGTH))
-    count = upright_count = stretch_count = 0
+    count = upright_count = stretch_count = int(np.int64(0))
     curve = np.empty(CURVE_REALS)
     a = features[tail]
     for head in range(tail, features.shape[0]):

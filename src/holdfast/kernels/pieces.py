@@ -244,10 +244,11 @@ def sum_is_long(edge: Array, share: float) -> bool:
 def write_pushes(row: Array, low: Array, high: Array, share: float, turned: float, turn: float) -> None:
     """Write the directions of the forces of a piece's pegs, from the normals at its ends.
 
-    The hull of both ends is told, widened by as much as directions may sag between them. A normal sags by no more than
-    ``turned``. With a ``share`` (see ``shared_push``) sums p of two normals are meant: when normals turn by no more than
-    ``turn`` in all, abs(p'') w^2 / 8 is at most turned + turn^2 / 4, and p, nowhere shorter than 0.4, may be seen under
-    twice that over 0.4.
+    Inside a curve X keeps its sign, so the normals do not pass through opposite directions: the lowest and the highest
+    direction between the pushes are where one of them is at an end of the piece, or square to x. So the hull of both ends
+    is told, widened by as much as directions may sag between them. A normal sags by no more than ``turned``. With a
+    ``share`` (see ``shared_push``) sums p of two normals are meant: when normals turn by no more than ``turn`` in all,
+    abs(p'') w^2 / 8 is at most turned + turn^2 / 4, and p, nowhere shorter than 0.4, may be seen under twice that over 0.4.
     """
     doubt = turned
     if share > 0.0:

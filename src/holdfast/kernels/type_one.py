@@ -28,12 +28,10 @@ from holdfast.kernels.pieces import (
     HIGH,
     LOW,
     PUSH_LEFT_LOW,
-    PUSH_RIGHT_LOW,
     STEADY,
     VALUE_LEAST,
     VALUE_MOST,
     X_LEFT,
-    X_RIGHT,
     cell_pieces,
 )
 from holdfast.kernels.vise_checks import (
@@ -191,9 +189,10 @@ def type_one_cells(
             limits[LEAST_MARGIN],
             HEIGHT,
         )
-        lefts, rights = np.empty((pieces.shape[0], ROLE_LENGTH)), np.empty((pieces.shape[0], ROLE_LENGTH))
-        left_count = write_roles(pieces, X_LEFT, PUSH_LEFT_LOW, counting, lefts)
-        right_count = write_roles(pieces, X_RIGHT, PUSH_RIGHT_LOW, counting, rights)
+        roles, counts = np.empty((2, pieces.shape[0], ROLE_LENGTH)), np.empty(2, np.int64)
+        for side in range(2):
+            counts[side] = write_roles(pieces, X_LEFT + side, PUSH_LEFT_LOW + 2 * side, counting, roles[side])
+        lefts, rights, left_count, right_count = roles[0], roles[1], counts[0], counts[1]
         keys, order = np.empty(right_count), np.empty(right_count, np.int64)
         sort_roles(rights, right_count, keys, order)
         sorted_rights = np.empty((right_count, ROLE_LENGTH))
