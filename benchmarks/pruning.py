@@ -46,8 +46,8 @@ def compared(part: str, pitch: float, columns: int, peg_radius: float) -> list[d
             {
                 "kept": kept,
                 "same": list(best) == everything[:kept],
-                "examined": best.statistics["simultaneous_contacts"],
-                "all": everything.statistics["simultaneous_contacts"],
+                "examined": best.statistics["contacts_examined"],
+                "all": everything.statistics["contacts_examined"],
                 "seconds": seconds,
                 "seconds_all": middle - start,
             }
