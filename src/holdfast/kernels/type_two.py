@@ -101,7 +101,7 @@ def row_meets(
 
 @inner
 def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length: float) -> None:
-    """Write what right pegs need of three left pegs in place to (5, 3) rows.
+    """Write what right pegs need of three left pegs in place to (8, 3) rows, the last three of them work space.
 
     With w_i = (n_i, t_i) the wrenches of the left pegs and D their determinant, rows 0 to 2 hold the cross products of two
     of them, cyclically, with the sign of D; the null vector's entries of the left pegs for a right peg of wrench w, over
@@ -109,8 +109,7 @@ def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length
     the rightmost left peg, the largest radius of the pegs, and the largest turn of a normal by that, in radians; row 4 holds
     abs(D).
     """
-    wrenches = triple[:3]
-    first = np.empty((3, 3))
+    wrenches, first = triple[:3], triple[5:]
     rightmost = -np.inf
     radius = swing = 0.0
     for k in range(3):
@@ -144,7 +143,7 @@ def may_close(
 
     Parameters
     ----------
-    triple : (5, 3) rows of ``write_triple``.
+    triple : (8, 3) rows of ``write_triple``.
     row, x, y, radius : the right peg's feature and place.
     cx, cy : cosine and sine of psi.
     gap : smallest gap in mm, less the doubt of orientation.
@@ -191,7 +190,7 @@ def add_right_pegs(
     error = pegs[0, 5] + 4.0 * limits[WRENCH_LENGTH] * reach
     slack = 1e-9 + error / pitch_y
     gap = limits[MIN_GAP] - GAP_SLACK - HAIR - 4.0 * limits[WRENCH_LENGTH] * reach
-    triple = np.empty((5, 3))
+    triple = np.empty((8, 3))
     write_triple(triple, pegs, psi, features, limits[WRENCH_LENGTH])
     for e in range(features.shape[0]):
         row = features[e]
@@ -201,8 +200,11 @@ def add_right_pegs(
         lowest, highest = height_range(row, -cy, cx)
         first = int(ceil((lowest - base) / pitch_y - slack))
         last = int(floor((highest - base) / pitch_y + slack))
+        # Nor does the side of an arc count that faces left.
+        sides = 2 if counting or row[0] == 0.0 else 1
+        begin = 0 if sides == 2 or row[7] > 0.0 else 1
         for line in range(first, last + 1):
-            for k in range(2):
+            for k in range(begin, begin + sides):
                 meets, x, y, radius = row_meets(row, -cy, cx, base + line * pitch_y, error, 1.0 - 2.0 * k)
                 if not meets:
                     continue
