@@ -16,9 +16,22 @@ if TYPE_CHECKING:
     from holdfast.model.result import Result
     from holdfast.model.vise import Vise
     from holdfast.model.workpiece import Workpiece
+    from holdfast.search.contacts import count_contacts
     from holdfast.search.design import design
 
-__all__ = ["Fixture", "HoldfastError", "InputError", "Peg", "Pose", "Result", "Vise", "Workpiece", "design", "load"]
+__all__ = [
+    "Fixture",
+    "HoldfastError",
+    "InputError",
+    "Peg",
+    "Pose",
+    "Result",
+    "Vise",
+    "Workpiece",
+    "count_contacts",
+    "design",
+    "load",
+]
 
 __version__ = "0.1.0"
 
@@ -31,6 +44,7 @@ HOMES = {
     "Result": "holdfast.model.result",
     "Vise": "holdfast.model.vise",
     "Workpiece": "holdfast.model.workpiece",
+    "count_contacts": "holdfast.search.contacts",
     "design": "holdfast.search.design",
     "load": "holdfast.files.load",
 }
