@@ -323,7 +323,7 @@ def test_pushes_of_a_piece_hold_those_at_every_orientation_between(seed):
         edges, row = turning_edges(random), np.zeros(PIECE_LENGTH)
         if len({sin(two - one) > 0.0 for _, one, two in edges}) == 2:
             continue
-        write_pushes(row, edges[0][0], edges[-1][0], 0.0, 0.0, 0.0)
+        write_pushes(row, edges[0][0], edges[-1][0], 0.0, 0.0)
         for _, one, two in edges:
             for turn, low, high in (
                 (pi, row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH]),

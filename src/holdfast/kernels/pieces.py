@@ -91,7 +91,7 @@ EDGE_LENGTH = 14
 # The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
 # The same for directions of sums of two normals.
-LITTLE_TURN = 0.1
+LITTLE_TURN = 0.3
 
 
 @inner
@@ -241,21 +241,39 @@ def sum_is_long(edge: Array, share: float) -> bool:
 
 
 @inner
-def write_pushes(row: Array, low: Array, high: Array, share: float, turned: float, turn: float) -> None:
+def largest_turn(low: Array, high: Array) -> float:
+    """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than 1."""
+    tail_x, tail_y = high[TAIL_X] - low[TAIL_X], high[TAIL_Y] - low[TAIL_Y]
+    head_x, head_y = high[HEAD_X] - low[HEAD_X], high[HEAD_Y] - low[HEAD_Y]
+    # A chord of up to 1 radian is no shorter than 0.95 times its arc.
+    return 1.06 * sqrt(max(tail_x * tail_x + tail_y * tail_y, head_x * head_x + head_y * head_y))
+
+
+@inner
+def write_pushes(row: Array, low: Array, high: Array, share: float, turned: float) -> None:
     """Write the directions of the forces of a piece's pegs, from the normals at its ends.
 
     Inside a curve X keeps its sign, so the normals do not pass through opposite directions: the lowest and the highest
     direction between the pushes are where one of them is at an end of the piece, or square to x. So the hull of both ends
     is told, widened by as much as directions may sag between them. A normal sags by no more than ``turned``. With a
-    ``share`` (see ``shared_push``) sums p of two normals are meant: when normals turn by no more than ``turn`` in all,
-    abs(p'') w^2 / 8 is at most turned + turn^2 / 4, and p, nowhere shorter than 0.4, may be seen under twice that over 0.4.
+    ``share`` (see ``shared_push``) sums p of two normals are meant: normals turn at a rate that changes by at most
+    8 turned / w^2, so w times the rate is at most the turn from end to end and 4 turned; abs(p'') w^2 / 8 is at most the
+    square of that over 4 and 2 turned, and p, nowhere shorter than 0.4, may be seen under twice that over 0.4.
     """
-    doubt = turned
-    if share > 0.0:
-        if turn <= LITTLE_TURN and sum_is_long(low, share) and sum_is_long(high, share):
-            doubt = 5.0 * (2.0 * turned + turn * turn / 4.0)
-        else:
-            share = 0.0
+    write_hull(row, low, high, 0.0, turned)
+    turn = largest_turn(low, high) + 4.0 * turned
+    if share <= 0.0 or turn > LITTLE_TURN or not (sum_is_long(low, share) and sum_is_long(high, share)):
+        return
+    wide = row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH]
+    write_hull(row, low, high, share, 5.0 * (2.0 * turned + turn * turn / 4.0))
+    # Both are bounds.
+    row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH] = max(row[PUSH_LEFT_LOW], wide[0]), min(row[PUSH_LEFT_HIGH], wide[1])
+    row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = max(row[PUSH_RIGHT_LOW], wide[2]), min(row[PUSH_RIGHT_HIGH], wide[3])
+
+
+@inner
+def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
+    """Write the hull of the pushes (see ``shared_push``) at both ends of a piece, widened for a ``doubt`` of directions."""
     for k in range(2):
         # Pegs push against the outward normals; the right jaw's pegs push with -F.
         sign = -1.0 if k == 0 else 1.0
@@ -299,8 +317,7 @@ def write_steady(
     center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width + blurred
     arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width + blurred
     curved = curve[KAPPA]
-    turn = (curved * arm + 1.0) * width
-    turns_little = turn <= MOST_TURN
+    turns_little = (curved * arm + 1.0) * width <= MOST_TURN
     turned = curved * (speed * sag + 2.0 * error) + HAIR * width + SAME
     if mode == HEIGHT:
         # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
@@ -324,7 +341,7 @@ def write_steady(
     row[X_RIGHT] = max(low[EDGE_X], high[EDGE_X]) + doubt
     if mode == HEIGHT:
         if turns_little:
-            write_pushes(row, low, high, share, turned, turn)
+            write_pushes(row, low, high, share, turned)
         else:
             row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
     # The slope of y . P is bounded by |P| + K.

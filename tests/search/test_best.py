@@ -1,0 +1,102 @@
+"""The best K alone: the same as the first K of all, whatever is left out on the way; and the count of contacts."""
+
+from __future__ import annotations
+
+from threading import Event
+
+import numpy as np
+import pytest
+
+from holdfast import Vise, Workpiece, count_contacts, design, load
+from holdfast.listing.best import BestFixtures
+from holdfast.search.vise_search import ViseSearch
+
+# Parts with ties, twins, uprights and coincidences; how many to keep.
+CASES = [
+    ("widget", Vise(pitch=8, columns=2, peg_radius=3), 7),
+    ("flange", Vise(pitch=10, columns=2, peg_radius=3), 40),
+    ("oblongPart", Vise(pitch=8, columns=4, peg_radius=3), 25),
+    ("small4Handle", Vise(pitch=10, columns=10, peg_radius=3), 1),
+    ("small4Handle", Vise(pitch=10, columns=10, peg_radius=3), 300),
+    ("large4Handle", Vise(pitch=10, columns=3, peg_radius=3, rows=8, max_opening=60), 20),
+    ("thin4Handle", Vise(pitch=10, columns=1, peg_radius=3, row_offset=2.5), 100_000),
+]
+
+
+@pytest.mark.parametrize(("name", "vise", "most"), CASES)
+@pytest.mark.parametrize("threads", [1, 3])
+def test_the_best_are_the_first_of_all(name: str, vise: Vise, most: int, threads: int) -> None:
+    """Ties, to 9 digits, fall as in the full ranking, on any number of threads."""
+    full = design(load(name), vise)
+    best = design(load(name), vise, best=most, threads=threads)
+    assert len(best) == min(most, len(full))
+    assert list(best) == full[: len(best)]
+    assert best.proof is not None and not best.proof.undecided
+
+
+def test_more_than_there_are_is_all_of_them() -> None:
+    """When nothing is left out the result counts all, and does not say otherwise."""
+    part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+    full, best = design(part, vise), design(part, vise, best=10_000)
+    assert list(best) == list(full)
+    assert best.found == full.found and best.notes == full.notes
+
+
+def test_work_is_left_out() -> None:
+    """Fewer contacts are examined, and fewer crossings sought, for the very best than for all."""
+    part, vise = load("oblongPart"), Vise(pitch=4, columns=6, peg_radius=1.5)
+    full, best = design(part, vise, threads=1), design(part, vise, best=3, threads=1)
+    assert best.statistics["contacts_examined"] < full.statistics["contacts_examined"]
+    assert best.statistics["crossings_sought"] < full.statistics["crossings_sought"]
+
+
+def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the kernels are told rises, and stays below the margin of the last fixture listed in the end."""
+    told: list[float] = []
+    monkeypatch.setattr(ViseSearch, "seek", lambda self, margin: told.append(margin))
+    best = design(load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), best=25)
+    assert told == sorted(told) and told[-1] > 0.0
+    assert told[-1] < np.round(best.table.null_vector[-1].min(), 9)
+
+
+def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between blocks no more candidates are held than the best, those that tie with the last, and twins."""
+    held: list[int] = []
+    decide = BestFixtures.decide
+
+    def watched(self: BestFixtures) -> None:
+        decide(self)
+        assert self.kept is not None
+        held.append(len(self.kept.kind))
+
+    monkeypatch.setattr(BestFixtures, "decide", watched)
+    design(load("oblongPart"), Vise(pitch=8, columns=10, peg_radius=3), best=50)
+    assert len(held) > 3 and max(held) < 50 * 8
+
+
+def test_a_cancelled_search_keeps_the_best_so_far() -> None:
+    """It is incomplete, and what it lists are fixtures."""
+    part, vise = load("large4Handle"), Vise(pitch=10, columns=10, peg_radius=3)
+    cancel = Event()
+    best = design(part, vise, best=5, threads=1, cancel=cancel, progress=lambda fraction, found: cancel.set())
+    assert not best.complete
+    every = {(f.type, f.pegs) for f in design(part, vise)}
+    assert all((f.type, f.pegs) in every for f in best)
+
+
+def test_contacts_are_counted_before_closure_gap_and_clamping() -> None:
+    """There are more contacts than fixtures, as many on one thread as on two, and none where no two pegs fit."""
+    part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+    contacts = count_contacts(part, vise, threads=1)
+    assert contacts == count_contacts(part, vise, threads=2)
+    assert contacts > 10 * sum(design(part, vise).found.values())
+    small = Workpiece.from_loops("small", [[[0, 0, 0], [4, 0, 0], [2, 3, 0]]])
+    assert count_contacts(small, Vise(pitch=40, columns=1, peg_radius=3)) == 0
+
+
+def test_contacts_of_a_square_by_hand() -> None:
+    """The gap and the closure play no part: a wider smallest gap leaves the count as it is."""
+    square = Workpiece.from_loops("square", [[[0, 0, 0], [31, 0, 0], [31, 31, 0], [0, 31, 0]]])
+    near = count_contacts(square, Vise(pitch=10, columns=2, peg_radius=2))
+    far = count_contacts(square, Vise(pitch=10, columns=2, peg_radius=2, min_gap=500))
+    assert near == far > 0
