@@ -47,7 +47,15 @@ from holdfast.kernels.type_one import (
     sort_roles,
     write_roles,
 )
-from holdfast.kernels.type_two import farthest_right, height_range, may_close, place_triple, row_meets, write_triple
+from holdfast.kernels.type_two import (
+    TRIPLE_ROWS,
+    farthest_right,
+    height_range,
+    may_close,
+    place_triple,
+    row_meets,
+    write_triple,
+)
 from holdfast.kernels.vise_checks import (
     GAP_SLACK,
     MIN_GAP,
@@ -173,7 +181,7 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
     out = np.empty((1 << 14, 5))
     count = 0
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    pegs, work, null, triple = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4), np.empty((5, 3))
+    pegs, work, null, triple = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4), np.empty((TRIPLE_ROWS, 3))
     farthest = farthest_right(loose, low, high) - limits[MIN_GAP] + GAP_SLACK + HAIR
     length = limits[WRENCH_LENGTH]
     for i in range(pieces.shape[0]):

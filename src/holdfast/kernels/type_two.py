@@ -42,6 +42,8 @@ IntArray = NDArray[np.int64]
 # Columns of a role: what the pairing of pieces looks at.
 ROLE_LOW, ROLE_HIGH, ROLE_VALUE_LEAST, ROLE_VALUE_MOST, ROLE_PIECE, ROLE_TAIL = range(6)
 ROLE_LENGTH = 6
+# Rows of what right pegs need of three left ones.
+TRIPLE_ROWS = 8
 
 
 @inner
@@ -190,7 +192,7 @@ def add_right_pegs(
     error = pegs[0, 5] + 4.0 * limits[WRENCH_LENGTH] * reach
     slack = 1e-9 + error / pitch_y
     gap = limits[MIN_GAP] - GAP_SLACK - HAIR - 4.0 * limits[WRENCH_LENGTH] * reach
-    triple = np.empty((8, 3))
+    triple = np.empty((TRIPLE_ROWS, 3))
     write_triple(triple, pegs, psi, features, limits[WRENCH_LENGTH])
     for e in range(features.shape[0]):
         row = features[e]
