@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from holdfast.model.proof import Proof, Undecided
+from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
@@ -36,12 +38,21 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
         jaw_separation=random.uniform(10, 80, count),
         null_vector=null_vector,
         force=null_vector / random.uniform(0.1, 0.5, (count, 1)),
+        quality=fake_quality(null_vector, random),
     )
     counts = {"I": int((kind == 1).sum()), "II": int((kind == 2).sum())}
     result = Result(plate(), vise, table, counts, {"I": counts["I"] // 2, "II": counts["II"] // 2})
     for name, value in changes.items():
         object.__setattr__(result, name, value)
     return result
+
+
+def fake_quality(null_vector: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.float64]:
+    """Made-up figures of quality, but for the closure margin; without loads."""
+    quality = random.uniform(0.01, 2.0, (len(null_vector), len(FIGURES)))
+    quality[:, CLOSURE_MARGIN] = null_vector.min(axis=1, initial=1.0)
+    quality[:, LOAD_REACTION] = np.nan
+    return quality
 
 
 def fake_proof(undecided: int, **changes: int) -> Proof:

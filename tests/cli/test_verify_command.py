@@ -16,7 +16,7 @@ import pytest
 from fakes import fake_result
 from holdfast import Result, Vise, Workpiece, design
 from holdfast.files.result_file import write_result
-from holdfast.model.result import FixtureTable
+from holdfast.model.result import FixtureTable, unknown_quality
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +102,7 @@ def on_the_edge(hair: float) -> Result:
         jaw_separation=np.array([40.0]),
         null_vector=force / force.sum(),
         force=force,
+        quality=unknown_quality(force / force.sum()),
     )
     counts = {"I": 0, "II": 1}
     return Result(part, vise, table, counts, counts)

@@ -17,7 +17,6 @@ from stress_parts import bracket_with_fillet, disc, lug, ring, two_bumps
 
 from curve_examples import sampled
 from holdfast import Vise, Workpiece
-from holdfast.contact.curves import curve_table, loosened
 from holdfast.kernels.chord import HEIGHT, POSITION, chord_state
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
@@ -67,7 +66,7 @@ from holdfast.kernels.vise_checks import (
 )
 from holdfast.listing.problem import Problem
 from holdfast.search.cells import FIRST_ORIENTATION
-from holdfast.search.vise_search import ViseSearch, lattice_steps
+from holdfast.search.vise_search import ViseSearch
 from strategies import random_outline, seeds
 
 CELL = pi / 96
@@ -79,10 +78,7 @@ FARTHEST, VALUES, MEETING, RIGHT_FACE, CLOSES = range(5)
 
 def prepared(part: Workpiece, vise: Vise) -> ViseSearch:
     """A search with its table of curves."""
-    problem = Problem.of(part, vise)
-    loose = loosened(problem.rows[:, :8])
-    table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
-    return ViseSearch(vise, problem.rows, loose, table, 0.0, problem.wrench_length)
+    return ViseSearch.of(Problem.of(part, vise))
 
 
 def pieces_in(search: ViseSearch, low: float, high: float, mode: float) -> np.ndarray:
@@ -250,7 +246,7 @@ def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, in
     limits = search.limits
     rows = try_pairs(
         pieces,
-        search.features,
+        search.problem.rows,
         search.loose,
         table.integers,
         table.reals,
@@ -279,7 +275,7 @@ def check_type_two(search: ViseSearch, low: float, high: float) -> int:
         pieces,
         low,
         high,
-        search.features,
+        search.problem.rows,
         search.loose,
         table.integers,
         table.reals,

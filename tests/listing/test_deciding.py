@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from holdfast import Vise, load
 from holdfast.listing import deciding
 from holdfast.listing.deciding import Course, decided, merged
-from holdfast.listing.listed import listed_result
+from holdfast.listing.listed import Work, listed_result
 from holdfast.listing.problem import TYPES, Problem
+from holdfast.listing.ranking import Preference
 from holdfast.model.result import Result
 from holdfast.search import design as design_module
 
@@ -22,9 +23,11 @@ def found() -> tuple[Problem, list[NDArray[np.float64]], Result]:
     """The oblong part with many nearly double contacts: problem, records and result."""
     kept: list[tuple[Problem, list[NDArray[np.float64]]]] = []
 
-    def keep(problem: Problem, records: list[NDArray[np.float64]], **options: object) -> Result:
+    def keep(
+        problem: Problem, preference: Preference, records: list[NDArray[np.float64]], work: Work, **options: object
+    ) -> Result:
         kept.append((problem, records))
-        return listed_result(problem, records, **options)  # type: ignore[arg-type]
+        return listed_result(problem, preference, records, work, **options)  # type: ignore[arg-type]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(design_module, "listed_result", keep)
@@ -50,7 +53,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     problem, records, result = found
     cancel = Event()
     cancel.set()
-    part = listed_result(problem, records, complete=True, statistics={}, cancel=cancel)
+    part = listed_result(problem, Preference(), records, Work(True, {}), cancel=cancel)
     assert not part.complete
     assert part.proof is not None and result.proof is not None
     assert part.proof.undecided == ()
@@ -59,7 +62,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     assert part.proof.escalated < result.proof.escalated
     proof = part.proof
     assert proof.candidates == proof.discarded_by_bound + proof.verified
-    everything = listed_result(problem, records, complete=True, statistics={}, cancel=Event())
+    everything = listed_result(problem, Preference(), records, Work(True, {}), cancel=Event())
     assert everything.complete
     assert len(everything) == len(result)
 
@@ -94,7 +97,7 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     """With everything open sent to ball arithmetic the same records are proven."""
     problem, records, result = found
     monkeypatch.setattr(deciding, "narrower", lambda block, *_: (block[:0], block))
-    other = listed_result(problem, records, complete=True, statistics={})
+    other = listed_result(problem, Preference(), records, Work(True, {}))
     assert np.array_equal(other.table.column, result.table.column)
     assert np.array_equal(other.table.row, result.table.row)
     assert np.abs(other.table.theta - result.table.theta).max() < 1e-12

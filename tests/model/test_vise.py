@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from holdfast.errors import InputError
-from holdfast.model.fixture import Peg, column_letters
+from holdfast.model.fixture import Peg
+from holdfast.model.holes import column_letters
 from holdfast.model.result import hole_position
 from holdfast.model.vise import Vise
 from strategies import vises

@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from holdfast.listing.finish import Candidates, changes, listed_once, packed, standing, twins
+from holdfast.listing.candidates import Candidates, changes, listed_once, packed, standing, twins
 
 
 def candidates(count: int) -> Candidates:
@@ -47,9 +47,10 @@ def test_same_holes_and_orientation_in_two_places_are_two() -> None:
     both = evolve(both, point=point, null=np.array([[0.1, 0.2, 0.3, 0.4], [0.25, 0.25, 0.25, 0.25]]))
     kept = listed_once(both)
     assert len(kept.kind) == 2
-    first, others = twins(kept, kept.feature)
-    assert kept.null[first].min() == 0.25
-    assert len(others) == 1
+    sets = twins(kept, kept.feature)
+    assert kept.null[sets.first].min() == 0.25
+    assert len(sets.others) == 1
+    assert sets.owner.tolist() == [0]
 
 
 def test_half_turn_swaps_the_jaws_to_one_form() -> None:

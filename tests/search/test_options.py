@@ -96,8 +96,10 @@ def test_best_are_the_first_of_all(free: Result) -> None:
 
 def test_ranked_by_closure_margin(free: Result) -> None:
     """The closure margin falls along the list."""
-    margins = np.round(free.table.null_vector.min(axis=1), 9)
+    ranked = design(free.workpiece, free.vise, rank_by=["closure margin"])
+    margins = np.round(ranked.table.null_vector.min(axis=1), 9)
     assert (np.diff(margins) <= 0).all()
+    assert keys(ranked) == keys(free)
 
 
 def test_forces_balance_the_clamping_force(free: Result) -> None:

@@ -18,9 +18,13 @@ from holdfast.algebra.roots import orientations
 from holdfast.algebra.slides import alike, alike_orientations, slides_of, type_one_slides, type_two_slides
 from holdfast.algebra.undecided import undecided_notes
 from holdfast.algebra.wedges import peg_pairs
-from holdfast.listing.listed import listed_result
+from holdfast.listing.listed import Work, listed_result
 from holdfast.listing.problem import TYPES, Problem, Progress, check_options
+from holdfast.listing.ranking import preference_of
+from holdfast.model.load import Load
+from holdfast.model.restrictions import Restrictions
 from holdfast.model.result import Result
+from holdfast.model.tolerance import Tolerance
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -171,6 +175,10 @@ def design_by_algebra(
     *,
     types: Sequence[str] = TYPES,
     contact_margin: float = 0.0,
+    restrictions: Restrictions | None = None,
+    rank_by: Sequence[str] | None = None,
+    tolerance: Tolerance | None = None,
+    loads: Sequence[Load] = (),
     best: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -182,6 +190,7 @@ def design_by_algebra(
     workpiece, vise : what to hold and what to hold it in.
     types : "I" (two pegs on each jaw), "II" (three and one), or both.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
+    restrictions, rank_by, tolerance, loads : as for ``holdfast.design``.
     best : list only this many, the best ones; None lists all.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
@@ -196,10 +205,11 @@ def design_by_algebra(
     Raises
     ------
     InputError
-        For an unknown type, and numbers out of range.
+        As ``holdfast.design``.
     """
     check_options(types, contact_margin, best)
-    problem = Problem.of(workpiece, vise, contact_margin)
+    preference = preference_of(rank_by, tolerance, loads)
+    problem = Problem.of(workpiece, vise, contact_margin, restrictions)
     solver = Solver(problem.rows, vise, contact_margin, problem.diameter)
     records: list[Array] = []
     complete = True
@@ -211,5 +221,5 @@ def design_by_algebra(
             complete = False
             break
     statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
-    result = listed_result(problem, records, complete=complete, best=best, statistics=statistics, cancel=cancel)
+    result = listed_result(problem, preference, records, Work(complete, statistics), best=best, cancel=cancel)
     return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

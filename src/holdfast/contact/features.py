@@ -12,11 +12,13 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from holdfast.geometry.offset import trimmed_offsets
+from holdfast.errors import InputError
+from holdfast.geometry.offset import clear_parts, trimmed_offsets
 from holdfast.geometry.segment import Segment, segment_rows
+from holdfast.model.restrictions import Restrictions, Zone
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["ContactFeature", "contact_features", "end_slacks", "feature_rows"]
+__all__ = ["ContactFeature", "allowed_features", "contact_features", "end_slacks", "feature_rows"]
 
 # A contact this near to the end of its feature, in mm, is at the end.
 ROUNDING = 1e-9
@@ -44,6 +46,58 @@ def contact_features(workpiece: Workpiece, peg_radius: float) -> list[ContactFea
     faces = workpiece.faces
     pieces = trimmed_offsets([face.segment for face in faces], peg_radius)
     return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
+
+
+def allowed_features(
+    features: list[ContactFeature], workpiece: Workpiece, restrictions: Restrictions, body_radius: float
+) -> list[ContactFeature]:
+    """What is left of contact features when faces are avoided and no body of a peg may stand over a keep-out zone.
+
+    Parameters
+    ----------
+    body_radius : of the pegs' bodies, in mm.
+
+    Raises
+    ------
+    InputError
+        For a face that does not exist, and when nothing is left.
+    """
+    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid}
+    touched = [feature for feature in features if feature.face not in avoided]
+    if not touched:
+        raise InputError(
+            f"every face of {workpiece.name} that a peg could touch is to be avoided: leave some faces to hold it by."
+        )
+    left = touched
+    for zone in restrictions.zones:
+        left = [kept for feature in left for kept in clear_of(feature, zone, body_radius)]
+    if not left:
+        raise InputError(
+            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them smaller."
+        )
+    return left
+
+
+def face_of_segment(workpiece: Workpiece, number: int) -> int:
+    """The number of the face that a segment belongs to.
+
+    Raises
+    ------
+    InputError
+        When there is no such segment.
+    """
+    for face in workpiece.faces:
+        if number in face.segments:
+            return face.number
+    last = len(workpiece.segments) - 1
+    raise InputError(
+        f"{workpiece.name} has no face {number}: its segments are numbered from 0 to {last}; see holdfast features."
+    )
+
+
+def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
+    """The parts of a contact feature on which a peg's body stays clear of a zone."""
+    return [ContactFeature(feature.face, part) for part in clear_parts(feature.segment, zone.segments, body_radius)]
 
 
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:

@@ -17,7 +17,8 @@ from holdfast.drawing.panel import Column, draw_legend, draw_peg_table, draw_set
 from holdfast.drawing.part import placed_point
 from holdfast.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View, decimals_for
 from holdfast.geometry.segment import Point
-from holdfast.model.fixture import Fixture, column_letters
+from holdfast.model.fixture import Fixture
+from holdfast.model.holes import column_letters
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 

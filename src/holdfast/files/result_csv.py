@@ -7,23 +7,14 @@ from pathlib import Path
 from typing import IO
 
 from holdfast.files.atomic import text_file
-from holdfast.files.result_file import fixture_rows
-from holdfast.model.fixture import column_letters
+from holdfast.files.result_file import fixture_rows, known_figures
+from holdfast.model.holes import column_letters
 from holdfast.model.result import Result
 
 __all__ = ["write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
-COLUMNS = (
-    "number",
-    "type",
-    "theta_deg",
-    "x",
-    "y",
-    "jaw_separation",
-    "closure_margin",
-    *(f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS),
-)
+POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y", "jaw_separation")
 JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
 NAMES = {1: "I", 2: "II"}
 
@@ -44,15 +35,18 @@ def write_result_csv(result: Result, path: str | Path) -> None:
 
 def write_result_csv_to(result: Result, stream: IO[str]) -> None:
     """Write the comma-separated values to an open text stream."""
-    stream.write(",".join(COLUMNS) + "\n")
+    figures = known_figures(result.table)
+    pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
+    stream.write(",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n")
     letters = cache(column_letters)
     number = 0
     for kinds, rows in fixture_rows(result.table, result.vise):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
-            theta, x, y, separation, margin = row[24:]
-            fields = [str(number), NAMES[kind], repr(theta), repr(x), repr(y), repr(separation), f"{margin:.12g}"]
+            theta, x, y, separation, *quality = row[24:]
+            fields = [str(number), NAMES[kind], repr(theta), repr(x), repr(y), repr(separation)]
+            fields += [f"{value:.12g}" for value in quality]
             for peg, jaw in enumerate(JAWS[kind]):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
                 hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"

@@ -12,7 +12,7 @@ quality have twelve significant digits. :mod:`holdfast.files.result_reader` read
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -20,11 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.files.atomic import text_file
+from holdfast.model.load import Load
 from holdfast.model.proof import Proof
+from holdfast.model.quality import FIGURES, Figure
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 
-__all__ = ["FORMAT", "fixture_rows", "write_result", "write_result_to"]
+__all__ = ["FORMAT", "fixture_rows", "known_figures", "write_result", "write_result_to"]
 
 FORMAT = "holdfast-result/1"
 BLOCK = 4096
@@ -32,19 +34,14 @@ LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10
 
 PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
-POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r, "quality": {"closure_margin": %.12g}}'
+POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r'
 
 
-def fixture_template(name: str, jaws: tuple[str, str, str, str]) -> str:
+def fixture_template(name: str, jaws: tuple[str, str, str, str], figures: Sequence[Figure]) -> str:
     """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
     pegs = ", ".join(PEG.format(jaw) for jaw in jaws)
-    return f'{{"type": "{name}", "pegs": [{pegs}], {POSE}'
-
-
-TEMPLATES = {
-    1: fixture_template("I", ("left", "left", "right", "right")),
-    2: fixture_template("II", ("left", "left", "left", "right")),
-}
+    quality = ", ".join(f'"{figure.key}": %.12g' for figure in figures)
+    return f'{{"type": "{name}", "pegs": [{pegs}], {POSE}, "quality": {{{quality}}}}}'
 
 
 def write_result(result: Result, path: str | Path) -> None:
@@ -73,8 +70,13 @@ def write_result_to(result: Result, stream: IO[str]) -> None:
 def write_fixtures(table: FixtureTable, vise: Vise, stream: IO[str]) -> None:
     """Write the lines of a list of fixtures, each after the line break that ends the one before."""
     separator = "\n"
+    figures = known_figures(table)
+    templates = {
+        1: fixture_template("I", ("left", "left", "right", "right"), figures),
+        2: fixture_template("II", ("left", "left", "left", "right"), figures),
+    }
     for kind, numbers in fixture_rows(table, vise):
-        stream.write(separator + ",\n".join([TEMPLATES[k] % row for k, row in zip(kind, numbers, strict=True)]))
+        stream.write(separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)]))
         separator = ",\n"
 
 
@@ -96,8 +98,18 @@ def head(result: Result) -> dict[str, Any]:
             "min_gap": vise.min_gap,
             "max_opening": None if vise.max_opening is None else float(vise.max_opening),
             "row_offset": vise.row_offset,
+            "body_radius": vise.body_radius,
+            "blocked": [holes.name for holes in vise.blocked],
         },
         "contact_margin": float(result.contact_margin),
+        "restrictions": {
+            "avoid": [int(face) for face in result.restrictions.avoid],
+            "zones": [(zone.loop + 0.0).tolist() for zone in result.restrictions.zones],
+            "angles": [[float(low), float(high)] for low, high in result.restrictions.angles],
+        },
+        "ranking": list(result.ranking),
+        "tolerance": {"peg": result.tolerance.peg, "face": result.tolerance.face},
+        "loads": [load_entry(load) for load in result.loads],
         "counts": result.counts,
         "found": {kind: int(result.found[kind]) for kind in ("I", "II")},
         "distinct": {kind: int(result.distinct[kind]) for kind in ("I", "II")},
@@ -105,6 +117,17 @@ def head(result: Result) -> dict[str, Any]:
         "notes": list(result.notes),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def load_entry(load: Load) -> dict[str, Any]:
+    """A load as it is written: N, N mm, mm and degrees."""
+    return {
+        "name": load.name,
+        "points": [[float(x), float(y)] for x, y in load.points],
+        "force": load.force,
+        "directions": [float(angle) for angle in load.directions],
+        "moment": load.moment,
+    }
 
 
 def proof_entry(proof: Proof) -> dict[str, Any]:
@@ -134,14 +157,20 @@ def rounded_degrees(angle: float) -> float:
     return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
 
 
+def known_figures(table: FixtureTable) -> list[Figure]:
+    """The figures of quality that all fixtures of a table have."""
+    return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
+
+
 def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
     """Blocks of fixtures as plain numbers, rounded as they are written.
 
     Yields
     ------
-    The types (1 or 2), and for every fixture a tuple of 29 numbers: for each peg column, row, x, y, segment, force;
-    then theta in degrees, x and y of the pose, jaw separation, closure margin.
+    The types (1 or 2), and for every fixture a tuple of 28 numbers: for each peg column, row, x, y, segment, force;
+    then theta in degrees, x and y of the pose, jaw separation; and after them the figures of :func:`known_figures`.
     """
+    known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         separation = rounded(block.jaw_separation, LENGTH_STEPS)
@@ -153,8 +182,8 @@ def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], I
         theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
         theta[theta >= 360.0] = 0.0
         position = rounded(block.position, LENGTH_STEPS)
-        margin = block.null_vector.min(axis=1)
-        columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, margin)]
+        figures = [block.quality[:, number] for number in known]
+        columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, *figures)]
         yield block.type.tolist(), zip(*columns, strict=True)
 
 

@@ -10,16 +10,20 @@ import json
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any, Literal, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 
 from holdfast.errors import InputError
-from holdfast.model.proof import Proof, Undecided
+from holdfast.files.result_forms import Head, ProofPart
+from holdfast.model.load import Load
+from holdfast.model.proof import Proof
+from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
 from holdfast.model.result import FixtureTable, Result
+from holdfast.model.tolerance import Tolerance
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -34,102 +38,17 @@ TYPES = {"I": 1, "II": 2}
 JAWS = {"left": 0, "right": 1}
 
 
-class Part(BaseModel):
-    """What a key of the head must look like; further keys are allowed."""
-
-    model_config = ConfigDict(strict=True, allow_inf_nan=False)
-
-
-class WorkpiecePart(Part):
-    """The workpiece's keys."""
-
-    name: str
-    units: Literal["mm"]
-    loops: list[list[list[float]]]
-
-
-class VisePart(Part):
-    """The vise's keys."""
-
-    pitch: list[float] = Field(min_length=2, max_length=2)
-    columns: int
-    peg_radius: float
-    rows: int | None = None
-    min_gap: float | None = None
-    max_opening: float | None = None
-    row_offset: float = 0.0
-
-
-class Counts(Part):
-    """Fixtures of each type."""
-
-    type_one: int = Field(alias="I", ge=0)
-    type_two: int = Field(alias="II", ge=0)
-
-    def by_type(self) -> dict[str, int]:
-        """The counts by the types' names."""
-        return {"I": self.type_one, "II": self.type_two}
-
-
-class UndecidedPart(Part):
-    """One entry of the proof's list of what is not decided; columns and rows may be negative."""
-
-    type: Literal["I", "II"]
-    segments: list[int] = Field(min_length=4, max_length=4)
-    columns: list[int] = Field(min_length=4, max_length=4)
-    rows: list[int] = Field(min_length=4, max_length=4)
-    theta_deg: float = Field(ge=0, lt=360)
-    reason: str = Field(min_length=1)
-
-    def undecided(self) -> Undecided:
-        """The entry as the model has it."""
-        segments, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
-        return Undecided(self.type, segments, columns, rows, self.theta_deg, self.reason)
-
-
-class ProofPart(Part):
-    """The account of the search."""
-
-    cells: int = Field(ge=0)
-    candidates: int = Field(ge=0)
-    discarded_by_bound: int = Field(ge=0)
-    verified: int = Field(ge=0)
-    escalated: int = Field(ge=0)
-    undecided: list[UndecidedPart]
-
-    def proof(self) -> Proof:
-        """The account as the model has it."""
-        counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
-        return Proof(*counts, tuple(item.undecided() for item in self.undecided))
-
-
-class Head(Part):
-    """Everything in the file but the fixtures."""
-
-    format: Literal["holdfast-result/1"]
-    workpiece: WorkpiecePart
-    vise: VisePart
-    counts: Counts
-    contact_margin: float = Field(default=0.0, ge=0)
-    found: Counts | None = None
-    distinct: Counts | None = None
-    complete: bool = True
-    notes: list[str] = []
-    statistics: dict[str, int] = {}
-    proof: ProofPart | None = None
-    twins: list[Any] = []
-
-
 @frozen
 class Columns:
     """The fixtures of a file as arrays: (N,) types, (N, 4) jaws, (N, 4, 3) holes and faces, (N, 4, 3) x, y and forces,
-    (N, 5) pose in degrees and mm, jaw separation and closure margin (NaN where the file gives none)."""
+    (N, 4) pose in degrees and mm and jaw separation, (N, 6) figures of quality (NaN where the file gives none)."""
 
     types: NDArray[np.int8]
     jaws: NDArray[np.int8]
     holes: NDArray[np.int32]
     contacts: NDArray[np.float64]
     placing: NDArray[np.float64]
+    quality: NDArray[np.float64]
 
 
 class OtherLayoutError(Exception):
@@ -159,11 +78,13 @@ def read_result(path: str | Path) -> Result:
     head = checked_head(data, path)
     try:
         workpiece = Workpiece.from_loops(head.workpiece.name, head.workpiece.loops)
-        vise = Vise(**{**head.vise.model_dump(), "pitch": tuple(head.vise.pitch)})
+        vise, asked = head.vise.vise(), head.model_parts()
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    table = checked_table(columns, workpiece, vise, path)
-    twins = checked_table(collected(head.twins, path), workpiece, vise, path)
+    table, twins = (
+        measured(checked_table(fixtures, workpiece, vise, path), workpiece, vise, asked["tolerance"], asked["loads"])
+        for fixtures in (columns, collected(head.twins, path))
+    )
     result = Result(
         workpiece=workpiece,
         vise=vise,
@@ -176,6 +97,7 @@ def read_result(path: str | Path) -> Result:
         twins=twins,
         statistics=head.statistics,
         proof=None if head.proof is None else checked_proof(head.proof, workpiece, path),
+        **asked,
     )
     for name, count in head.counts.by_type().items():
         if count != result.counts[name]:
@@ -301,7 +223,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
     InputError
         Naming the first fixture with a missing key or a value of the wrong kind.
     """
-    blocks: list[list[NDArray[Any]]] = [[] for _ in range(5)]
+    blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number = 1
     while True:
@@ -314,15 +236,17 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
             except (TypeError, ValueError, AttributeError) as error:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
             number += 1
-        kinds = (np.int8, np.int8, np.int32, np.float64, np.float64)
-        shapes = ((), (4,), (4, 3), (4, 3), (5,))
+        kinds = (np.int8, np.int8, np.int32, np.float64, np.float64, np.float64)
+        shapes = ((), (4,), (4, 3), (4, 3), (4,), (len(FIGURES),))
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
             return Columns(*(np.concatenate(parts) for parts in blocks))
 
 
-def fixture_row(fixture: Any) -> tuple[int, list[int], list[list[int]], list[list[float]], list[float]]:
+def fixture_row(
+    fixture: Any,
+) -> tuple[int, list[int], list[list[int]], list[list[float]], list[float], list[float]]:
     """The numbers of one fixture, for one row of each array of :class:`Columns`."""
     name = fixture["type"]
     if name not in TYPES:
@@ -337,16 +261,17 @@ def fixture_row(fixture: Any) -> tuple[int, list[int], list[list[int]], list[lis
         jaws.append(JAWS[peg["jaw"]])
     holes = [[peg["column"], peg["row"], peg["segment"]] for peg in pegs]
     contacts = [[peg["x"], peg["y"], peg["force"]] for peg in pegs]
-    margin = fixture.get("quality", {}).get("closure_margin", None)
+    figures = fixture.get("quality", {})
+    known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
     placing = [pose["theta_deg"], pose["x"], pose["y"], fixture["jaw_separation"]]
     if {type(value) for hole in holes for value in hole} != {int}:
         raise ValueError("a peg's column, row or segment is not a whole number")
     if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
         raise ValueError("a peg's column, row or segment is negative or far too large")
-    numbers = [value for contact in contacts for value in contact] + placing + ([] if margin is None else [margin])
+    numbers = [value for contact in contacts for value in contact] + placing + known
     if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > 1e300 for value in numbers):
         raise ValueError("a length, an angle or a force is not a finite number")
-    return TYPES[name], jaws, holes, contacts, [*placing, np.nan if margin is None else margin]
+    return TYPES[name], jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
 
 
 def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path) -> FixtureTable:
@@ -362,7 +287,7 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
     hole = np.take_along_axis(columns.holes, order[:, :, None], axis=1)
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
     column, row, segment = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
-    theta_deg, x, y, separation, margin = columns.placing.T
+    theta_deg, x, y, separation = columns.placing.T
     force = np.ascontiguousarray(contact[:, :, 2])
 
     def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
@@ -391,9 +316,25 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
         theta=np.radians(theta_deg) % (2 * np.pi),
         position=np.stack([x, y], axis=1),
         jaw_separation=separation.copy(),
-        null_vector=null_vectors(force, margin),
+        null_vector=null_vectors(force, columns.quality[:, CLOSURE_MARGIN]),
         force=force,
+        quality=columns.quality,
     )
+
+
+def measured(
+    table: FixtureTable, workpiece: Workpiece, vise: Vise, tolerance: Tolerance, loads: tuple[Load, ...]
+) -> FixtureTable:
+    """The table with the figures of quality that the file does not give."""
+    wanted = np.isnan(table.quality)
+    if not loads:
+        wanted[:, LOAD_REACTION] = False
+    if not wanted.any():
+        return table
+    from holdfast.statics.quality import quality_of
+
+    figures = quality_of(table, workpiece, vise, tolerance, loads)
+    return evolve(table, quality=np.where(wanted, figures, table.quality))
 
 
 def null_vectors(force: NDArray[np.float64], margin: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ joint circle : the circle around a joint on which a disc rolls around a corner.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from holdfast.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
 from holdfast.geometry.segment import Arc, Line, Point, Segment, segment_rows
-from holdfast.kernels.distance import outline_distances
+from holdfast.kernels.distance import is_inside, outline_distances
 
-__all__ = ["raw_offset", "trimmed_offsets"]
+__all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
 
 # A piece may come nearer to the outline than the radius by this much, in mm, and pieces shorter than this are dropped.
 CLEARANCE = 1e-9
@@ -70,6 +70,10 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[in
     joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
     boxes = np.array([bounding_box(segment) for segment in segments])
     pieces: list[tuple[int, Segment]] = []
+
+    def is_clear(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
+
     for index, piece in enumerate(raw):
         if piece is None:
             continue
@@ -78,18 +82,36 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[in
         others = [r for k in near if k != index and (r := raw[k]) is not None]
         close_joints = [j for j in joints if point_apart(j, bounding_box(piece)) <= radius + CLEARANCE]
         points = cut_points(piece, others, close_joints, radius)
-        pieces += [(index, kept) for kept in kept_parts(piece, points, rows, radius)]
+        pieces += [(index, kept) for kept in kept_parts(piece, points, is_clear)]
     return pieces
 
 
-def kept_parts(piece: Segment, points: Sequence[Point], rows: NDArray[np.float64], radius: float) -> list[Segment]:
-    """The parts of a raw piece, cut at some points, that stay clear of the outline of (N, 8) rows."""
+def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[Segment]:
+    """The parts of a segment whose points are at least ``radius`` mm from a zone, a closed loop with its inside on the left.
+
+    They end where the distance is the radius: on the zone's offset or on a joint circle, like the pieces of an outline.
+    """
+    rows = segment_rows(zone)
+    others = [raw for segment in zone if (raw := raw_offset(segment, radius)) is not None]
+    points = cut_points(piece, others, [segment.start for segment in zone], radius)
+
+    def is_clear(middles: NDArray[np.float64]) -> NDArray[np.bool_]:
+        outside = np.array([not is_inside(x, y, rows) for x, y in middles], np.bool_)
+        return np.asarray(outside & (outline_distances(middles, rows) >= radius - CLEARANCE))
+
+    return kept_parts(piece, points, is_clear)
+
+
+def kept_parts(
+    piece: Segment, points: Sequence[Point], is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+) -> list[Segment]:
+    """The parts of a raw piece, cut at some points, that stay clear; ``is_clear`` tells it of (M, 2) points."""
     half = piece.half_extent
     inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]
     scale = piece.radius if isinstance(piece, Arc) else 1.0
     middles = np.array([piece.at((a + b) / 2) for a, b in pairwise(cuts)])
-    clear = outline_distances(middles, rows) >= radius - CLEARANCE
+    clear = is_clear(middles)
     spans: list[list[float]] = []
     for a, b, keep in zip(cuts, cuts[1:], clear, strict=False):
         if not keep:

@@ -8,21 +8,20 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
+from holdfast.listing.candidates import Candidates, joined, listed_once, twins
 from holdfast.listing.deciding import Account
-from holdfast.listing.finish import Candidates, finish, joined, listed_once, twins
+from holdfast.listing.finish import finish
+from holdfast.listing.placing import placed
 from holdfast.listing.problem import Problem
+from holdfast.listing.ranking import Preference, best_marked
+from holdfast.model.quality import CLOSURE_MARGIN
 
-__all__ = ["BestFixtures", "margin_digits"]
+__all__ = ["BestFixtures"]
 
 # A fixture may fall short of the margin to reach by this much and still be examined: margins are compared to 9 digits.
 SLACK = 2e-9
 # Records are decided when so many are waiting, or as many as are to be kept if that is more.
 WAITING = 64
-
-
-def margin_digits(null: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Closure margins (N,) of null vectors (N, 4), to the 9 digits that count in a ranking."""
-    return np.asarray(np.round(null.min(axis=1), 9))
 
 
 @define(eq=False)
@@ -32,17 +31,20 @@ class BestFixtures:
     Parameters
     ----------
     problem : what is searched.
+    preference : what makes one better than another.
     most : how many to keep.
     cancel : see ``listing.finish.finish``.
     """
 
     problem: Problem
+    preference: Preference
     most: int
     cancel: Event | None = None
-    margin: float = 0.0
-    waiting: list[NDArray[np.float64]] = field(factory=list)
-    kept: Candidates | None = None
-    accounts: list[Account] = field(factory=list)
+    margin: float = field(default=0.0, init=False)
+    has_dropped: bool = field(default=False, init=False)
+    waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
+    kept: Candidates | None = field(default=None, init=False)
+    accounts: list[Account] = field(factory=list, init=False)
 
     def add(self, records: NDArray[np.float64]) -> float:
         """Take records (N, 19) from the search; the closure margin that further ones must reach."""
@@ -57,15 +59,22 @@ class BestFixtures:
         self.waiting = []
         self.accounts.append(account)
         everything = fresh if self.kept is None else listed_once(joined([self.kept, fresh]))
-        first, _ = twins(everything, self.problem.faces[everything.feature])
-        if len(first) > self.most:
-            last = np.sort(margin_digits(everything.null[first]))[-self.most]
-            everything = everything.take(margin_digits(everything.null) >= last)
-            self.margin = max(float(last) - SLACK, 0.0)
-        self.kept = everything
+        self.kept = self.cut(everything, ties=True)
+
+    def cut(self, everything: Candidates, ties: bool) -> Candidates:
+        """The best ``most`` of fixtures that are listed once, with their twins; and with those that tie with the last."""
+        sets = twins(everything, self.problem.faces[everything.feature])
+        if len(sets.first) <= self.most:
+            return everything
+        table = self.preference.measured(placed(everything.take(sets.first), self.problem), self.problem)
+        chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)
+        self.has_dropped |= not chosen.all()
+        if self.preference.by_margin_alone:
+            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - SLACK, 0.0)
+        return everything.take(sets.kept(chosen))
 
     def finished(self) -> tuple[Candidates, Account]:
-        """The fixtures kept and the account of all records, once the search is over."""
+        """The best fixtures and the account of all records, once the search is over."""
         self.decide()
         assert self.kept is not None
-        return self.kept, Account.together(self.accounts)
+        return self.cut(self.kept, ties=False), Account.together(self.accounts)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from holdfast.geometry.symmetry import rotations_onto_itself
 from holdfast.kernels.standing import stand
-from holdfast.listing.finish import SAME_POSE, Candidates, changes, packed
+from holdfast.listing.candidates import SAME_POSE, Candidates, changes, packed
 from holdfast.model.workpiece import Workpiece
 
 __all__ = ["count_distinct"]

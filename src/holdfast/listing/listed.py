@@ -6,29 +6,48 @@ from collections.abc import Mapping
 from threading import Event
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from holdfast.listing.best import BestFixtures, margin_digits
+from holdfast.listing.best import BestFixtures
+from holdfast.listing.candidates import Candidates, twins
 from holdfast.listing.deciding import Account
 from holdfast.listing.distinct import count_distinct
-from holdfast.listing.finish import Candidates, finish, placed, twins
+from holdfast.listing.finish import finish
+from holdfast.listing.placing import placed
 from holdfast.listing.problem import TYPES, Problem, Progress
+from holdfast.listing.ranking import Preference, rank
 from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 
-__all__ = ["best_result", "listed_result"]
+__all__ = ["Work", "best_result", "listed_result"]
+
+
+@frozen
+class Work:
+    """How the search went.
+
+    Parameters
+    ----------
+    complete : whether it came to its end.
+    statistics : see ``Result.statistics``.
+    cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
+        than the records).
+    """
+
+    complete: bool
+    statistics: Mapping[str, int]
+    cells: int = 0
+    examined: int | None = None
 
 
 def listed_result(
     problem: Problem,
+    preference: Preference,
     records: list[NDArray[np.float64]],
+    work: Work,
     *,
-    complete: bool,
     best: int | None = None,
-    statistics: Mapping[str, int],
-    cells: int = 0,
-    examined: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Result:
@@ -37,109 +56,67 @@ def listed_result(
     Parameters
     ----------
     problem : what was searched.
+    preference : what makes one better than another.
     records : (N, 19) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
-    complete : whether the search came to its end.
     best : list only this many, the best ones.
-    statistics : see ``Result.statistics``.
-    cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
-        than the records).
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     """
     candidates, account = finish(records, problem, progress, cancel)
-    result = result_of(
-        problem, candidates, account, complete=complete, statistics=statistics, cells=cells, examined=examined
-    )
+    result = result_of(problem, preference, candidates, account, work)
     return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
 
 
-def best_result(
-    problem: Problem,
-    kept: BestFixtures,
-    *,
-    complete: bool,
-    statistics: Mapping[str, int],
-    cells: int,
-    examined: int,
-) -> Result:
-    """The result of a search for the best fixtures only; parameters as for :func:`listed_result`.
+def best_result(kept: BestFixtures, work: Work) -> Result:
+    """The result of a search for the best fixtures only.
 
     How many fixtures there are in all is not known: those that could not be among the best were not examined.
     """
     candidates, account = kept.finished()
-    faces = problem.faces[candidates.feature]
-    first, others = twins(candidates, faces)
-    order = first[np.lexsort([np.arange(len(first)), -margin_digits(candidates.null[first])])][: kept.most]
-    chosen = np.zeros(len(candidates.kind), np.bool_)
-    chosen[order] = True
-    # A twin is kept with the fixture it resembles.
-    holes = np.concatenate([candidates.kind[:, None], faces, candidates.column, candidates.row], axis=1)
-    listed = {tuple(row) for row in holes[order].tolist()}
-    chosen[others] = [tuple(row) in listed for row in holes[others].tolist()]
-    result = result_of(
-        problem,
-        candidates.take(chosen),
-        account,
-        complete=complete,
-        statistics=statistics,
-        cells=cells,
-        examined=examined,
-    )
-    if not complete or (len(first) <= kept.most and kept.margin == 0.0):
+    result = result_of(kept.problem, kept.preference, candidates, account, work)
+    if not (work.complete and kept.has_dropped):
         return result
     note = f"Only the best {kept.most} were sought, so how many fixtures there are in all was not counted."
     return evolve(result, notes=(note, *result.notes))
 
 
-def result_of(
-    problem: Problem,
-    candidates: Candidates,
-    account: Account,
-    *,
-    complete: bool,
-    statistics: Mapping[str, int],
-    cells: int,
-    examined: int | None,
-) -> Result:
-    """The result of fixtures that are listed once; parameters as for :func:`listed_result`."""
-    first, others = twins(candidates, problem.faces[candidates.feature])
-    listed = candidates.take(first)
-    center = problem.workpiece.center
-    everything = placed(listed, problem.faces, problem.vise, center)
+def result_of(problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work) -> Result:
+    """The result of fixtures that are listed once."""
+    sets = twins(candidates, problem.faces[candidates.feature])
+    listed = candidates.take(sets.first)
+    everything = preference.measured(placed(listed, problem), problem)
     kept_apart = FixtureTable.empty()
-    if len(others):
-        kept_apart = placed(candidates.take(others), problem.faces, problem.vise, center)
-    ranked = everything.take(rank(everything))
+    if len(sets.others):
+        kept_apart = preference.measured(placed(candidates.take(sets.others), problem), problem)
+    ranked = everything.take(rank(everything.quality, preference.ranking))
     return Result(
         workpiece=problem.workpiece,
         vise=problem.vise,
         table=ranked,
         found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
         distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
-        complete=complete and account.left == 0,
+        complete=work.complete and account.left == 0,
         contact_margin=problem.contact_margin,
         notes=notes(len(kept_apart), len(account.undecided)),
-        statistics=statistics,
+        statistics=work.statistics,
         twins=kept_apart,
-        proof=proof_of(account, cells, examined),
+        proof=proof_of(account, work),
+        restrictions=problem.restrictions,
+        ranking=preference.ranking,
+        tolerance=preference.tolerance,
+        loads=preference.loads,
     )
 
 
-def proof_of(account: Account, cells: int, examined: int | None) -> Proof:
+def proof_of(account: Account, work: Work) -> Proof:
     """The account of a search for the result."""
     # A pair of chords that was given up counts as one candidate.
+    examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
     kept = account.verified + len(account.undecided)
     # One candidate may hold two solutions, which then count as two.
     candidates = max(candidates, kept)
-    return Proof(cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
-
-
-def rank(table: FixtureTable) -> NDArray[np.intp]:
-    """Order of a table in identity order by closure margin, largest first; equal to 9 digits stay in order."""
-    if len(table) == 0:
-        return np.zeros(0, np.intp)
-    return np.argsort(-margin_digits(table.null_vector), kind="stable")
+    return Proof(work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
 
 
 def notes(twin_count: int, undecided_count: int) -> tuple[str, ...]:

@@ -9,10 +9,11 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from holdfast.contact.features import contact_features, end_slacks, feature_rows
+from holdfast.contact.features import allowed_features, contact_features, end_slacks, feature_rows
 from holdfast.errors import InputError
 from holdfast.geometry.segment import segment_rows
 from holdfast.model.diameter import outline_diameter
+from holdfast.model.restrictions import Restrictions
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -32,6 +33,7 @@ class Problem:
     ----------
     workpiece, vise : what to hold and what to hold it in.
     contact_margin : smallest distance between a contact and the end of its feature.
+    restrictions : what is ruled out.
     rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     outline : (S, 8) the part's faces.
@@ -41,31 +43,42 @@ class Problem:
     workpiece: Workpiece
     vise: Vise
     contact_margin: float
+    restrictions: Restrictions
     rows: NDArray[np.float64]
     faces: NDArray[np.int64]
     outline: NDArray[np.float64]
     diameter: float
 
     @classmethod
-    def of(cls, workpiece: Workpiece, vise: Vise, contact_margin: float = 0.0) -> Problem:
+    def of(
+        cls,
+        workpiece: Workpiece,
+        vise: Vise,
+        contact_margin: float = 0.0,
+        restrictions: Restrictions | None = None,
+    ) -> Problem:
         """Make a problem ready.
 
         Raises
         ------
         InputError
-            When the peg fits nowhere along the part.
+            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
         """
+        restrictions = restrictions or Restrictions()
         features = contact_features(workpiece, vise.peg_radius)
         if not features:
             raise InputError(
                 f"a peg of radius {vise.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
                 "corners too narrow for it; use a smaller peg."
             )
+        if restrictions:
+            features = allowed_features(features, workpiece, restrictions, vise.body_radius)
         center = workpiece.center
         return cls(
             workpiece,
             vise,
             contact_margin,
+            restrictions,
             rows=np.concatenate([centered(feature_rows(features), center), end_slacks(features)], axis=1),
             faces=np.array([feature.face for feature in features], dtype=np.int64),
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),

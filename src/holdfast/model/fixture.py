@@ -7,7 +7,9 @@ from typing import Literal
 
 from attrs import frozen
 
-__all__ = ["Fixture", "Jaw", "Peg", "Pose", "column_letters"]
+from holdfast.model.holes import hole_name
+
+__all__ = ["Fixture", "Jaw", "Peg", "Pose"]
 
 Jaw = Literal["left", "right"]
 
@@ -36,21 +38,7 @@ class Peg:
     @property
     def hole(self) -> str:
         """The hole's name: jaw, column letter, row number from 1, such as ``L-B3``."""
-        return f"{'L' if self.jaw == 'left' else 'R'}-{column_letters(self.column)}{self.row + 1}"
-
-
-def column_letters(column: int) -> str:
-    """Letters of a column counted from 0: A to Z, then AA, AB and so on.
-
-    >>> [column_letters(c) for c in (0, 25, 26, 51, 52)]
-    ['A', 'Z', 'AA', 'AZ', 'BA']
-    """
-    letters = ""
-    column += 1
-    while column:
-        column, rest = divmod(column - 1, 26)
-        letters = chr(ord("A") + rest) + letters
-    return letters
+        return hole_name(self.jaw, self.column, self.row)
 
 
 @frozen

@@ -10,11 +10,15 @@ from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from holdfast.model.fixture import Fixture, Peg, Pose
+from holdfast.model.load import Load
 from holdfast.model.proof import Proof
+from holdfast.model.quality import CLOSURE_MARGIN, FIGURES
+from holdfast.model.restrictions import Restrictions
+from holdfast.model.tolerance import Tolerance
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "unknown_quality"]
 
 LEFT, RIGHT = 0, 1
 
@@ -34,6 +38,7 @@ class FixtureTable:
     jaw_separation : (N,) in mm.
     null_vector : (N, 4) the positive null vector of the wrenches, scaled to sum 1.
     force : (N, 4) contact force per unit of clamping force.
+    quality : (N, 6) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
     """
 
     type: NDArray[np.int8]
@@ -46,6 +51,7 @@ class FixtureTable:
     jaw_separation: NDArray[np.float64]
     null_vector: NDArray[np.float64]
     force: NDArray[np.float64]
+    quality: NDArray[np.float64]
 
     def __attrs_post_init__(self) -> None:
         for name in self.__attrs_attrs__:
@@ -73,7 +79,15 @@ class FixtureTable:
             jaw_separation=np.zeros(0),
             null_vector=floats,
             force=floats.copy(),
+            quality=unknown_quality(floats),
         )
+
+
+def unknown_quality(null_vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Figures of quality (N, 6) of which only the closure margin is known, from null vectors (N, 4) of sum 1."""
+    quality = np.full((len(null_vector), len(FIGURES)), np.nan)
+    quality[:, CLOSURE_MARGIN] = null_vector.min(axis=1, initial=1.0)
+    return quality
 
 
 @define(frozen=True, eq=False)
@@ -98,6 +112,10 @@ class Result:
     statistics : how much work the search was: numbers of contact features, chord curves, uprights, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`holdfast.model.proof.Proof`; None for a result that came without.
+    restrictions : what the user ruled out.
+    ranking : keys of the figures of quality that the fixtures are ranked by, the first counting most.
+    tolerance : how far pegs and faces may be off, for the location error.
+    loads : what the load reaction was computed for.
     """
 
     workpiece: Workpiece
@@ -111,6 +129,10 @@ class Result:
     twins: FixtureTable = field(factory=FixtureTable.empty)
     statistics: Mapping[str, int] = field(factory=dict)
     proof: Proof | None = None
+    restrictions: Restrictions = field(factory=Restrictions)
+    ranking: tuple[str, ...] = ("closure_margin",)
+    tolerance: Tolerance = field(factory=Tolerance)
+    loads: tuple[Load, ...] = field(default=())
 
     @property
     def counts(self) -> dict[str, int]:
@@ -168,5 +190,9 @@ def fixture_at(table: FixtureTable, vise: Vise, index: int) -> Fixture:
         pegs=(pegs[0], pegs[1], pegs[2], pegs[3]),
         pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
         jaw_separation=separation,
-        quality={"closure_margin": float(table.null_vector[index].min())},
+        quality={
+            figure.key: float(value)
+            for figure, value in zip(FIGURES, table.quality[index], strict=True)
+            if not np.isnan(value)
+        },
     )

@@ -10,6 +10,7 @@ from attrs import field, frozen
 from attrs.converters import optional
 
 from holdfast.errors import InputError
+from holdfast.model.holes import Holes
 
 __all__ = ["Vise"]
 
@@ -46,6 +47,9 @@ class Vise:
         x pitch.
     max_opening : largest jaw separation in mm, or None for no limit.
     row_offset : height in mm of the right jaw's row 0 above the left jaw's.
+    body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
+        peg radius. Bodies may neither overlap nor stand over a keep-out zone.
+    blocked : holes and columns that no peg can stand in.
 
     Raises
     ------
@@ -66,10 +70,14 @@ class Vise:
     min_gap: float = field(default=None, converter=optional_length)
     max_opening: float | None = field(default=None, converter=optional(float))
     row_offset: float = field(default=0.0, converter=float)
+    body_radius: float = field(default=None, converter=optional_length)
+    blocked: tuple[Holes, ...] = field(default=(), converter=tuple)
 
     def __attrs_post_init__(self) -> None:
         if isnan(self.min_gap):
             object.__setattr__(self, "min_gap", self.pitch[0])
+        if isnan(self.body_radius):
+            object.__setattr__(self, "body_radius", self.peg_radius)
         for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
@@ -94,3 +102,29 @@ class Vise:
                 )
         if not isfinite(self.row_offset):
             raise InputError(f"row offset {self.row_offset} is not a length: give it in mm.")
+        if not (isfinite(self.body_radius) and self.body_radius >= self.peg_radius):
+            raise InputError(
+                f"body radius {self.body_radius:g} is not one of a peg of radius {self.peg_radius:g}: give that or more, "
+                "in mm."
+            )
+        refuse_blocked(self)
+
+
+def refuse_blocked(vise: Vise) -> None:
+    """Refuse blocked holes that the vise does not have, and a jaw without a free hole.
+
+    Raises
+    ------
+    InputError
+        Naming the hole or the jaw.
+    """
+    for holes in vise.blocked:
+        if holes.column >= vise.columns:
+            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.columns} columns.")
+        if vise.rows is not None and holes.row is not None and holes.row >= vise.rows:
+            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.rows} rows.")
+    for jaw in ("left", "right"):
+        if {holes.column for holes in vise.blocked if holes.jaw == jaw and holes.row is None} == set(
+            range(vise.columns)
+        ):
+            raise InputError(f"every column of the {jaw} jaw is blocked: leave at least one.")

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from holdfast.contact.curves import curve_table, loosened
-from holdfast.kernels.type_one import CONTACTS, STATISTICS
+from holdfast.kernels.type_one import CONTACTS
 from holdfast.listing.problem import TYPES, Problem
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 from holdfast.search.cells import run_blocks, thread_count
-from holdfast.search.vise_search import ViseSearch, lattice_steps
+from holdfast.search.vise_search import ViseSearch
 
-__all__ = ["count_contacts"]
+__all__ = ["contacts_of", "count_contacts"]
 
 
 def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = None) -> int:
@@ -30,9 +27,11 @@ def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = No
     InputError
         For a peg that fits nowhere along the part.
     """
-    problem = Problem.of(workpiece, vise)
-    loose = loosened(problem.rows[:, :8])
-    table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
-    search = ViseSearch(vise, problem.rows, loose, table, 0.0, problem.wrench_length, counting=True)
+    return contacts_of(Problem.of(workpiece, vise), threads)
+
+
+def contacts_of(problem: Problem, threads: int | None) -> int:
+    """Simultaneous contacts of a problem, see :func:`count_contacts`."""
+    search = ViseSearch.of(problem, counting=True)
     run_blocks(search.blocks(TYPES), thread_count(threads), None, None)
-    return int(np.array(search.stats, np.int64).reshape(-1, STATISTICS)[:, CONTACTS].sum())
+    return int(search.totals[CONTACTS])

@@ -9,17 +9,21 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from holdfast.contact.curves import CurveTable, center_numbers, curve_table, loosened
-from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, PAIRS, STATISTICS
+from holdfast.contact.curves import center_numbers
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, PAIRS
 from holdfast.listing.best import BestFixtures
-from holdfast.listing.listed import best_result, listed_result
+from holdfast.listing.listed import Work, best_result, listed_result
 from holdfast.listing.problem import TYPES, Problem, Progress, check_options
+from holdfast.listing.ranking import preference_of
+from holdfast.model.load import Load
+from holdfast.model.restrictions import Restrictions
 from holdfast.model.result import Result
+from holdfast.model.tolerance import Tolerance
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 from holdfast.search.cells import run_blocks, thread_count
-from holdfast.search.contacts import count_contacts
-from holdfast.search.vise_search import ViseSearch, lattice_steps
+from holdfast.search.contacts import contacts_of
+from holdfast.search.vise_search import ViseSearch
 
 __all__ = ["design"]
 
@@ -33,6 +37,10 @@ def design(
     *,
     types: Sequence[str] = TYPES,
     contact_margin: float = 0.0,
+    restrictions: Restrictions | None = None,
+    rank_by: Sequence[str] | None = None,
+    tolerance: Tolerance | None = None,
+    loads: Sequence[Load] = (),
     best: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -45,6 +53,11 @@ def design(
     workpiece, vise : what to hold and what to hold it in.
     types : "I" (two pegs on each jaw), "II" (three and one), or both.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
+    restrictions : faces not to touch, places where no peg may stand, angles of the part.
+    rank_by : figures of quality, the first counting most, see ``model.quality``; None is location error, then load
+        reaction or, without loads, clamp amplification, then closure margin.
+    tolerance : how far pegs and faces may be off, for the location error.
+    loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
     threads : how many threads share the work; None for one on each processor. The result does not depend on it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
@@ -53,51 +66,47 @@ def design(
     Returns
     -------
     Result
-        Fixtures ranked by closure margin, largest first; fixtures of equal margin (to 9 digits) in the order of their
-        holes, pose and faces.
+        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their holes, pose and
+        faces.
 
     Raises
     ------
     InputError
-        For an unknown type, numbers out of range, and a peg that fits nowhere along the part.
+        For an unknown type or figure, numbers out of range, faces that do not exist, a peg that fits nowhere along the
+        part, and restrictions that leave nothing to touch.
 
     Examples
     --------
     >>> import holdfast
     >>> widget = holdfast.load("widget")
-    >>> result = holdfast.design(widget, holdfast.Vise(pitch=8, columns=1, peg_radius=3))
+    >>> vise = holdfast.Vise(pitch=8, columns=1, peg_radius=3)
+    >>> result = holdfast.design(widget, vise, rank_by=["closure-margin"])
     >>> result.counts
     {'I': 459, 'II': 46}
     >>> [peg.hole for peg in result[0].pegs]
     ['L-A1', 'L-A2', 'R-A1', 'R-A2']
     """
     check_options(types, contact_margin, best, threads)
-    problem = Problem.of(workpiece, vise, contact_margin)
-    loose = loosened(problem.rows[:, :8])
-    table = curve_table(loose, lattice_steps(vise, problem.diameter + 1e-6))
-    search = ViseSearch(vise, problem.rows, loose, table, contact_margin, problem.wrench_length)
+    preference = preference_of(rank_by, tolerance, loads)
+    problem = Problem.of(workpiece, vise, contact_margin, restrictions)
+    search = ViseSearch.of(problem)
     blocks = search.blocks(types)
-    kept = None if best is None else BestFixtures(problem, best, cancel)
+    kept = None if best is None else BestFixtures(problem, preference, best, cancel)
     receive = None if kept is None else lambda records: search.seek(kept.add(records))
     records, done = run_blocks(blocks, thread_count(threads), stage(progress, 0.0, SEARCH), cancel, receive)
-    work = np.array(search.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0)
-    complete, figures, examined = len(done) == len(blocks), statistics(search, table, work), int(work[CANDIDATES])
-    cells = sum(block.cells for block in done)
+    totals = search.totals
+    work = Work(
+        complete=len(done) == len(blocks),
+        statistics=statistics(search, totals),
+        cells=sum(block.cells for block in done),
+        examined=int(totals[CANDIDATES]),
+    )
     if kept is not None:
-        result = best_result(problem, kept, complete=complete, statistics=figures, cells=cells, examined=examined)
+        result = best_result(kept, work)
     else:
-        result = listed_result(
-            problem,
-            records,
-            complete=complete,
-            statistics=figures,
-            cells=cells,
-            examined=examined,
-            progress=stage(progress, SEARCH, 1.0),
-            cancel=cancel,
-        )
+        result = listed_result(problem, preference, records, work, progress=stage(progress, SEARCH, 1.0), cancel=cancel)
     if result.complete and not any(result.found.values()) and not result.notes:
-        return evolve(result, notes=(why_none(problem, table, int(work[CONTACTS]), threads),))
+        return evolve(result, notes=(why_none(search, int(totals[CONTACTS]), threads),))
     return result
 
 
@@ -108,8 +117,9 @@ def stage(progress: Progress | None, low: float, high: float) -> Progress | None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def why_none(problem: Problem, table: CurveTable, contacts: int, threads: int | None) -> str:
+def why_none(search: ViseSearch, contacts: int, threads: int | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
+    problem, table = search.problem, search.table
     arcs = problem.rows[:, 0] != 0.0
     if arcs.all() and len(set(center_numbers(problem.rows).tolist())) == 1:
         return (
@@ -119,18 +129,18 @@ def why_none(problem: Problem, table: CurveTable, contacts: int, threads: int | 
     if len(table) + len(table.upright_integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
-    if contacts == 0 and count_contacts(problem.workpiece, problem.vise, threads=threads) == 0:
+    if contacts == 0 and contacts_of(problem, threads) == 0:
         return "No four pegs of the two jaws can touch the part at the same time inside their faces."
     return "Four pegs can touch the part at the same time, but no such set keeps the smallest gap, closes and clamps."
 
 
-def statistics(search: ViseSearch, table: CurveTable, work: NDArray[np.int64]) -> dict[str, int]:
+def statistics(search: ViseSearch, totals: NDArray[np.int64]) -> dict[str, int]:
     """Counts that tell how much work a search was (see ``Result.statistics``)."""
     return {
-        "features": len(search.features),
-        "chord_curves": len(table),
-        "uprights": len(table.upright_integers),
-        "curve_pairs": int(work[PAIRS]),
-        "crossings_sought": int(work[CROSSED]),
-        "contacts_examined": int(work[CONTACTS]),
+        "features": len(search.problem.rows),
+        "chord_curves": len(search.table),
+        "uprights": len(search.table.upright_integers),
+        "curve_pairs": int(totals[PAIRS]),
+        "crossings_sought": int(totals[CROSSED]),
+        "contacts_examined": int(totals[CONTACTS]),
     }

@@ -7,20 +7,21 @@ right jaw along x. Another toolkit would bring its own module in place of this o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
 from math import hypot, pi, tau
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from holdfast.contact.curves import CurveTable, LatticeSteps
+from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
 from holdfast.kernels.curve_columns import FROM, TO
 from holdfast.kernels.type_one import STATISTICS, type_one_cells
 from holdfast.kernels.type_two import type_two_cells
 from holdfast.kernels.uprights import upright_type_one, upright_type_two
-from holdfast.kernels.vise_checks import LEAST_MARGIN
+from holdfast.kernels.vise_checks import GAP_SLACK, LEAST_MARGIN
+from holdfast.listing.problem import Problem
 from holdfast.model.vise import Vise
 from holdfast.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
 
@@ -34,10 +35,15 @@ FEWEST_CELLS, MOST_CELLS = 96, 1024
 # Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
 PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 16
+# Cells this near to a range of angles, in degrees, are searched too.
+ANGLE_HAIR = 1e-5
 
 
 def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
-    """Differences between two holes of one jaw, up to a length in mm, both directions of each."""
+    """Differences between two holes of one jaw, up to a length in mm, both directions of each.
+
+    Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never have.
+    """
     pitch_x, pitch_y = vise.pitch
     most_rows = int(longest / pitch_y) if vise.rows is None else min(vise.rows - 1, int(longest / pitch_y))
     columns, rows = np.meshgrid(
@@ -46,6 +52,10 @@ def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
     steps = np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.int64)
     sizes = np.array([hypot(k * pitch_x, m * pitch_y) for k, m in np.abs(steps)])
     keep = (sizes > 0.0) & (sizes <= longest)
+    if vise.body_radius > vise.peg_radius:
+        keep &= sizes >= 2.0 * vise.body_radius - GAP_SLACK
+    if vise.blocked:
+        keep &= is_between_free_holes(vise, steps)
     steps, sizes = steps[keep], sizes[keep]
     order = np.lexsort((steps[:, 1], steps[:, 0], sizes))
     steps, sizes = steps[order], sizes[order]
@@ -54,37 +64,102 @@ def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
     return LatticeSteps(lengths, np.append(starts, len(steps)).astype(np.int64), steps, angles)
 
 
+def is_between_free_holes(vise: Vise, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which differences (S, 2) of columns and rows two free holes of either jaw have, one way or the other.
+
+    Both jaws count for both directions, because the half turn swaps them. Where rows have no end, only whole blocked
+    columns are looked at: any pattern can be shifted up past a blocked hole.
+    """
+    rows = 1 if vise.rows is None else vise.rows
+    possible = np.zeros((2 * vise.columns - 1, 2 * rows - 1), np.bool_)
+    for jaw in ("left", "right"):
+        free = np.ones((vise.columns, rows), np.bool_)
+        for holes in vise.blocked:
+            if holes.jaw != jaw:
+                continue
+            if holes.row is None:
+                free[holes.column] = False
+            elif vise.rows is not None:
+                free[holes.column, holes.row] = False
+        places = np.argwhere(free)
+        for place in places:
+            apart = places - place + (vise.columns - 1, rows - 1)
+            possible[apart[:, 0], apart[:, 1]] = True
+    row_places = steps[:, 1] + rows - 1 if vise.rows is not None else np.zeros(len(steps), np.int64)
+    return np.asarray(possible[steps[:, 0] + vise.columns - 1, row_places])
+
+
+def may_lie_at(edges: Array, angles: Collection[tuple[float, float]], half_turns: int) -> NDArray[np.bool_]:
+    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in one of some ranges in degrees.
+
+    The part's angle is -psi; over one half turn of cells an angle stands for its opposite as well.
+    """
+    wanted = np.full(len(edges) - 1, not angles)
+    low, turn = -np.degrees(edges[1:]), 180.0 * half_turns
+    width = float(np.degrees(edges[1] - edges[0]))
+    for least, most in angles:
+        wanted |= (least - ANGLE_HAIR - low) % turn <= width
+        wanted |= (low - least + ANGLE_HAIR) % turn <= most - least + 2 * ANGLE_HAIR
+    return wanted
+
+
+def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, int]]:
+    """First and past-the-last numbers of runs of wanted cells, none longer than ``together``."""
+    first = 0
+    while first < len(wanted):
+        if not wanted[first]:
+            first += 1
+            continue
+        last = first
+        while last < len(wanted) and wanted[last] and last - first < together:
+            last += 1
+        yield first, last
+        first = last
+
+
 @define(eq=False)
 class ViseSearch:
     """Everything the vise's kernels need, and the blocks of work made of it.
 
     Parameters
     ----------
-    vise : the vise.
-    features, loose : (F, 8) rows about the centre of the part, as they are and with their ends moved out by a hair.
+    problem : what is searched.
+    loose : (F, 8) rows of the features with their ends moved out by a hair.
     table : chord curves and uprights between the loose features.
-    contact_margin : in mm.
-    wrench_length : L in mm.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     limits : what bounds a fixture, see ``kernels.vise_checks``.
     stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
-    vise: Vise
-    features: Array
+    problem: Problem
     loose: Array
     table: CurveTable
-    contact_margin: float
-    wrench_length: float
     counting: bool = False
-    stats: list[NDArray[np.int64]] = field(factory=list)
-
+    stats: list[NDArray[np.int64]] = field(factory=list, init=False)
     limits: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         """Write the limits as the kernels take them (see ``kernels.vise_checks``)."""
-        vise = self.vise
-        self.limits = np.array([vise.min_gap, self.contact_margin, self.wrench_length, vise.columns - 1.0, 0.0])
+        problem, vise = self.problem, self.problem.vise
+        self.limits = np.array([vise.min_gap, problem.contact_margin, problem.wrench_length, vise.columns - 1.0, 0.0])
+
+    @classmethod
+    def of(cls, problem: Problem, counting: bool = False) -> ViseSearch:
+        """The search of a problem, with its chord curves; ``counting`` leaves the contact margin out."""
+        if counting:
+            problem = evolve(problem, contact_margin=0.0)
+        loose = loosened(problem.rows[:, :8])
+        return cls(problem, loose, curve_table(loose, lattice_steps(problem.vise, problem.diameter + 1e-6)), counting)
+
+    @property
+    def vise(self) -> Vise:
+        """The vise."""
+        return self.problem.vise
+
+    @property
+    def totals(self) -> NDArray[np.int64]:
+        """Statistics (5,) of all blocks together."""
+        return np.asarray(np.array(self.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0))
 
     def seek(self, margin: float) -> None:
         """Leave out what cannot reach a closure margin; blocks that run take note of it with their next cell."""
@@ -98,17 +173,20 @@ class ViseSearch:
     def blocks(self, types: Collection[str]) -> list[Block]:
         """Blocks of work that together find all fixtures of the given types ("I", "II")."""
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
-        cells = int(min(max(CELLS_PER_PITCH * self.wrench_length / self.vise.pitch[1], FEWEST_CELLS), MOST_CELLS))
+        cells = int(
+            min(max(CELLS_PER_PITCH * self.problem.wrench_length / self.vise.pitch[1], FEWEST_CELLS), MOST_CELLS)
+        )
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // LEAST_BLOCKS))
         blocks: list[Block] = []
         for name, half_turns in (("I", 1), ("II", 2)):
             if name not in types:
                 continue
             edges = cell_edges(half_turns, half_turns * cells)
-            for first in range(0, len(edges) - 1, together):
-                blocks.append(self.crossing_block(name, edges[first : first + together + 1]))
+            wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns)
+            for first, last in neighbours(wanted, together):
+                blocks.append(self.crossing_block(name, edges[first : last + 1]))
             for cell, uprights in enumerate(self.upright_cells(half_turns, edges)):
-                if len(uprights):
+                if len(uprights) and wanted[cell]:
                     blocks.append(self.upright_block(name, float(edges[cell]), float(edges[cell + 1]), uprights))
         return blocks
 
@@ -151,7 +229,7 @@ class ViseSearch:
             edges,
             members,
             self.loose,
-            self.features,
+            self.problem.rows,
             self.table.integers,
             self.table.reals,
             self.table.stretches,
@@ -177,7 +255,7 @@ class ViseSearch:
             self.table.upright_reals,
             members,
             self.loose,
-            self.features,
+            self.problem.rows,
             self.table.integers,
             self.table.reals,
             self.vise.pitch[1],

@@ -1,0 +1,77 @@
+"""The figures of quality: what each is called, its unit, and which way is better (MODEL.md, "Quality").
+
+How they are computed is in ``statics.quality``.
+"""
+
+from __future__ import annotations
+
+from attrs import frozen
+
+__all__ = [
+    "CLAMP_AMPLIFICATION",
+    "CLOSURE_MARGIN",
+    "END_DISTANCE",
+    "FIGURES",
+    "LOAD_REACTION",
+    "LOCATION_ERROR",
+    "WRENCH_RADIUS",
+    "Figure",
+    "figure_number",
+]
+
+
+@frozen
+class Figure:
+    """A figure of quality.
+
+    Parameters
+    ----------
+    key : its name in files.
+    unit : "" (a plain number), "mm" or "N".
+    more_is_better : which way is better.
+    meaning : what it tells, in one sentence.
+    """
+
+    key: str
+    unit: str
+    more_is_better: bool
+    meaning: str
+
+    @property
+    def words(self) -> str:
+        """Its name for people.
+
+        >>> FIGURES[0].words
+        'closure margin'
+        """
+        return self.key.replace("_", " ")
+
+    @property
+    def option(self) -> str:
+        """Its name on the command line.
+
+        >>> FIGURES[0].option
+        'closure-margin'
+        """
+        return self.key.replace("_", "-")
+
+
+FIGURES = (
+    Figure("closure_margin", "", True, "The smallest share of the four contacts in holding the part."),
+    Figure("clamp_amplification", "", False, "The largest peg force per unit of jaw force."),
+    Figure("wrench_radius", "", True, "The smallest disturbance that a grip of unit forces does not resist."),
+    Figure("location_error", "mm", False, "The farthest a point of the part can be off when pegs and faces are."),
+    Figure("end_distance", "mm", True, "The smallest distance from a contact to the end of its face."),
+    Figure("load_reaction", "N", False, "The largest peg force when the loads act and no peg lets go."),
+)
+CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
+
+
+def figure_number(name: str) -> int | None:
+    """The place in :data:`FIGURES` of a figure named with hyphens, underscores or spaces; None when there is none.
+
+    >>> figure_number("location-error")
+    3
+    """
+    key = name.strip().lower().replace("-", "_").replace(" ", "_")
+    return next((number for number, figure in enumerate(FIGURES) if figure.key == key), None)

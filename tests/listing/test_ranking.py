@@ -1,0 +1,76 @@
+"""Ranking: by several figures, stable, and with names a user may get wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from holdfast import InputError
+from holdfast.listing.ranking import DEFAULT_RANKING, best_marked, preference_of, rank
+from holdfast.model.load import Load
+from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
+
+
+def figures(count: int, **columns: list[float]) -> np.ndarray:
+    """Figures of quality that are 1 but for some columns."""
+    quality = np.ones((count, len(FIGURES)))
+    for name, values in columns.items():
+        quality[:, [figure.key for figure in FIGURES].index(name)] = values
+    return quality
+
+
+def test_the_next_figure_decides_among_those_about_as_good() -> None:
+    """Figures but the last count to two digits: 0.0201 and 0.0199 are equal, 0.021 is worse."""
+    quality = figures(4, location_error=[0.021, 0.0201, 0.0199, 0.0204], wrench_radius=[0.9, 0.2, 0.3, 0.25])
+    assert rank(quality, ("location_error", "wrench_radius")).tolist() == [2, 3, 1, 0]
+    assert rank(quality, ("wrench_radius", "location_error")).tolist() == [0, 2, 3, 1]
+
+
+def test_equal_fixtures_stay_in_the_order_of_their_identities() -> None:
+    """What agrees to nine digits in the last figure is not moved."""
+    quality = figures(3, closure_margin=[0.2, 0.2 + 1e-11, 0.1])
+    assert rank(quality, ("closure_margin",)).tolist() == [0, 1, 2]
+
+
+@given(
+    st.lists(st.sampled_from([0.01, 0.011, 0.0111, 0.5, 0.0]), min_size=1, max_size=12), st.integers(1, 12), st.data()
+)
+def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, data: st.DataObject) -> None:
+    """Without ties exactly the first so many; with ties also those equal to the last of them, and none else."""
+    margins = data.draw(st.lists(st.sampled_from([0.1, 0.2]), min_size=len(errors), max_size=len(errors)))
+    quality = figures(len(errors), location_error=errors, closure_margin=margins)
+    ranking = ("location_error", "closure_margin")
+    order = rank(quality, ranking)
+    assert np.flatnonzero(best_marked(quality, ranking, most, ties=False)).tolist() == sorted(order[:most])
+    marked = best_marked(quality, ranking, most, ties=True)
+    assert marked[order[:most]].all()
+    last = quality[order[min(most, len(order)) - 1]]
+    for index in np.flatnonzero(marked):
+        if index not in order[:most]:
+            assert abs(quality[index, LOCATION_ERROR] - last[LOCATION_ERROR]) < 0.01 * last[LOCATION_ERROR] + 1e-12
+            assert quality[index, CLOSURE_MARGIN] == last[CLOSURE_MARGIN]
+
+
+def test_names_are_read_as_people_write_them() -> None:
+    """With hyphens, underscores or spaces, in any mixture of capitals."""
+    assert preference_of(["Location-Error", "wrench radius"]).ranking == ("location_error", "wrench_radius")
+    assert preference_of(None).ranking == DEFAULT_RANKING
+    assert "load_reaction" in preference_of(None, loads=[Load(moment=1.0)]).ranking
+    assert FIGURES[WRENCH_RADIUS].option == "wrench-radius"
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (["beauty"], "'beauty' is no figure to rank by: choose among closure-margin"),
+        (["end-distance", "end distance"], "name one twice"),
+        (["load-reaction"], "no load"),
+        ([], "name at least one"),
+    ],
+)
+def test_names_that_cannot_be_ranked_by(names: list[str], words: str) -> None:
+    """One sentence with the remedy."""
+    with pytest.raises(InputError, match=words):
+        preference_of(names)
