@@ -12,7 +12,7 @@ leaves with the first that decides it:
 
 from __future__ import annotations
 
-from threading import Event
+from threading import Event, Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,6 +57,7 @@ class Course:
     cancel: Event | None = None
     done: int = field(default=0, init=False)
     kept: int = field(default=0, init=False)
+    lock: Lock = field(factory=Lock, init=False)
 
     @property
     def is_stopped(self) -> bool:
@@ -64,11 +65,17 @@ class Course:
         return self.cancel is not None and self.cancel.is_set()
 
     def advance(self, done: int, kept: int) -> None:
-        """Records are decided, and some of them kept."""
-        self.done += done
-        self.kept += kept
+        """Records are decided, and some of them kept; may be called from any thread."""
+        with self.lock:
+            self.done += done
+            self.kept += kept
         if self.progress is not None and done:
-            self.progress(min(self.done / max(self.total, 1), 1.0), self.kept)
+            self.progress(self.fraction, self.kept)
+
+    @property
+    def fraction(self) -> float:
+        """The part of the records that is decided."""
+        return min(self.done / max(self.total, 1), 1.0)
 
 
 @define(frozen=True)

@@ -53,10 +53,15 @@ def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece) -> dict[
     if len(face) == 0:
         return {"I": 0, "II": 0}
     faces = workpiece.faces
+    rotations = rotations_onto_itself([f.segment for f in faces])
+    if len(rotations) == 1:
+        # Only the part as it lies; every fixture is a set of its own.
+        counts = np.bincount(c.kind, minlength=3)
+        return {"I": int(counts[1]), "II": int(counts[2])}
     numbers = np.array([f.number for f in faces])
     x0, y0, x1, y1 = workpiece.bounds
     best: tuple[list[IntArray], Array] | None = None
-    for rotation in rotations_onto_itself([f.segment for f in faces]):
+    for rotation in rotations:
         image = np.zeros(int(numbers.max()) + 1, np.int64)
         image[numbers] = numbers[rotation.image]
         key, pose = keys_and_pose(c, image[face], len(image), rotation.angle, x1 - x0 + y1 - y0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from threading import Event
 
 import numpy as np
@@ -18,36 +19,51 @@ __all__ = ["finish"]
 
 Array = NDArray[np.float64]
 
-BLOCK = 1 << 16
+# Records decided at a time; few enough that threads end together.
+BLOCK = 1 << 14
+# Seconds between looks at how far the threads have come.
+NAP = 0.1
 
 
 def finish(
-    records: list[Array], problem: Problem, progress: Progress | None = None, cancel: Event | None = None
+    records: list[Array],
+    problem: Problem,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+    threads: int = 1,
 ) -> tuple[Candidates, Account]:
     """Polish, decide, bring to the listed form and list once.
 
     Parameters
     ----------
     records : (N, 19) arrays from the kernels.
-    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    progress : called from this thread as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, only what needs no ball arithmetic and the like is decided.
+    threads : how many threads share the deciding; the outcome does not depend on it.
 
     Returns
     -------
     (the fixtures, an account of all records)
     """
-    course = Course(sum(map(len, records)), progress, cancel)
-    parts: list[Candidates] = []
-    accounts: list[Account] = []
-    for block in blocks_of(records):
+    course = Course(sum(map(len, records)), cancel=cancel)
+
+    def listed_form(block: Array) -> tuple[Candidates, Account]:
         proven, account = decided(block, problem, course)
-        parts.append(standing(candidates_of(proven, problem)))
-        accounts.append(account)
-    everything = joined(parts)
+        return standing(candidates_of(proven, problem)), account
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        running = [pool.submit(listed_form, block) for block in blocks_of(records)]
+        waiting = set(running)
+        while waiting:
+            _, waiting = wait(waiting, timeout=NAP, return_when=FIRST_COMPLETED)
+            if progress is not None:
+                progress(course.fraction, course.kept)
+    parts, accounts = zip(*(future.result() for future in running), strict=True)
+    everything = joined(list(parts))
     fits = arranged(everything, problem).fits
     if not fits.all():
         everything = everything.take(fits)
-    return listed_once(everything), Account.together(accounts)
+    return listed_once(everything), Account.together(list(accounts))
 
 
 def blocks_of(records: list[Array]) -> Iterator[Array]:

@@ -50,6 +50,7 @@ def listed_result(
     best: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
+    threads: int = 1,
 ) -> Result:
     """Check, list once, rank and count the fixtures that an engine found.
 
@@ -61,8 +62,9 @@ def listed_result(
     best : list only this many, the best ones.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
+    threads : how many threads share the deciding.
     """
-    candidates, account = finish(records, problem, progress, cancel)
+    candidates, account = finish(records, problem, progress, cancel, threads)
     result = result_of(problem, preference, candidates, account, work)
     return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
 

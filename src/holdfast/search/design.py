@@ -93,7 +93,8 @@ def design(
     blocks = search.blocks(types)
     kept = None if best is None else BestFixtures(problem, preference, best, cancel)
     receive = None if kept is None else lambda records: search.seek(kept.add(records))
-    records, done = run_blocks(blocks, thread_count(threads), stage(progress, 0.0, SEARCH), cancel, receive)
+    workers = thread_count(threads)
+    records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive)
     totals = search.totals
     work = Work(
         complete=len(done) == len(blocks),
@@ -104,7 +105,8 @@ def design(
     if kept is not None:
         result = best_result(kept, work)
     else:
-        result = listed_result(problem, preference, records, work, progress=stage(progress, SEARCH, 1.0), cancel=cancel)
+        rest = stage(progress, SEARCH, 1.0)
+        result = listed_result(problem, preference, records, work, progress=rest, cancel=cancel, threads=workers)
     if result.complete and not any(result.found.values()) and not result.notes:
         return evolve(result, notes=(why_none(search, int(totals[CONTACTS]), threads),))
     return result
