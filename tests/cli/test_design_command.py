@@ -202,7 +202,7 @@ BAD = [
     (("--rows", "0"), "rows 0 is not a positive whole number"),
     (("--peg-radius", "-1"), "peg radius -1.0 is not a length"),
     (("--peg-radius", "inf"), "--peg-radius 'inf' is not a length"),
-    (("--peg-radius", "3mm"), "--peg-radius '3mm' is not a length: give a plain number in mm"),
+    (("--peg-radius", "3ell"), "--peg-radius '3ell' is not a length: give a plain number in mm"),
     (("--min-gap", "-1"), "min gap -1.0 is not a length"),
     (("--max-opening", "0"), "max opening 0.0 is not a positive length"),
     (("--max-opening", "5"), "max opening 5 is below the min gap 10"),

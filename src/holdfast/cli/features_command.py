@@ -8,6 +8,8 @@ from typing import Annotated
 import typer
 
 from holdfast.cli.options import (
+    JOIN_TOLERANCE,
+    DrawingUnitOption,
     JoinToleranceOption,
     LayerOption,
     PartArgument,
@@ -15,7 +17,7 @@ from holdfast.cli.options import (
     UnitOption,
     load_part,
 )
-from holdfast.cli.values import optional_length, picture_ending
+from holdfast.cli.values import length_unit, optional_length, picture_ending
 from holdfast.errors import InputError
 
 __all__ = ["features"]
@@ -27,12 +29,13 @@ def features(
         str | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
     ] = None,
     peg_radius: Annotated[
-        str | None, typer.Option(metavar="MM", help="Draw also where the centres of pegs of this radius can be.")
+        str | None, typer.Option(metavar="LENGTH", help="Draw also where the centres of pegs of this radius can be.")
     ] = None,
     unit: UnitOption = None,
     layer: LayerOption = None,
     part_number: PartNumberOption = None,
-    join_tolerance: JoinToleranceOption = "0.001",
+    drawing_unit: DrawingUnitOption = None,
+    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
@@ -40,21 +43,23 @@ def features(
     """
     from holdfast.files.atomic import refuse_unwritable, write_bytes
 
-    radius = optional_length("--peg-radius", peg_radius)
+    shown_unit = length_unit(unit)
+    radius = optional_length("--peg-radius", peg_radius, shown_unit)
     if radius is not None and radius < 0:
-        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more, in mm.")
+        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
     picture = None if draw is None else Path(draw)
     ending = None
     if picture is not None:
         ending = picture_ending(picture)
         refuse_unwritable(picture)
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance).workpiece
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
 
     from holdfast.cli.tables import face_table, plural, print_tables
 
     x0, y0, x1, y1 = workpiece.bounds
     faces = plural(len(workpiece.faces), "face")
-    print_tables(f"{workpiece.name}: {x1 - x0:.3f} x {y1 - y0:.3f} mm, {faces}", face_table(workpiece))
+    size = f"{shown_unit.number(x1 - x0)} x {shown_unit.text(y1 - y0)}"
+    print_tables(f"{workpiece.name}: {size}, {faces}", face_table(workpiece, shown_unit))
     if picture is not None and ending is not None:
         from holdfast.drawing.features_picture import draw_features
         from holdfast.drawing.render import render

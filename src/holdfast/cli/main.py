@@ -24,6 +24,7 @@ from holdfast.cli.features_command import features
 from holdfast.cli.parts_command import parts
 from holdfast.cli.show_command import show
 from holdfast.cli.verify_command import verify
+from holdfast.cli.vises_command import vises
 from holdfast.errors import InputError
 
 __all__ = ["app", "run"]
@@ -43,8 +44,8 @@ EXAMPLES = f"""
   holdfast features part.dxf --draw faces.svg
       the numbers of the part's faces, to talk about them
 
-All lengths on the command line are in millimetres. holdfast COMMAND --help
-explains a command.
+Lengths are in millimetres, or in the unit of --unit; a length may carry a unit
+of its own, such as 0.5in. holdfast COMMAND --help explains a command.
 """
 
 
@@ -92,6 +93,7 @@ app.command(cls=PlainCommand)(design)
 app.command(cls=PlainCommand)(show)
 app.command(cls=PlainCommand)(features)
 app.command(cls=PlainCommand)(parts)
+app.command(cls=PlainCommand)(vises)
 app.command(cls=PlainCommand)(verify)
 
 

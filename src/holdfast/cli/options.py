@@ -6,14 +6,26 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from holdfast.cli.values import counting_number, length
+from holdfast.cli.values import counting_number, length, length_unit
 
 if TYPE_CHECKING:
     from holdfast.files.load import Loaded
 
-__all__ = ["JoinToleranceOption", "LayerOption", "PartArgument", "PartNumberOption", "UnitOption", "load_part"]
+__all__ = [
+    "JOIN_TOLERANCE",
+    "DrawingUnitOption",
+    "JoinToleranceOption",
+    "LayerOption",
+    "PartArgument",
+    "PartNumberOption",
+    "ShownUnitOption",
+    "UnitOption",
+    "load_part",
+]
 
 READING = "Reading the part"
+# With its unit, so that it is the same whatever --unit says.
+JOIN_TOLERANCE = "0.001mm"
 
 PartArgument = Annotated[
     str,
@@ -25,7 +37,19 @@ UnitOption = Annotated[
     str | None,
     typer.Option(
         metavar="UNIT",
-        help="Unit of the drawing (mm, cm, m, inch), when the file does not say or is wrong.",
+        help="Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm if not "
+        "given. A length may also carry its unit: 0.5in.",
+    ),
+]
+ShownUnitOption = Annotated[
+    str | None,
+    typer.Option("--unit", metavar="UNIT", help="Unit of the lengths shown (mm, cm, m, inch); mm if not given."),
+]
+DrawingUnitOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="UNIT",
+        help="Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
         rich_help_panel=READING,
     ),
 ]
@@ -44,24 +68,41 @@ PartNumberOption = Annotated[
 ]
 JoinToleranceOption = Annotated[
     str,
-    typer.Option(metavar="MM", help="Largest gap between ends of lines that is closed.", rich_help_panel=READING),
+    typer.Option(metavar="LENGTH", help="Largest gap between ends of lines that is closed.", rich_help_panel=READING),
 ]
 
 
-def load_part(part: str, unit: str | None, layer: list[str] | None, number: str | None, tolerance: str) -> Loaded:
+def load_part(
+    part: str,
+    unit: str | None,
+    layer: list[str] | None,
+    number: str | None,
+    tolerance: str,
+    drawing_unit: str | None = None,
+) -> Loaded:
     """Read the part and tell on stderr what a user should know about the drawing.
+
+    Parameters
+    ----------
+    part, unit, layer, number, tolerance, drawing_unit : as typed; ``unit`` is that of ``tolerance``, and of a drawing
+        that does not say its own; ``drawing_unit`` is that of the drawing, whatever it says.
 
     Raises
     ------
     InputError
         When the part cannot be used.
     """
-    join_tolerance = length("--join-tolerance", tolerance)
+    join_tolerance = length("--join-tolerance", tolerance, length_unit(unit))
     part_number = counting_number("--part", number, "a part")
     from holdfast.files.load import read_workpiece
 
     loaded = read_workpiece(
-        part, unit=unit, layers=layer or None, part_number=part_number, join_tolerance=join_tolerance
+        part,
+        unit=drawing_unit,
+        usual_unit=unit,
+        layers=layer or None,
+        part_number=part_number,
+        join_tolerance=join_tolerance,
     )
     for remark in loaded.remarks:
         typer.echo(f"holdfast: {remark}", err=True)

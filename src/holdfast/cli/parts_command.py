@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from holdfast.cli.options import ShownUnitOption
+from holdfast.cli.values import length_unit
+
 __all__ = ["parts"]
 
 
-def parts() -> None:
+def parts(unit: ShownUnitOption = None) -> None:
     """List the built-in parts.
 
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the
@@ -17,9 +20,13 @@ def parts() -> None:
     from holdfast.files.builtin import builtin_parts
     from holdfast.files.load import load
 
-    table = Table(("name", ">width mm", ">height mm", ">faces", "description"))
+    shown = length_unit(unit)
+    decimals = shown.decimals - 2
+    width, height = f">width {shown.abbreviation}", f">height {shown.abbreviation}"
+    table = Table(("name", width, height, ">faces", "description"))
     for part in builtin_parts():
         workpiece = load(part.name)
         x0, y0, x1, y1 = workpiece.bounds
-        table.add_row(part.name, f"{x1 - x0:.1f}", f"{y1 - y0:.1f}", str(len(workpiece.faces)), part.description)
+        size = shown.number(x1 - x0, decimals), shown.number(y1 - y0, decimals)
+        table.add_row(part.name, *size, str(len(workpiece.faces)), part.description)
     print_tables(table)

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from holdfast.cli.values import picture_ending, whole_number
+from holdfast.cli.options import ShownUnitOption
+from holdfast.cli.values import length_unit, picture_ending, whole_number
 from holdfast.errors import InputError
 
 __all__ = ["show"]
@@ -21,6 +22,7 @@ def show(
     draw: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
     ] = None,
+    unit: ShownUnitOption = None,
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose.
 
@@ -34,6 +36,7 @@ def show(
     rank = whole_number("fixture", number)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    shown_unit = length_unit(unit)
     picture = None if draw is None else Path(draw)
     ending = None
     if picture is not None:
@@ -46,7 +49,7 @@ def show(
 
     from holdfast.cli.tables import fixture_tables, print_tables
 
-    print_tables(*fixture_tables(fixture, rank, len(result)))
+    print_tables(*fixture_tables(fixture, rank, len(result), shown_unit))
     if not result.complete:
         typer.echo("holdfast: the search for this result was interrupted; there may be better fixtures.", err=True)
     if picture is not None and ending is not None:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 from attrs import define, field
 
+from holdfast.model.units import MILLIMETRE, Unit
+
 if TYPE_CHECKING:
     from holdfast.geometry.face import Face
     from holdfast.model.fixture import Fixture
@@ -140,9 +142,10 @@ def undecided_words(item: Undecided) -> str:
     return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
 
 
-def result_table(result: Result, count: int) -> Table:
-    """The best fixtures, one line each."""
-    table = Table((">rank", "type", "left holes", "right holes", ">opening mm", ">angle deg", ">closure margin"))
+def result_table(result: Result, count: int, unit: Unit = MILLIMETRE) -> Table:
+    """The best fixtures, one line each, with lengths in a unit."""
+    opening = f">opening {unit.abbreviation}"
+    table = Table((">rank", "type", "left holes", "right holes", opening, ">angle deg", ">closure margin"))
     for rank, fixture in enumerate(result[:count], 1):
         holes = {jaw: " ".join(peg.hole for peg in fixture.pegs if peg.jaw == jaw) for jaw in ("left", "right")}
         table.add_row(
@@ -150,57 +153,58 @@ def result_table(result: Result, count: int) -> Table:
             fixture.type,
             holes["left"],
             holes["right"],
-            f"{fixture.jaw_separation:.3f}",
+            unit.number(fixture.jaw_separation),
             f"{fixture.pose.theta_deg:.3f}",
             f"{fixture.quality['closure_margin']:.4f}",
         )
     return table
 
 
-def fixture_tables(fixture: Fixture, rank: int, total: int) -> tuple[Table | str, ...]:
-    """How to set up one fixture: what to turn, and where each peg goes."""
-    pegs = Table(("hole", "jaw", ">x mm", ">y mm", ">face", ">force per jaw force"))
+def fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit = MILLIMETRE) -> tuple[Table | str, ...]:
+    """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
+    pegs = Table(("hole", "jaw", x, y, ">face", ">force per jaw force"))
     for peg in fixture.pegs:
-        pegs.add_row(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.segment), f"{peg.force:.3f}")
+        pegs.add_row(peg.hole, peg.jaw, unit.number(peg.x), unit.number(peg.y), str(peg.segment), f"{peg.force:.3f}")
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {fixture.type}",
-        f"Jaw separation {fixture.jaw_separation:.3f} mm, closure margin {fixture.quality['closure_margin']:.4f}",
-        f"The part is turned by {pose.theta_deg:.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm from "
-        "the left jaw's hole L-A1",
+        f"Jaw separation {unit.text(fixture.jaw_separation)}, closure margin {fixture.quality['closure_margin']:.4f}",
+        f"The part is turned by {pose.theta_deg:.3f} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
+        f"{unit.abbreviation} from the left jaw's hole L-A1",
         pegs,
     )
 
 
-def face_table(workpiece: Workpiece) -> Table:
-    """The numbered faces of a part."""
-    table = Table((">face", "kind", "size mm", "from", "to", "loop"))
+def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
+    """The numbered faces of a part, with lengths in a unit."""
+    table = Table((">face", "kind", f"size {unit.abbreviation}", "from", "to", "loop"))
     first = 0
     loop_of = {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}"))
         first += len(loop)
     for face in workpiece.faces:
-        table.add_row(str(face.number), *face_words(face), loop_of[face.number])
+        table.add_row(str(face.number), *face_words(face, unit), loop_of[face.number])
     return table
 
 
-def face_words(face: Face) -> tuple[str, str, str, str]:
-    """Kind, size, start and end of a face."""
+def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
+    """Kind, size, start and end of a face, with lengths in a unit."""
     from holdfast.geometry.segment import Arc
 
     segment = face.segment
-    start, end = place(segment.start), place(segment.end)
+    start, end = place(segment.start, unit), place(segment.end, unit)
     if not isinstance(segment, Arc):
         length = hypot(segment.end[0] - segment.start[0], segment.end[1] - segment.start[1])
-        return "line", f"length {length:.3f}", start, end
+        return "line", f"length {unit.number(length)}", start, end
     kind = "arc, convex" if segment.sign > 0 else "arc, concave"
+    radius = unit.number(segment.radius)
     if segment.half_sweep > pi - 1e-9:
-        return kind, f"radius {segment.radius:.3f}, full circle", f"about {place(segment.center)}", ""
-    return kind, f"radius {segment.radius:.3f}, sweep {degrees(2 * segment.half_sweep):.2f} deg", start, end
+        return kind, f"radius {radius}, full circle", f"about {place(segment.center, unit)}", ""
+    return kind, f"radius {radius}, sweep {degrees(2 * segment.half_sweep):.2f} deg", start, end
 
 
-def place(point: tuple[float, float]) -> str:
-    """A point's coordinates in mm, without negative zeros."""
-    x, y = (round(value, 3) + 0.0 for value in point)
-    return f"({x:.3f}, {y:.3f})"
+def place(point: tuple[float, float], unit: Unit) -> str:
+    """The coordinates of a point in mm, as numbers of a unit."""
+    return f"({unit.number(point[0])}, {unit.number(point[1])})"

@@ -2,19 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
-from math import isfinite
+from math import inf, isfinite, nan
 from pathlib import Path
 
 from holdfast.errors import InputError
+from holdfast.model.units import MILLIMETRE, Unit, unit_named
 
-__all__ = ["choice", "counting_number", "length", "optional_length", "picture_ending", "pitches", "whole_number"]
+__all__ = [
+    "choice",
+    "counting_number",
+    "length",
+    "length_unit",
+    "optional_length",
+    "picture_ending",
+    "pitches",
+    "whole_number",
+]
 
 PICTURE_ENDINGS = (".svg", ".png")
+# A number and perhaps its unit: 12.5, 0.5in, 1/2", 1-1/4 inch. The units are those of holdfast.model.units.
+LENGTH = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>mm|cm|m|inch|in|\")?\s*", re.IGNORECASE | re.DOTALL)
+FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]+)/(?P<below>[0-9]+)")
 
 
-def length(option: str, text: str) -> float:
+def length_unit(name: str | None) -> Unit:
+    """The unit of lengths given and shown, millimetres where none is asked for.
+
+    Raises
+    ------
+    InputError
+        For a unit that is not known.
+    """
+    return MILLIMETRE if name is None else unit_named(name)
+
+
+def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     """A finite length in mm; whether its sign fits is for the vise to say.
+
+    Parameters
+    ----------
+    option : what to call it in a message.
+    text : a number or a fraction, which may carry a unit of its own.
+    unit : of a number without one.
 
     Raises
     ------
@@ -23,25 +54,46 @@ def length(option: str, text: str) -> float:
 
     Examples
     --------
-    >>> length("--min-gap", "12.7")
-    12.7
+    >>> length("--min-gap", "12.7"), length("--min-gap", "0.5in"), length("--min-gap", '1-1/2"')
+    (12.7, 12.7, 38.1)
     """
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not isfinite(value) or "_" in text:
-        raise InputError(f"{option} {text!r} is not a length: give a plain number in mm, such as 12.5.")
+    match = LENGTH.fullmatch(text)
+    value = nan
+    if match is not None:
+        own = match["unit"]
+        value = (unit if own is None else unit_named(own)).length(number(match["number"]))
+    if not isfinite(value):
+        raise InputError(
+            f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, or one with "
+            "its unit, such as 0.5in."
+        )
     return value
 
 
-def optional_length(option: str, text: str | None) -> float | None:
+def number(text: str) -> float:
+    """A number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
+    fraction = FRACTION.fullmatch(text)
+    if fraction is None:
+        try:
+            return nan if "_" in text else float(text)
+        except ValueError:
+            return nan
+    below = float(fraction["below"])
+    value = float(fraction["above"]) / below + float(fraction["whole"] or 0) if below else inf
+    return -value if fraction["sign"] == "-" else value
+
+
+def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
     """A finite length in mm, or None where the option is not given."""
-    return None if text is None else length(option, text)
+    return None if text is None else length(option, text, unit)
 
 
-def pitches(text: str) -> tuple[float, float]:
-    """The x and y pitch, from one number or two.
+def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
+    """The x and y pitch in mm, from one length or two.
+
+    Parameters
+    ----------
+    unit : of numbers that carry none.
 
     Raises
     ------
@@ -50,17 +102,18 @@ def pitches(text: str) -> tuple[float, float]:
 
     Examples
     --------
-    >>> pitches("10"), pitches("10,12.5")
-    ((10.0, 10.0), (10.0, 12.5))
+    >>> pitches("10"), pitches("10,12.5"), pitches("1/2in,1in")
+    ((10.0, 10.0), (10.0, 12.5), (12.7, 25.4))
     """
     parts = text.split(",")
     if len(parts) > 2:
         raise InputError(f"--pitch {text!r} has {len(parts)} numbers: give one for both directions, or X,Y.")
     try:
-        numbers = [length("--pitch", part) for part in parts]
+        numbers = [length("--pitch", part, unit) for part in parts]
     except InputError as error:
         raise InputError(
-            f"--pitch {text!r} is not a distance between holes: give it in mm, such as 10, or as X,Y, such as 10,12.5."
+            f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, or as X,Y, "
+            "such as 10,12.5."
         ) from error
     return numbers[0], numbers[-1]
 

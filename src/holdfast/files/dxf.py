@@ -38,7 +38,9 @@ INSUNITS = {
 }
 
 
-def read_dxf(path: Path, content: bytes, *, unit: str | None, layers: Sequence[str] | None) -> Drawing:
+def read_dxf(
+    path: Path, content: bytes, *, unit: str | None, usual_unit: str | None = None, layers: Sequence[str] | None
+) -> Drawing:
     """Read the outline entities of a DXF file's model space.
 
     Parameters
@@ -46,6 +48,7 @@ def read_dxf(path: Path, content: bytes, *, unit: str | None, layers: Sequence[s
     path : the file, which ezdxf opens by itself.
     content : its bytes.
     unit : overrides the file's unit.
+    usual_unit : the unit of a file that does not say.
     layers : layers to read; all visible ones when None.
 
     Raises
@@ -55,7 +58,7 @@ def read_dxf(path: Path, content: bytes, *, unit: str | None, layers: Sequence[s
     """
     refuse_other_formats(content)
     document, remarks = opened(path)
-    scale, unit_remarks = scale_of(document, unit)
+    scale, unit_remarks = scale_of(document, unit, usual_unit)
     walk = Walk(document, layers)
     walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
     walk.refuse_missing_layers()
@@ -111,8 +114,8 @@ def one_line(error: Exception) -> str:
     return text[:120].rstrip(".")
 
 
-def scale_of(document: Any, unit: str | None) -> tuple[float, list[str]]:
-    """Millimetres per drawing unit, and a remark when the user's unit overrides another.
+def scale_of(document: Any, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]]:
+    """Millimetres per drawing unit, and a remark when the user's unit is not the file's.
 
     Raises
     ------
@@ -127,7 +130,12 @@ def scale_of(document: Any, unit: str | None) -> tuple[float, list[str]]:
             return scale, [f"The file says its unit is {known[0]}; it was read in {unit} as asked."]
         return scale, []
     if known is not None:
+        if usual_unit is not None and known[1] != millimetres_per(usual_unit):
+            # Whoever gave the unit for the drawing's sake learns here that it did not count.
+            return known[1], [f"The file says its unit is {known[0]}; it was read so (--drawing-unit overrides it)."]
         return known[1], []
+    if usual_unit is not None:
+        return millimetres_per(usual_unit), []
     if code:
         raise InputError(
             f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with --unit mm (or inch)."

@@ -82,11 +82,17 @@ def read_workpiece(
     part: str | Path,
     *,
     unit: str | None = None,
+    usual_unit: str | None = None,
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
     join_tolerance: float = 1e-3,
 ) -> Loaded:
     """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
+
+    Parameters
+    ----------
+    usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those of
+        :func:`load`.
 
     Raises
     ------
@@ -95,8 +101,9 @@ def read_workpiece(
     """
     if not (isfinite(join_tolerance) and join_tolerance >= 0):
         raise InputError(f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more.")
-    if unit is not None:
-        millimetres_per(unit)
+    for name in (unit, usual_unit):
+        if name is not None:
+            millimetres_per(name)
     path = found(part)
     try:
         content = read_bytes(path)
@@ -107,12 +114,12 @@ def read_workpiece(
         if kind == "dxf":
             from holdfast.files.dxf import read_dxf
 
-            drawing = read_dxf(path, content, unit=unit, layers=layers)
+            drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers)
         else:
             refuse_layers(layers)
             from holdfast.files.svg import read_svg
 
-            drawing = read_svg(content, unit=unit)
+            drawing = read_svg(content, unit=unit, usual_unit=usual_unit)
         return from_drawing(path, drawing, part_number, join_tolerance)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from error
@@ -213,7 +220,7 @@ def from_json(
 
     refuse_layers(layers)
     if unit is not None:
-        raise InputError('the JSON file gives its own "units": leave --unit out.')
+        raise InputError('the JSON file gives its own "units": leave --drawing-unit out.')
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -39,13 +39,14 @@ LINK = "{http://www.w3.org/1999/xlink}href"
 Element = ElementTree.Element
 
 
-def read_svg(content: bytes, *, unit: str | None) -> Drawing:
+def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None) -> Drawing:
     """Read the visible outlines of an SVG file.
 
     Parameters
     ----------
     content : the file's bytes.
     unit : what one user unit is; None to go by the file's physical size.
+    usual_unit : what it is in a file without a physical size.
 
     Raises
     ------
@@ -59,7 +60,7 @@ def read_svg(content: bytes, *, unit: str | None) -> Drawing:
         raise InputError(f"the file is not valid XML ({error}): export it again.") from error
     if local_name(root) != "svg":
         raise InputError(f"this is XML, but not an SVG drawing (its root is <{local_name(root)[:40]}>).")
-    placement, remarks = page(root, unit)
+    placement, remarks = page(root, unit, usual_unit)
     walk = SvgWalk(root)
     walk.visit_children(root, Nest(placement))
     return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()))
@@ -105,7 +106,7 @@ def check_xml(content: bytes) -> None:
         raise InputError(f"the file's text encoding is not usable ({error}): save it as UTF-8.") from error
 
 
-def page(root: Element, unit: str | None) -> tuple[Placement, list[str]]:
+def page(root: Element, unit: str | None, usual_unit: str | None) -> tuple[Placement, list[str]]:
     """The map from user units to mm with y up, and a remark when the user's unit overrides the file's size.
 
     Raises
@@ -117,6 +118,8 @@ def page(root: Element, unit: str | None) -> tuple[Placement, list[str]]:
     box = viewbox(root)
     scale = file_scale(root, width, height, box)
     remarks = []
+    if scale is None and unit is None:
+        unit = usual_unit
     if unit is not None:
         asked = millimetres_per(unit)
         if scale is not None and abs(scale - asked) > 1e-9 * asked:

@@ -1,0 +1,173 @@
+"""``--unit`` in and out, and ``holdfast vises``."""
+
+from __future__ import annotations
+
+import re
+from math import isclose
+from pathlib import Path
+from typing import Any
+
+import pytest
+from reading_helpers import new_dxf, rectangle
+
+from fakes import fake_result
+from holdfast.cli.tables import fixture_tables, result_table
+from holdfast.cli.values import length, pitches
+from holdfast.errors import InputError
+from holdfast.files.result_file import write_result
+from holdfast.files.vise_presets import load_vise, preset_names
+from holdfast.model.units import INCH, MILLIMETRE
+
+ROOT = Path(__file__).parent.parent.parent
+
+
+@pytest.mark.parametrize(
+    ("text", "millimetres", "inches"),
+    [
+        ("2", 2, 50.8),
+        ("1/2", 0.5, 12.7),
+        ("-1-1/2", -1.5, -38.1),
+        ("1 1/4", 1.25, 31.75),
+        ("1e-1", 0.1, 2.54),
+        ("0.5in", 12.7, 12.7),
+        ('1/2"', 12.7, 12.7),
+        ("12.7 mm", 12.7, 12.7),
+        ("1INCH", 25.4, 25.4),
+        ("-3cm", -30, -30),
+        ("1m", 1000, 1000),
+    ],
+)
+def test_lengths_carry_their_unit_or_take_the_one_asked(text: str, millimetres: float, inches: float) -> None:
+    assert isclose(length("--x", text), millimetres)
+    assert isclose(length("--x", text, INCH), inches)
+
+
+@pytest.mark.parametrize("text", ["", "mm", "in", "1/0", "1/2/3", "/2", "1_0", "inf", "nanmm", "5 ft", "1,5", "--1"])
+def test_what_is_no_length_is_refused_in_the_unit_asked(text: str) -> None:
+    with pytest.raises(InputError, match="give a plain number in mm"):
+        length("--x", text)
+    with pytest.raises(InputError, match="give a plain number in in, such as"):
+        length("--x", text, INCH)
+
+
+def test_a_pitch_may_mix_units() -> None:
+    assert pitches("1/2in,20", MILLIMETRE) == (12.7, 20)
+    assert pitches("1,20mm", INCH) == (25.4, 20)
+
+
+def test_tables_in_inches_are_those_in_millimetres() -> None:
+    """Every length of the two tables over 25.4, to four decimals; the other words are the same."""
+    result = fake_result(3)
+    fixture = result[0]
+    table = result_table(result, 1, INCH)
+    assert ">opening in" in table.columns
+    assert table.rows[0][4] == f"{fixture.jaw_separation / 25.4:.4f}"
+    told = fixture_tables(fixture, 1, 3, INCH)
+    assert f"Jaw separation {fixture.jaw_separation / 25.4:.4f} in" in str(told[1])
+    pegs = told[3]
+    assert not isinstance(pegs, str)
+    assert pegs.columns[2:4] == (">x in", ">y in")
+    for peg, row in zip(fixture.pegs, pegs.rows, strict=True):
+        assert (float(row[2]), float(row[3])) == pytest.approx((peg.x / 25.4, peg.y / 25.4), abs=5e-5)
+
+
+def test_show_in_inches(run: Any, tmp_path: Path) -> None:
+    write_result(fake_result(2), tmp_path / "r.json")
+    outcome = run("show", tmp_path / "r.json", 1, "--unit", "inch")
+    assert f"Jaw separation {fake_result(2)[0].jaw_separation / 25.4:.4f} in" in outcome.stdout
+    assert "mm" not in outcome.stdout
+    refused = run("show", tmp_path / "r.json", 1, "--unit", "ell")
+    assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+
+
+def test_a_drawing_without_a_unit_is_in_that_of_the_command(run: Any, tmp_path: Path) -> None:
+    """A 60 x 40 plate: inches where nobody else says; as the file says otherwise; --drawing-unit overrides both."""
+    for insunits in (0, 4):
+        document, space = new_dxf(insunits)
+        rectangle(space)
+        document.saveas(tmp_path / f"{insunits}.dxf")
+    unsaid, said = tmp_path / "0.dxf", tmp_path / "4.dxf"
+    assert run("features", unsaid).exit_code == 2
+    assert ": 60.0000 x 40.0000 in" in run("features", unsaid, "--unit", "inch").stdout
+    assert ": 60.000 x 40.000 mm" in run("features", unsaid, "--drawing-unit", "mm").stdout
+    outcome = run("features", said, "--unit", "inch")
+    assert ": 2.3622 x 1.5748 in" in outcome.stdout
+    assert "The file says its unit is mm; it was read so (--drawing-unit overrides it)." in outcome.stderr
+    outcome = run("features", said, "--unit", "inch", "--drawing-unit", "inch")
+    assert ": 60.0000 x 40.0000 in" in outcome.stdout
+    assert run("features", said, "--unit", "mm").stderr == ""
+
+
+def test_parts_and_vises_in_inches(run: Any) -> None:
+    rows = [line.split() for line in run("vises", "--unit", "inch").stdout.splitlines()]
+    assert rows[0][:4] == ["name", "pitch", "in", "peg"]
+    assert [row[0] for row in rows[2:]] == list(preset_names())
+    assert next(row for row in rows if row[0] == "plate-one-inch")[1:4] == ["1", "0.25", "3"]
+    assert "width in" in run("parts", "--unit", "in").stdout
+    assert "pitch mm" in run("vises").stdout
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_every_vise_is_shown_with_its_source(run: Any, name: str) -> None:
+    outcome = run("vises", name)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert outcome.stdout.splitlines()[-1].startswith("Source: ")
+
+
+def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
+    """In its own unit, or in the one asked for; a user's file too; what was assumed is said to be."""
+    inches = run("vises", "plate-one-inch").stdout
+    assert "distance between holes                     1 in" in inches
+    assert "0.2501 to 0.2503 in" in inches
+    assert "0.00039 in (assumed: no source says)" in inches
+    assert "6.353 to 6.358 mm" in run("vises", "plate-one-inch", "--unit", "mm").stdout
+    path = tmp_path / "own.toml"
+    path.write_text(
+        'unit = "mm"\npitch = [20, 25]\ncolumns = 2\npeg_radius = 3\nrows = 8\nbody_radius = 5\nblocked = ["L-B"]\n'
+        "row_offset = 5\nmax_opening = 90\n"
+    )
+    own = run("vises", path).stdout
+    for words in ("20 x 25 mm", "rows on each jaw", "L-B", "90 mm", "5 mm", "(assumed: no pin and hole are given)"):
+        assert words in own
+    refused = run("vises", "plate-one")
+    assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+    assert "try plate-one-inch" in refused.stderr
+
+
+def test_the_worked_example_of_the_manual(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The commands of docs/hardware.md print the lines quoted there, spaces aside."""
+    page = (ROOT / "docs" / "hardware.md").read_text()
+    blocks = re.findall(r"```console\n(.*?)```", page, flags=re.S)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    printed: list[str] = []
+    for line in "".join(blocks).splitlines():
+        if line.startswith("$ holdfast "):
+            outcome = run(*line.split()[2:])
+            assert outcome.exit_code == 0, outcome.stderr
+            printed = [" ".join(words.split()) for words in outcome.stdout.splitlines()]
+        else:
+            assert any(words.startswith(" ".join(line.split())) for words in printed), line
+    assert printed
+
+
+def test_the_vise_file_of_the_manual(tmp_path: Path) -> None:
+    """Every entry there is one, and its peg tolerance is the sum that the page reckons."""
+    page = (ROOT / "docs" / "hardware.md").read_text()
+    (block,) = re.findall(r"```toml\n(.*?)```", page, flags=re.S)
+    (tmp_path / "jaws.toml").write_text(block)
+    loaded = load_vise(tmp_path / "jaws.toml")
+    assert isclose(loaded.tolerance.peg, 0.044)
+    assert "0.044 mm" in page
+
+
+def test_the_manual_lists_every_preset() -> None:
+    """The table has a row for each preset with its pitch, peg and columns."""
+    page = (ROOT / "docs" / "hardware.md").read_text()
+    for name in preset_names():
+        loaded = load_vise(name)
+        unit, vise = loaded.unit, loaded.vise
+        pitch, peg = unit.figure(vise.pitch[0]), unit.figure(2 * vise.peg_radius)
+        of = unit.abbreviation
+        assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {vise.columns} |" in page
+    assert page.count("\n| `plate-") + page.count("\n| `table-") + page.count("\n| `gripper-") == len(preset_names())

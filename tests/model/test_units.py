@@ -1,0 +1,38 @@
+"""Units of length: what is written can be read again."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from holdfast.errors import InputError
+from holdfast.model.units import INCH, MILLIMETRE, unit_named
+
+
+@pytest.mark.parametrize("unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name)
+@given(st.floats(-5000, 5000))
+def test_numbers_are_right_to_half_their_last_digit(unit, length):
+    """Every unit shows a length to 5 µm or better, as a fixed number of decimals or without its idle zeros."""
+    for text in (unit.number(length), unit.figure(length)):
+        assert float(text) * unit.millimetres == pytest.approx(length, abs=0.005)
+    assert len(unit.number(length).partition(".")[2]) == unit.decimals
+    assert unit.text(length) == f"{unit.number(length)} {unit.abbreviation}"
+
+
+def test_there_is_no_negative_zero():
+    """A length that rounds to nothing has no sign."""
+    assert INCH.number(-1e-9) == "0.0000"
+    assert MILLIMETRE.figure(-1e-9) == "0"
+
+
+def test_figures_keep_zeros_that_count():
+    """Only zeros behind a point are idle."""
+    assert (MILLIMETRE.figure(100.0), MILLIMETRE.figure(100.0, 0), INCH.figure(254.0)) == ("100", "100", "10")
+
+
+def test_names():
+    """Any capitals, short and long; anything else is refused with what there is."""
+    assert unit_named("Inch") == unit_named(" in ") == INCH
+    with pytest.raises(InputError, match="Unit 'ell' is not known: use mm, cm, m or inch"):
+        unit_named("ell")
