@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from holdfast.cli.explanations import explain_none
 from holdfast.cli.options import (
+    JOIN_TOLERANCE,
+    DrawingUnitOption,
     JoinToleranceOption,
     LayerOption,
     PartArgument,
@@ -19,15 +22,44 @@ from holdfast.cli.options import (
     load_part,
 )
 from holdfast.cli.progress import INTERRUPTED, ask_to_stop, search_progress
-from holdfast.cli.values import choice, counting_number, length, optional_length, pitches, whole_number
+from holdfast.cli.search_options import (
+    RULING_OUT,
+    AngleOption,
+    AvoidOption,
+    KeepOutOption,
+    LoadOption,
+    LoadsOption,
+    RankByOption,
+    RestrictionWords,
+    ToleranceOption,
+    asked_loads,
+    asked_ranking,
+    asked_tolerance,
+)
+from holdfast.cli.values import choice, counting_number, length, length_unit, whole_number
+from holdfast.cli.vise_options import (
+    BlockedOption,
+    BodyRadiusOption,
+    ColumnsOption,
+    MaxOpeningOption,
+    MinGapOption,
+    MinOpeningOption,
+    PegRadiusOption,
+    PitchOption,
+    RowOffsetOption,
+    RowsOption,
+    ViseOption,
+    ViseWords,
+)
 from holdfast.errors import InputError
 
 if TYPE_CHECKING:
     from holdfast.model.result import Result
+    from holdfast.model.units import Unit
 
 __all__ = ["design"]
 
-VISE, SEARCH, OUTPUT = "The vise", "The search", "Results"
+SEARCH, OUTPUT = "The search", "Results"
 STANDARD_OUTPUT = "-"
 
 
@@ -38,42 +70,30 @@ ENGINES = ("curves", "algebra")
 
 def design(
     part: PartArgument,
-    pitch: Annotated[
+    vise: ViseOption = None,
+    pitch: PitchOption = None,
+    columns: ColumnsOption = None,
+    peg_radius: PegRadiusOption = None,
+    body_radius: BodyRadiusOption = None,
+    rows: RowsOption = None,
+    blocked: BlockedOption = None,
+    min_gap: MinGapOption = None,
+    min_opening: MinOpeningOption = None,
+    max_opening: MaxOpeningOption = None,
+    row_offset: RowOffsetOption = None,
+    avoid: AvoidOption = None,
+    keep_out: KeepOutOption = None,
+    angle: AngleOption = None,
+    contact_margin: Annotated[
         str,
         typer.Option(
-            metavar="X[,Y]",
-            help="Distance between neighbouring holes, one for both directions or X,Y.",
-            rich_help_panel=VISE,
+            metavar="LENGTH", help="Smallest distance from a contact to the end of its face.", rich_help_panel=RULING_OUT
         ),
-    ],
-    columns: Annotated[str, typer.Option(metavar="N", help="Columns of holes on each jaw.", rich_help_panel=VISE)],
-    peg_radius: Annotated[str, typer.Option(metavar="MM", help="Radius of the pegs.", rich_help_panel=VISE)],
-    rows: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N", help="Rows of holes on each jaw; as many as needed if not given.", rich_help_panel=VISE
-        ),
-    ] = None,
-    min_gap: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MM",
-            help="Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
-            rich_help_panel=VISE,
-        ),
-    ] = None,
-    max_opening: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MM",
-            help="Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
-            rich_help_panel=VISE,
-        ),
-    ] = None,
-    row_offset: Annotated[
-        str,
-        typer.Option(metavar="MM", help="Height of the right jaw's rows above the left jaw's.", rich_help_panel=VISE),
     ] = "0",
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    rank_by: RankByOption = None,
+    tolerance: ToleranceOption = None,
     type_: Annotated[
         str,
         typer.Option(
@@ -83,15 +103,9 @@ def design(
             rich_help_panel=SEARCH,
         ),
     ] = "both",
-    contact_margin: Annotated[
-        str,
-        typer.Option(
-            metavar="MM", help="Smallest distance from a contact to the end of its face.", rich_help_panel=SEARCH
-        ),
-    ] = "0",
     best: Annotated[
         str | None,
-        typer.Option(metavar="K", help="Keep only the best K, by closure margin.", rich_help_panel=SEARCH),
+        typer.Option(metavar="K", help="Keep only the best K.", rich_help_panel=SEARCH),
     ] = None,
     threads: Annotated[
         str | None,
@@ -124,7 +138,7 @@ def design(
         str | None,
         typer.Option(
             metavar="DIR",
-            help="Draw the best twelve and a sheet of thumbnails into this folder.",
+            help="Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss.",
             rich_help_panel=OUTPUT,
         ),
     ] = None,
@@ -134,37 +148,48 @@ def design(
     unit: UnitOption = None,
     layer: LayerOption = None,
     part_number: PartNumberOption = None,
-    join_tolerance: JoinToleranceOption = "0.001",
+    drawing_unit: DrawingUnitOption = None,
+    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
 ) -> None:
     """Find every way to hold PART in a vise.
 
     Four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type II).
-    All lengths are in millimetres.
+    Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
 
-    Example: holdfast design part.dxf --pitch 10 --columns 2 --peg-radius 3 --out part.json
+    Example: holdfast design part.dxf --vise plate-20mm --out part.json
     """
     # Everything cheap is checked before anything is read, and everything is checked before the search.
-    pitch_x, pitch_y = pitches(pitch)
-    radius = length("--peg-radius", peg_radius)
-    gap, opening = optional_length("--min-gap", min_gap), optional_length("--max-opening", max_opening)
-    offset, margin = length("--row-offset", row_offset), length("--contact-margin", contact_margin)
+    shown = length_unit(unit)
+    vise_words = ViseWords(
+        vise, pitch, columns, peg_radius, body_radius, rows, blocked, min_gap, min_opening, max_opening, row_offset
+    )
+    margin = length("--contact-margin", contact_margin, shown)
     if margin < 0:
-        raise InputError(f"--contact-margin {contact_margin} is negative: give 0 or more, in mm.")
+        raise InputError(f"--contact-margin {contact_margin} is negative: give 0 or more.")
     kept = counting_number("--best", best, "fixtures to keep")
     workers = counting_number("--threads", threads, "threads")
-    find_fixtures = search_of(choice("--engine", engine, ENGINES), workers)
+    engine = choice("--engine", engine, ENGINES)
+    find_fixtures = search_of(engine, workers)
     types = TYPES[choice("--type", type_, tuple(TYPES))]
-    column_count, listed = whole_number("--columns", columns), whole_number("--list", list_)
-    row_count = None if rows is None else whole_number("--rows", rows)
+    listed = whole_number("--list", list_)
     form = output_format(out, format_)
     folder = None if draw is None else Path(draw)
     refuse_outputs(out, folder)
-
+    in_vise, of_vise = vise_words.asked(shown)
+    restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
+    options = {
+        "types": types,
+        "contact_margin": margin,
+        "restrictions": restrictions,
+        "rank_by": asked_ranking(rank_by),
+        "tolerance": asked_tolerance(tolerance, shown, of_vise),
+        "loads": asked_loads(load, loads, shown),
+    }
     from holdfast.kernels.compiling import is_first_run
-    from holdfast.model.vise import Vise
+    from holdfast.listing.ranking import preference_of
 
-    vise = Vise((pitch_x, pitch_y), column_count, radius, row_count, gap, opening, offset)
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance).workpiece
+    preference_of(options["rank_by"], options["tolerance"], options["loads"])
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
     first_run = is_first_run()
     start = perf_counter()
     with ask_to_stop() as cancel, search_progress(first_run) as progress:
@@ -172,20 +197,14 @@ def design(
             from holdfast.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        result = find_fixtures(
-            workpiece,
-            vise,
-            types=types,
-            contact_margin=margin,
-            best=kept,
-            progress=progress,
-            cancel=cancel,
-        )
+        result = find_fixtures(workpiece, in_vise, best=kept, progress=progress, cancel=cancel, **options)
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
-    report(result, spent, out, form, listed)
+    report(result, spent, out, form, listed, shown)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
-    if folder is not None:
+    if not any(result.found.values()) and engine == "curves":
+        explain_none(result, types, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
+    elif folder is not None:
         draw_pictures(result, folder, out)
 
 
@@ -249,7 +268,7 @@ def write_output(result: Result, out: str, form: str) -> None:
         write(result, out)
 
 
-def report(result: Result, spent: str, out: str | None, form: str, listed: int) -> None:
+def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit) -> None:
     """Write the result and tell about it; the words go to stderr where stdout carries the file."""
     from holdfast.cli.tables import counts_sentence, print_tables, proof_sentences, result_table
 
@@ -259,7 +278,7 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int) 
     for note in result.notes:
         typer.echo(f"holdfast: {note}", err=True)
     if len(result) and listed > 0:
-        print_tables(result_table(result, listed), stream=stream)
+        print_tables(result_table(result, listed, unit), stream=stream)
     sentence = counts_sentence(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"

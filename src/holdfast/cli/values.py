@@ -15,6 +15,7 @@ __all__ = [
     "counting_number",
     "length",
     "length_unit",
+    "number",
     "optional_length",
     "picture_ending",
     "pitches",
