@@ -21,7 +21,7 @@ from holdfast.kernels.chord import HEIGHT, POSITION, chord_state
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, HEAD, TAIL
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     CURVE,
     HIGH,
     LOW,
@@ -34,8 +34,8 @@ from holdfast.kernels.pieces import (
     VALUE_MOST,
     X_LEFT,
     X_RIGHT,
-    cell_pieces,
 )
+from holdfast.kernels.pieces import cell_pieces
 from holdfast.kernels.type_one import (
     HAIR,
     ROLE_LENGTH,

@@ -27,7 +27,7 @@ from holdfast.kernels.curve_columns import (
     TANGENT_TO,
     TO,
 )
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
     BEND_HIGH,
@@ -43,8 +43,6 @@ from holdfast.kernels.pieces import (
     PUSH_LEFT_LOW,
     PUSH_RIGHT_HIGH,
     PUSH_RIGHT_LOW,
-    SLOPE_LEAST,
-    SLOPE_MOST,
     STEADY,
     TAIL_X,
     TAIL_Y,
@@ -52,10 +50,9 @@ from holdfast.kernels.pieces import (
     VALUE_MOST,
     X_LEFT,
     X_RIGHT,
-    largest_part,
-    push_range,
-    write_pushes,
 )
+from holdfast.kernels.pieces import SLOPE_LEAST, SLOPE_MOST, largest_part
+from holdfast.kernels.pushes import push_range, write_pushes
 from strategies import seeds
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
