@@ -6,12 +6,11 @@ what that engine spends on resultants and their roots alone: no choice of faces 
 
 from __future__ import annotations
 
-import argparse
 from time import perf_counter
 from typing import Any
 
 from designs import ROWS, loaded, timed
-from report import Column, Section, measured
+from report import Column, Section, measured, run_alone
 
 BUDGET, QUICK_BUDGET = 600.0, 30.0
 
@@ -88,16 +87,5 @@ def run(quick: bool, budget: float | None = None) -> Section:
     return section
 
 
-def main() -> None:
-    """Run as a script."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="rows with one column; the figures are not kept")
-    parser.add_argument("--budget", type=float, metavar="SECONDS", help="give a row up after so many seconds")
-    options = parser.parse_args()
-    section = run(options.quick, options.budget)
-    if not options.quick:
-        section.keep()
-
-
 if __name__ == "__main__":
-    main()
+    run_alone(__doc__, run, budget="give a row up after so many seconds")

@@ -7,7 +7,6 @@ list no more than K fixtures, and be read back.
 
 from __future__ import annotations
 
-import argparse
 import json
 import tempfile
 from math import cos, pi, sin
@@ -16,7 +15,7 @@ from random import Random
 
 from attrs import frozen
 
-from report import Column, Section, measured
+from report import Column, Section, measured, run_alone
 from terminal import HOLDFAST, Watched, watch
 
 SIZE = 200.0
@@ -134,16 +133,5 @@ def run(quick: bool, seconds: float | None = None) -> Section:
     return section
 
 
-def main() -> None:
-    """Run as a script."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a much smaller search; the figures are not kept")
-    parser.add_argument("--seconds", type=float, help="interrupt after so many seconds")
-    options = parser.parse_args()
-    section = run(options.quick, options.seconds)
-    if not options.quick:
-        section.keep()
-
-
 if __name__ == "__main__":
-    main()
+    run_alone(__doc__, run, seconds="interrupt after so many seconds")

@@ -193,13 +193,22 @@ def perform(task: str, arguments: str) -> None:
     say(json.dumps(outcome) + "\n")
 
 
-def run_alone(description: str | None, run: Callable[[bool], Section]) -> None:
-    """Run one benchmark as a script; its figures are kept unless it is a quick trial."""
+def run_alone(description: str | None, run: Callable[..., Section], **numbers: str) -> None:
+    """Run one benchmark as a script; its figures are kept unless it is a quick trial.
+
+    Parameters
+    ----------
+    description : whose first line ``--help`` tells.
+    run : called with ``quick`` and the numbers.
+    numbers : options that take a number, and what ``--help`` tells of them; None where not given.
+    """
     parser = argparse.ArgumentParser(description=(description or "").split("\n")[0])
     parser.add_argument("--quick", action="store_true", help="a small part of it, whose figures are not kept")
-    quick: bool = parser.parse_args().quick
-    section = run(quick)
-    if not quick:
+    for name, words in numbers.items():
+        parser.add_argument(f"--{name}", type=float, help=words)
+    options = parser.parse_args()
+    section = run(**vars(options))
+    if not options.quick:
         section.keep()
 
 

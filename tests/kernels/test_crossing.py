@@ -16,7 +16,7 @@ from holdfast.contact.curves import curve_table
 from holdfast.kernels.chord_discs import value_disc
 from holdfast.kernels.crossing import MULTIPLE, PSI, RADIUS
 from holdfast.kernels.curve_columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
-from holdfast.kernels.pieces import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
+from holdfast.kernels.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
 from holdfast.kernels.through_motion import NONE, coincidence
 from strategies import random_row
 

@@ -13,7 +13,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from chord_examples import KINDS, SPECIAL, arc_row, curve_row, is_rounded_coincidence, line_row, random_ranges, turn_at
-from exact_chords import dot, exact_chord, exact_distance, exactly, minus, within
+from exact_chords import ExactChord, dot, exact_chord, exact_distance, exactly, minus, within
 from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, curve_value
 from holdfast.kernels.chord_discs import chord_tail, tail_disc, tail_radius, value_disc
 from holdfast.kernels.chord_intervals import chord_intervals
@@ -63,6 +63,13 @@ def difference(mode: float, row: np.ndarray, one: float, two: arb) -> arb:
         turns = round(float(off.mid()) / (2 * pi))
         off = off - 2 * turns * arb.pi()
     return off
+
+
+def check_discs(exact: ExactChord, discs: list[tuple[float, float, float]], detail: tuple) -> None:
+    """The tail of an exact chord lies in every disc (x, y, radius)."""
+    for x, y, radius in discs:
+        away = minus(exact.tail, (arb(x), arb(y)))
+        assert dot(away, away) <= arb(radius) * arb(radius), detail
 
 
 @given(seeds, positions, depths, modes)
@@ -147,19 +154,8 @@ def test_tails_are_within_their_radius(seed, position, depth, reach):
                     continue
                 # Of a chord past the end of its feature only the disc is told.
                 inside = a[0] != 0.0 or abs(exact.position()[0]) <= float(a[5])
-                for x, y, radius in discs if inside else discs[::2]:
-                    if isfinite(radius):
-                        away = minus(exact.tail, (arb(x), arb(y)))
-                        assert dot(away, away) <= arb(radius) * arb(radius), (
-                            a.tolist(),
-                            b.tolist(),
-                            d,
-                            psi,
-                            shift,
-                            branch,
-                            reach,
-                            place,
-                        )
+                detail = (a.tolist(), b.tolist(), d, psi, shift, branch, reach, place)
+                check_discs(exact, discs if inside else discs[::2], detail)
 
 
 @given(seeds, positions, depths, st.floats(2.0, 15.0).map(lambda exponent: 10.0**-exponent), modes)
@@ -265,16 +261,5 @@ def test_tails_hold_through_a_coincidence(off):
                 if exact is None:
                     continue
                 checked += 1
-                for x, y, radius in discs:
-                    away = minus(exact.tail, (arb(x), arb(y)))
-                    assert dot(away, away) <= arb(radius) * arb(radius), (
-                        a.tolist(),
-                        b.tolist(),
-                        d,
-                        psi,
-                        shift,
-                        branch,
-                        reach,
-                        gamma,
-                    )
+                check_discs(exact, discs, (a.tolist(), b.tolist(), d, psi, shift, branch, reach, gamma))
     assert checked > 500

@@ -21,7 +21,7 @@ from holdfast.kernels.chord import HEIGHT, POSITION, chord_state
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, HEAD, TAIL
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     CURVE,
     HIGH,
     LOW,
@@ -34,8 +34,8 @@ from holdfast.kernels.pieces import (
     VALUE_MOST,
     X_LEFT,
     X_RIGHT,
-    cell_pieces,
 )
+from holdfast.kernels.pieces import cell_pieces
 from holdfast.kernels.type_one import (
     HAIR,
     ROLE_LENGTH,
@@ -239,28 +239,31 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
     return out[:count]
 
 
-def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, int]:
-    """Try all pairs of pieces of a cell; return how many roots and how many fixtures there were."""
-    pieces = pieces_in(search, low, high, HEIGHT)
-    vise, table = search.vise, search.table
-    limits = search.limits
-    rows = try_pairs(
-        pieces,
+def common(search: ViseSearch) -> tuple:
+    """What the trials take of a search."""
+    table, vise = search.table, search.vise
+    return (
         search.problem.rows,
         search.loose,
         table.integers,
         table.reals,
         vise.pitch[1],
         vise.row_offset,
-        limits,
+        search.limits,
     )
+
+
+def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, int]:
+    """Try all pairs of pieces of a cell; return how many roots and how many fixtures there were."""
+    pieces = pieces_in(search, low, high, HEIGHT)
+    rows = try_pairs(pieces, *common(search))
     # A root known to a wide range only passes for a fixture too easily, where none is in that range.
     rows = rows[rows[:, REACH] < 1e-6]
     contacts, fixtures = rows[rows[:, VERDICT] > 0], rows[rows[:, VERDICT] == 2]
     assert contacts[:, COUNTED].all() and contacts[:, MEETS].all()
     assert fixtures[:, PUSHES].all()
     assert fixtures[:, HEIGHTS].all()
-    assert (fixtures[:, APART] >= limits[MIN_GAP] - GAP_SLACK - HAIR).all()
+    assert (fixtures[:, APART] >= search.limits[MIN_GAP] - GAP_SLACK - HAIR).all()
     assert fixtures[:, STEEP].all()
     exact = contacts[contacts[:, REACH] < 1e-12]
     assert (exact[:, CLAMP] <= exact[:, CLAMP_BOUND] * (1 + 1e-6) + 1e-7).all()
@@ -270,19 +273,7 @@ def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, in
 def check_type_two(search: ViseSearch, low: float, high: float) -> int:
     """Try all pairs of pieces that share a tail, and all right pegs; return the number of fixtures."""
     pieces = pieces_in(search, low, high, POSITION)
-    vise, table = search.vise, search.table
-    rows = try_triples(
-        pieces,
-        low,
-        high,
-        search.problem.rows,
-        search.loose,
-        table.integers,
-        table.reals,
-        vise.pitch[1],
-        vise.row_offset,
-        search.limits,
-    )
+    rows = try_triples(pieces, low, high, *common(search))
     assert rows.all()
     return len(rows)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, isfinite, pi, sin
+from math import cos, hypot, inf, isfinite, pi, sin
 from random import Random
 
 import numpy as np
@@ -14,6 +14,7 @@ from chord_examples import SPECIAL, is_rounded_coincidence
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, special_table, steps_of
 from exact_chords import dot, exact_chord, exact_speed, exactly, plus
 from holdfast.contact.curves import curve_table
+from holdfast.kernels.between_ends import slope_range
 from holdfast.kernels.chord import chord_state
 from holdfast.kernels.curve_columns import (
     BRANCH,
@@ -27,7 +28,7 @@ from holdfast.kernels.curve_columns import (
     TANGENT_TO,
     TO,
 )
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
     BEND_HIGH,
@@ -43,8 +44,10 @@ from holdfast.kernels.pieces import (
     PUSH_LEFT_LOW,
     PUSH_RIGHT_HIGH,
     PUSH_RIGHT_LOW,
-    SLOPE_LEAST,
-    SLOPE_MOST,
+    SLOPE_ERROR_HIGH,
+    SLOPE_ERROR_LOW,
+    SLOPE_HIGH,
+    SLOPE_LOW,
     STEADY,
     TAIL_X,
     TAIL_Y,
@@ -52,10 +55,9 @@ from holdfast.kernels.pieces import (
     VALUE_MOST,
     X_LEFT,
     X_RIGHT,
-    largest_part,
-    push_range,
-    write_pushes,
 )
+from holdfast.kernels.pieces import largest_part
+from holdfast.kernels.pushes import push_range, write_pushes
 from strategies import seeds
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
@@ -85,6 +87,16 @@ def beyond(piece, curve) -> list[float]:
             if error and abs((end - tangency + pi) % (2 * pi) - pi) < 4e-15:
                 out += [float(end + error), float(end + error / 2)]
     return out
+
+
+def slope_bounds(piece) -> tuple[float, float]:
+    """Bounds of the slope over a piece, the errors at its ends included; none beside a tangency."""
+    if piece[STEADY] == 0.0:
+        return -inf, inf
+    ends = (float(piece[k]) for k in (SLOPE_LOW, SLOPE_HIGH, BEND_LOW, BEND_HIGH))
+    least, most = slope_range(*ends, float(piece[HIGH] - piece[LOW]))
+    doubt = max(piece[SLOPE_ERROR_LOW], piece[SLOPE_ERROR_HIGH])
+    return least - doubt, most + doubt
 
 
 def outward(row, point) -> tuple[arb, arb]:
@@ -131,7 +143,7 @@ def check_piece(features, table, piece, mode, random: Random) -> int:
                 bend = -dot(speed, chord.along_a) / scale
             if not circle:
                 assert not exceeds(value, piece[VALUE_LEAST], piece[VALUE_MOST]), ("value", detail)
-            assert not exceeds(slope, piece[SLOPE_LEAST], piece[SLOPE_MOST]), ("slope", detail)
+            assert not exceeds(slope, *slope_bounds(piece)), ("slope", detail)
             if piece[LOW] <= place <= piece[HIGH]:
                 assert not exceeds(bend, piece[BEND_LOW], piece[BEND_HIGH]), ("bend", detail)
             tail = dot(x, chord.tail)

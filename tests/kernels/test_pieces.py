@@ -13,8 +13,9 @@ from chord_examples import arc_row
 from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
 from holdfast.contact.curves import LatticeSteps, curve_table
+from holdfast.kernels.between_ends import slope_range
 from holdfast.kernels.curve_columns import BRANCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TANGENT_FROM, TANGENT_TO, TO
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     BEND_HIGH,
     BEND_LOW,
     CURVE,
@@ -28,7 +29,6 @@ from holdfast.kernels.pieces import (
     VALUE_ERROR_LOW,
     VALUE_HIGH,
     VALUE_LOW,
-    slope_range,
 )
 from holdfast.kernels.through_motion import NONE, coincidence
 

@@ -20,7 +20,6 @@ from holdfast.kernels.stretches import (
     ALONG_LOW,
     HIGH,
     LEAST_CUBE,
-    LOW,
     PART_A,
     PART_B,
     PARTS,
@@ -32,6 +31,7 @@ from holdfast.kernels.stretches import (
     Y_HIGH,
     Y_LOW,
     add_stretches,
+    write_stretch,
 )
 from holdfast.kernels.through_motion import NONE
 from strategies import seeds
@@ -40,10 +40,16 @@ from strategies import seeds
 EXACT_TO = 1e-15
 
 
-def stretches_of(a, b, curve) -> np.ndarray:
-    """The stretches of a curve."""
+def stretches_of(a, b, curve) -> tuple[np.ndarray, np.ndarray]:
+    """Where the stretches of a curve begin, and the stretches: each where the one before it ends, parts likewise."""
     out, count = add_stretches(np.empty((2, STRETCH_LENGTH)), 0, a, b, curve)
-    return out[:count]
+    lows, at, k = np.empty(count), curve[FROM], 0
+    while k < count:
+        after = k + 1 + int(out[k, PARTS])
+        lows[k : k + 2] = at
+        lows[k + 2 : after] = out[k + 1 : after - 1, HIGH]
+        at, k = out[k, HIGH], after
+    return lows, out[:count]
 
 
 def curves_of(a, b, d, ranges) -> list[np.ndarray]:
@@ -63,13 +69,13 @@ def exceeds(value: arb, low: float, high: float) -> bool:
     return bool(value + slack < low) or bool(value - slack > high)
 
 
-def check_stretch(a, b, curve, row, random: Random) -> int:
+def check_stretch(a, b, curve, low, row, random: Random) -> int:
     """Hold everything a stretch tells against exact chords inside it; return how many there were."""
     d, branch = float(curve[LENGTH]), float(curve[BRANCH])
-    detail = (a.tolist(), b.tolist(), d, branch, row.tolist())
+    detail = (a.tolist(), b.tolist(), d, branch, low, row.tolist())
     checked = 0
     with exactly():
-        for alpha in places(random, float(row[LOW]), float(row[HIGH])):
+        for alpha in places(random, float(low), float(row[HIGH])):
             chord, speed = exact_chord(a, b, d, arb(alpha), branch), exact_speed(a, b, d, arb(alpha), branch)
             if chord is None or speed is None or not chord.turn() ** 2 > 0:
                 continue
@@ -105,10 +111,10 @@ def test_what_stretches_tell_holds_at_every_direction(seed):
     random = Random(seed)
     a, b, d, ranges = any_ranges(random)
     for curve in curves_of(a, b, d, ranges):
-        rows = stretches_of(a, b, curve)
+        lows, rows = stretches_of(a, b, curve)
         chosen = set(random.sample(range(len(rows)), min(6, len(rows)))) | {0, len(rows) - 1}
         for k in chosen | set(np.flatnonzero(rows[:, PARTS]).tolist()):
-            check_stretch(a, b, curve, rows[k], random)
+            check_stretch(a, b, curve, lows[k], rows[k], random)
 
 
 @pytest.mark.parametrize("make", SPECIAL)
@@ -121,26 +127,31 @@ def test_what_stretches_tell_holds_in_special_positions(make):
             continue
         for curve in curves_of(a, b, d, chord_intervals(a, b, d)):
             if curve[TO] - curve[FROM] > 1e-9:
-                checked += sum(check_stretch(a, b, curve, row, random) for row in stretches_of(a, b, curve))
+                stretches = zip(*stretches_of(a, b, curve), strict=True)
+                checked += sum(check_stretch(a, b, curve, low, row, random) for low, row in stretches)
 
 
 @given(seeds)
 def test_stretches_follow_each_other_without_a_gap(seed):
     """The stretches of a curve begin at its low end, go on where the one before ends, and end at its high end; so do the
-    parts of a stretch."""
+    parts of a stretch. Each tells just what is written of the range from there."""
     a, b, d, ranges = any_ranges(Random(seed), 1e-12)
     for curve in curves_of(a, b, d, ranges):
-        rows = stretches_of(a, b, curve)
-        at, k = curve[FROM], 0
+        lows, rows = stretches_of(a, b, curve)
+        sign = 1.0 if turn_at(a, b, d, (curve[FROM] + curve[TO]) / 2, curve[BRANCH]) > 0.0 else -1.0
+        told = np.empty(STRETCH_LENGTH)
+        for low, row in zip(lows, rows, strict=True):
+            assert low < row[HIGH]
+            write_stretch(told, a, b, curve, low, row[HIGH], sign)
+            told[PARTS] = row[PARTS]
+            assert np.array_equal(told, row, equal_nan=True)
+        k = 0
         while k < len(rows):
-            assert rows[k, LOW] == at < rows[k, HIGH]
-            number, place = int(rows[k, PARTS]), at
-            for part in rows[k + 1 : k + 1 + number]:
-                assert part[LOW] == place < part[HIGH] and part[PARTS] == 0.0
-                place = part[HIGH]
-            assert number == 0 or place == rows[k, HIGH]
+            parts = rows[k + 1 : k + 1 + int(rows[k, PARTS])]
+            assert not parts[:, PARTS].any()
+            assert len(parts) == 0 or parts[-1, HIGH] == rows[k, HIGH]
             at = rows[k, HIGH]
-            k += number + 1
+            k += len(parts) + 1
         assert at == curve[TO]
 
 
@@ -150,16 +161,16 @@ def test_stretches_tell_something(seed):
     random = Random(seed)
     a, b, d, ranges = random_ranges(random, ("line", "arc"), 1e-2)
     for curve in curves_of(a, b, d, ranges):
-        rows = stretches_of(a, b, curve)
-        rows = rows[(rows[:, LOW] >= curve[FROM] + 1e-2) & (rows[:, HIGH] <= curve[TO] - 1e-2)]
-        for row in rows:
+        lows, rows = stretches_of(a, b, curve)
+        inside = (lows >= curve[FROM] + 1e-2) & (rows[:, HIGH] <= curve[TO] - 1e-2)
+        for low, row in zip(lows[inside], rows[inside], strict=True):
             with exactly():
                 speeds = [
-                    exact_speed(a, b, d, arb(float(row[LOW] + part * (row[HIGH] - row[LOW]))), curve[BRANCH])
+                    exact_speed(a, b, d, arb(float(low + part * (row[HIGH] - low))), curve[BRANCH])
                     for part in (0.0, 0.5, 1.0)
                 ]
                 most = max(float(dot(speed, speed).sqrt()) for speed in speeds if speed is not None)
-            assert row[SPEED] <= 100 * (most + 2 * d / (row[HIGH] - row[LOW]))
+            assert row[SPEED] <= 100 * (most + 2 * d / (row[HIGH] - low))
 
 
 @given(seeds)
@@ -196,6 +207,6 @@ def test_the_speed_between_square_lines_is_known():
     """A ladder of length d on the axes: P = (d cos alpha, -d sin alpha) from the corner, so |P'| = d and X = 1."""
     wall, floor = np.array([0, 0, 0, 0, 1, 50, 0, 1.0]), np.array([0, 0, 0, 1, 0, 50, 0, 1.0])
     curve = curve_row(wall, floor, 10.0, 1.0, 0.0, (0.2, pi / 2 - 0.2))
-    for row in stretches_of(wall, floor, curve):
+    for row in stretches_of(wall, floor, curve)[1]:
         assert 10.0 <= row[SPEED] < 15.0
         assert abs(row[TURN]) == pytest.approx(1.0)

@@ -9,9 +9,10 @@ from random import Random
 import numpy as np
 import pytest
 
+from closing_forces import clamping_force, null_vectors
 from holdfast.kernels.closure import minors
 from holdfast.kernels.vise_checks import LEAST_SPAN
-from holdfast.statics.wrenches import clamping_force, null_vectors, outward_normals
+from holdfast.statics.wrenches import outward_normals
 
 
 def contacts(random: Random) -> tuple[np.ndarray, np.ndarray]:
@@ -62,7 +63,7 @@ def test_the_null_vector_is_null_and_sums_to_one():
 
 
 def test_compiled_and_array_forms_agree():
-    """kernels.closure.minors, scaled, and statics.wrenches.null_vectors are one function."""
+    """kernels.closure.minors and statics.wrenches.wrench_minors, both scaled, are one function."""
     random = Random(2)
     many = [contacts(random) for _ in range(300)]
     points, normals = (np.array(column) for column in zip(*many, strict=True))

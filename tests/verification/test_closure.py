@@ -9,7 +9,7 @@ import numpy as np
 from flint import arb
 from hypothesis import given
 
-from holdfast.statics.wrenches import null_vectors
+from closing_forces import null_vectors
 from holdfast.verification.closure import minors
 from strategies import seeds
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from closing_forces import clamping_force, null_vectors
 from fixture_sets import Judge, listed, near_an_end
 from holdfast import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
 from holdfast.geometry.segment import Line
 from holdfast.model.result import hole_position
-from holdfast.statics.wrenches import clamping_force, null_vectors
 from holdfast.verification import verify_fixture
 
 Array = NDArray[np.float64]

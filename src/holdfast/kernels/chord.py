@@ -33,18 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from holdfast.kernels.compiling import inner
-from holdfast.kernels.curve_columns import (
-    BLUR,
-    BRANCH,
-    COINCIDENCE,
-    COSINE,
-    KAPPA,
-    LENGTH,
-    MIDDLE,
-    SHIFT,
-    SIDE,
-    SINE,
-)
+from holdfast.kernels.curve_columns import BLUR, BRANCH, COINCIDENCE, COSINE, KAPPA, LENGTH, MIDDLE, SHIFT, SIDE, SINE
 from holdfast.kernels.through_motion import (
     ARCS,
     CONCENTRIC,
@@ -172,6 +161,12 @@ def regular_error(curve: Array) -> float:
 
 
 @inner
+def write_shift(row: Array, shift: float) -> None:
+    """Write to a row of the curve table what depends on the lattice step: arg Delta in radians (psi = alpha - shift)."""
+    row[SHIFT], row[COSINE], row[SINE] = shift, cos(shift), sin(shift)
+
+
+@inner
 def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
     """Write to a row of the curve table what does not change along the curve.
 
@@ -180,8 +175,8 @@ def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: 
     d, branch : length in mm and branch of the chord from feature a to feature b.
     shift : arg Delta in radians, so that psi = alpha - shift.
     """
-    row[LENGTH], row[BRANCH], row[SHIFT] = d, branch, shift
-    row[COSINE], row[SINE] = cos(shift), sin(shift)
+    row[LENGTH], row[BRANCH] = d, branch
+    write_shift(row, shift)
     row[BLUR] = blur(a, b, d)
     row[COINCIDENCE], row[MIDDLE], row[SIDE] = coincidence(a, b, d)
     row[KAPPA] = curvature(a) + curvature(b)

@@ -103,9 +103,10 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
     """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to ``reach``."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
     radius = tail_radius(curve, state, reach)
-    if curve[COINCIDENCE] != NONE:
+    coincides = curve[COINCIDENCE] != NONE
+    if coincides:
         radius += regular_error(curve)
-    if not isfinite(radius) or curve[COINCIDENCE] != NONE:
+    if coincides or not isfinite(radius):
         radius = min(radius, disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.
     if a[0] != 0.0:

@@ -35,6 +35,7 @@ WORK_LENGTH = 18
 # Indices into what is common to all records of a search, lengths in mm: the lattice, the smallest gap and the peg radius of
 # the vise, the contact margin, L of the wrenches, and how far the features' rows may be from the drawing.
 PITCH_X, PITCH_Y, ROW_OFFSET, MIN_GAP, PEG_RADIUS, CONTACT_MARGIN, WRENCH_LENGTH, BLUR = range(8)
+SETTING_LENGTH = 8
 
 
 @inner

@@ -17,17 +17,17 @@ from math import ceil, floor, isfinite, isinf
 import numpy as np
 from numpy.typing import NDArray
 
+from holdfast.kernels.between_ends import slope_range, value_bounds
 from holdfast.kernels.chord import curve_value
 from holdfast.kernels.chord_discs import value_disc
 from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import HEAD, TAIL
-from holdfast.kernels.pieces import (
+from holdfast.kernels.piece_columns import (
     BEND_HIGH,
     BEND_LOW,
     CURVE,
     HIGH,
     LOW,
-    SAME,
     SLOPE_ERROR_HIGH,
     SLOPE_ERROR_LOW,
     SLOPE_HIGH,
@@ -36,9 +36,8 @@ from holdfast.kernels.pieces import (
     VALUE_ERROR_LOW,
     VALUE_HIGH,
     VALUE_LOW,
-    slope_range,
-    value_bounds,
 )
+from holdfast.kernels.pieces import SAME
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

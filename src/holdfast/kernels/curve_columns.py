@@ -1,4 +1,4 @@
-"""Columns of the tables that kernels hand each other: curves, their stretches, and pieces.
+"""Columns of the table of chord curves, which kernels hand each other.
 
 Curve table, whole numbers (C, 7): TAIL and HEAD (features), COLUMN_STEP and ROW_STEP (of the head from the tail), CENTER
 (number of the common centre of concentric arcs, -1 for others), FIRST_STRETCH and END_STRETCH (the curve's stretches).

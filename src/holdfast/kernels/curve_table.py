@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import write_curve
+from holdfast.kernels.chord import write_curve, write_shift
 from holdfast.kernels.chord_intervals import chord_intervals
 from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.curve_columns import (
-    COSINE,
+    CENTER,
+    COLUMN_STEP,
     CURVE_INTEGERS,
     CURVE_REALS,
     END_STRETCH,
     FIRST_STRETCH,
     FROM,
-    SHIFT,
-    SINE,
+    HEAD,
+    ROW_STEP,
+    TAIL,
     TANGENT_FROM,
     TANGENT_TO,
     TO,
 )
 from holdfast.kernels.growing import grown, grown_whole
 from holdfast.kernels.stretches import STRETCH_LENGTH, add_stretches
-from holdfast.kernels.uprights import UPRIGHT_REALS, uprights_between
+from holdfast.kernels.uprights import DIRECTION, ORIENTATION, STEP_LENGTH, UPRIGHT_REALS, uprights_between
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -94,8 +96,7 @@ def tail_curves(
                     integers[count, FIRST_STRETCH], integers[count, END_STRETCH] = first, stretch_count
                     for k_of in range(CURVE_REALS):
                         reals[count, k_of] = curve[k_of]
-                    reals[count, SHIFT], reals[count, COSINE] = angles[step], cos(angles[step])
-                    reals[count, SINE] = sin(angles[step])
+                    write_shift(reals[count], angles[step])
                     count += 1
             for step in range(starts[length], starts[length + 1]):
                 column, row = steps[step, 0], steps[step, 1]
@@ -107,7 +108,8 @@ def tail_curves(
                     write_step(whole[upright_count], tail, head, column, row, center)
                     for column_of in range(3):
                         uprights[upright_count, column_of] = standing[k, column_of]
-                    uprights[upright_count, 3], uprights[upright_count, 4] = d, standing[k, 2] - angles[step]
+                    uprights[upright_count, STEP_LENGTH] = d
+                    uprights[upright_count, ORIENTATION] = standing[k, DIRECTION] - angles[step]
                     upright_count += 1
     return integers[:count], reals[:count], whole[:upright_count], uprights[:upright_count], stretches[:stretch_count]
 
@@ -115,4 +117,4 @@ def tail_curves(
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
     """Write the whole numbers of a curve or upright."""
-    row[0], row[1], row[2], row[3], row[4] = tail, head, column_step, row_step, center
+    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = tail, head, column_step, row_step, center

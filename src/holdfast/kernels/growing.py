@@ -22,6 +22,12 @@ def grown(array: Array) -> Array:
 
 
 @inner
+def with_room(array: Array, count: int) -> Array:
+    """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is full."""
+    return grown(array) if count == array.shape[0] else array
+
+
+@inner
 def grown_whole(array: IntArray) -> IntArray:
     """A copy of a (N, M) array of whole numbers with room for twice as many rows."""
     out = np.empty((2 * array.shape[0], array.shape[1]), np.int64)

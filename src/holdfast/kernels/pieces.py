@@ -4,8 +4,8 @@ Glossary
 --------
 cell : a closed range of orientations psi; the work is shared out by cells.
 piece : a chord curve over a range inside one cell and inside one stretch, with value and derivative at both ends, an
-    enclosure of its second derivative ("bend") and, made of these, enclosures of its slope, its value, of the place of its
-    pegs along x, and of the directions in which its pegs can push together.
+    enclosure of its second derivative ("bend") and, made of these, enclosures of its value, of the place of its pegs along
+    x, and of the directions in which its pegs can push together.
 
 Bends: with P the instant centre and K >= |P'| (see ``stretches``)
 
@@ -15,16 +15,7 @@ the place along x, x . u, has the slope y . P and so the bend |x . P - y . P'| <
 the rate p / R, which changes by at most K / R. A function of such a bend B is within B w^2 / 8 of its linear interpolation
 over a range w. Beside a tangency the bend is bounded on one side only, by X^3 P'.
 
-Directions: two pegs push together with a force F between the two directions in which each pushes. For the clamping force
-to be positive F must point along +x on the left jaw, and the right jaw's pegs push with -F. Directions with positive x are
-told as y / (x + |y|), which grows from -1 to 1 with the angle at a rate of at most 1.
-
-Columns of a piece: LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, BEND_LOW, BEND_HIGH, CURVE (index), the
-bounds VALUE_ERROR and SLOPE_ERROR of the errors at both ends, SLOPE_LEAST and SLOPE_MOST, VALUE_LEAST and VALUE_MOST over
-the piece (errors included), X_LEFT (the rightmost peg is no farther left than this), X_RIGHT (the leftmost peg is no
-farther right), PUSH_LEFT_LOW to PUSH_LEFT_HIGH and PUSH_RIGHT_LOW to PUSH_RIGHT_HIGH (directions F as a chord of the left
-jaw and of the right one; none when low > high), ACROSS_LEAST and ACROSS_MOST (of y . P), STEADY (1 where all this is
-finite, 0 beside a tangency).
+Directions of pushes are told in ``pushes``, and columns in ``piece_columns``.
 """
 
 from __future__ import annotations
@@ -34,7 +25,7 @@ from math import cos, floor, hypot, inf, isfinite, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, valued
+from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, curve_value, valued
 from holdfast.kernels.chord_discs import tail_disc, value_disc
 from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import (
@@ -51,7 +42,46 @@ from holdfast.kernels.curve_columns import (
     TANGENT_TO,
     TO,
 )
-from holdfast.kernels.growing import grown
+from holdfast.kernels.growing import with_room
+from holdfast.kernels.piece_columns import (
+    ACROSS_LEAST,
+    ACROSS_MOST,
+    BEND_HIGH,
+    BEND_LOW,
+    CURVE,
+    EDGE_ACROSS,
+    EDGE_ARM,
+    EDGE_CENTER,
+    EDGE_CENTER_ERROR,
+    EDGE_ERROR,
+    EDGE_LENGTH,
+    EDGE_SLOPE,
+    EDGE_SLOPE_ERROR,
+    EDGE_VALUE,
+    EDGE_VALUE_ERROR,
+    EDGE_X,
+    HEAD_X,
+    HEAD_Y,
+    HIGH,
+    LOW,
+    PIECE_LENGTH,
+    SLOPE_ERROR_HIGH,
+    SLOPE_ERROR_LOW,
+    SLOPE_HIGH,
+    SLOPE_LOW,
+    STEADY,
+    TAIL_X,
+    TAIL_Y,
+    VALUE_ERROR_HIGH,
+    VALUE_ERROR_LOW,
+    VALUE_HIGH,
+    VALUE_LEAST,
+    VALUE_LOW,
+    VALUE_MOST,
+    X_LEFT,
+    X_RIGHT,
+)
+from holdfast.kernels.pushes import HAIR, write_all_pushes, write_pushes
 from holdfast.kernels.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
@@ -71,27 +101,11 @@ from holdfast.kernels.stretches import HIGH as STRETCH_HIGH
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-LOW, HIGH, VALUE_LOW, SLOPE_LOW, VALUE_HIGH, SLOPE_HIGH, BEND_LOW, BEND_HIGH, CURVE = range(9)
-VALUE_ERROR_LOW, SLOPE_ERROR_LOW, VALUE_ERROR_HIGH, SLOPE_ERROR_HIGH = range(9, 13)
-SLOPE_LEAST, SLOPE_MOST, VALUE_LEAST, VALUE_MOST, X_LEFT, X_RIGHT = range(13, 19)
-PUSH_LEFT_LOW, PUSH_LEFT_HIGH, PUSH_RIGHT_LOW, PUSH_RIGHT_HIGH, ACROSS_LEAST, ACROSS_MOST, STEADY = range(19, 26)
-PIECE_LENGTH = 26
-
 FULL_TURN = 2.0 * pi
 # Rounding of an orientation in radians.
 SAME = 2e-15
-# Rounding of directions, places in mm and slopes, generously counted.
-HAIR = 1e-9
-
-# Entries of an edge: value, slope, their errors, place of the tail along x, |P|, bound of how far P is from tail and head,
-# bound of the tail's error, the outward normals of tail and head in the vise's frame, y . P, and bound of the error of P.
-EDGE_VALUE, EDGE_SLOPE, EDGE_VALUE_ERROR, EDGE_SLOPE_ERROR, EDGE_X, EDGE_CENTER, EDGE_ARM, EDGE_ERROR = range(8)
-TAIL_X, TAIL_Y, HEAD_X, HEAD_Y, EDGE_ACROSS, EDGE_CENTER_ERROR = range(8, 14)
-EDGE_LENGTH = 14
 # The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
-# The same for directions of sums of two normals.
-LITTLE_TURN = 0.3
 
 
 @inner
@@ -124,49 +138,6 @@ def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: 
 
 
 @inner
-def slope_range(
-    slope_low: float, slope_high: float, bend_low: float, bend_high: float, width: float
-) -> tuple[float, float]:
-    """Enclosure of a slope over a range from its values at both ends and the bend between them."""
-    if bend_low >= 0.0:
-        return (slope_low, slope_high)
-    if bend_high <= 0.0:
-        return (slope_high, slope_low)
-    if not (isfinite(bend_low) and isfinite(bend_high)):
-        return (-inf, inf)
-    # Lowest point of the larger of two falling lines from the ends, and the mirror image.
-    spread = bend_high - bend_low
-    at = (slope_low - slope_high + bend_high * width) / spread
-    lowest = slope_low + bend_low * min(max(at, 0.0), width)
-    at = (slope_high - slope_low - bend_low * width) / spread
-    highest = slope_low + bend_high * min(max(at, 0.0), width)
-    return (min(lowest, slope_low, slope_high), max(highest, slope_low, slope_high))
-
-
-@inner
-def value_bounds(
-    value_low: float, value_high: float, lowest: float, highest: float, width: float
-) -> tuple[float, float]:
-    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or not."""
-    low, high = min(value_low, value_high), max(value_low, value_high)
-    if lowest >= 0.0 or highest <= 0.0:
-        return (low, high)
-    if isfinite(lowest) and isfinite(highest):
-        # The function lies above the falling line from the low end and the rising line into the high end.
-        spread = highest - lowest
-        at = (value_low - value_high + highest * width) / spread
-        bottom = value_low + lowest * min(max(at, 0.0), width)
-        at = (value_high - value_low - lowest * width) / spread
-        top = value_low + highest * min(max(at, 0.0), width)
-        return (min(bottom, low), max(top, high))
-    if isfinite(lowest):
-        return (value_low + lowest * width, value_high - lowest * width)
-    if isfinite(highest):
-        return (value_high - highest * width, value_low + highest * width)
-    return (-inf, inf)
-
-
-@inner
 def bend_beside(
     stretch: Array, a: Array, d: float, reach: float, low: float, high: float, mode: float
 ) -> tuple[float, float]:
@@ -195,100 +166,6 @@ def bend_beside(
     if swing_high < 0.0 and cube > 0.0:
         return (-inf, swing_high / cube * (1.0 - HAIR) + fixed)
     return (-inf, inf)
-
-
-@inner
-def front(x: float, y: float) -> float:
-    """A direction with positive x as y / (x + abs(y))."""
-    return y / (x + abs(y))
-
-
-@inner
-def push_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
-    """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there are none.
-
-    Where it is in doubt which way round "between" is, all directions are told.
-    """
-    turn = ax * by - ay * bx
-    if ax * bx + ay * by < 0.0 and abs(turn) <= doubt + HAIR:
-        return (-1.0, 1.0)
-    ax, bx = ax + doubt, bx + doubt
-    if ax <= 0.0 and bx <= 0.0:
-        return (1.0, -1.0)
-    if ax > 0.0 and bx > 0.0:
-        one, two = front(ax, ay), front(bx, by)
-        return (min(one, two), max(one, two))
-    if ax > 0.0:
-        return (front(ax, ay), 1.0) if turn > 0.0 else (-1.0, front(ax, ay))
-    return (-1.0, front(bx, by)) if turn > 0.0 else (front(bx, by), 1.0)
-
-
-@inner
-def shared_push(ax: float, ay: float, bx: float, by: float, share: float, doubt: float) -> tuple[float, float]:
-    """``push_range`` of two unit vectors when neither force is less than ``share`` of the other."""
-    if share <= 0.0:
-        return push_range(ax, ay, bx, by, doubt)
-    px, py, qx, qy = ax + share * bx, ay + share * by, bx + share * ax, by + share * ay
-    one, two = sqrt(px * px + py * py), sqrt(qx * qx + qy * qy)
-    return push_range(px / one, py / one, qx / two, qy / two, doubt)
-
-
-@inner
-def sum_is_long(edge: Array, share: float) -> bool:
-    """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a normal."""
-    cosine = edge[TAIL_X] * edge[HEAD_X] + edge[TAIL_Y] * edge[HEAD_Y]
-    return 1.0 + 2.0 * share * cosine + share * share >= 0.25
-
-
-@inner
-def largest_turn(low: Array, high: Array) -> float:
-    """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than 1."""
-    tail_x, tail_y = high[TAIL_X] - low[TAIL_X], high[TAIL_Y] - low[TAIL_Y]
-    head_x, head_y = high[HEAD_X] - low[HEAD_X], high[HEAD_Y] - low[HEAD_Y]
-    # A chord of up to 1 radian is no shorter than 0.95 times its arc.
-    return 1.06 * sqrt(max(tail_x * tail_x + tail_y * tail_y, head_x * head_x + head_y * head_y))
-
-
-@inner
-def write_pushes(row: Array, low: Array, high: Array, share: float, turned: float) -> None:
-    """Write the directions of the forces of a piece's pegs, from the normals at its ends.
-
-    Inside a curve X keeps its sign, so the normals do not pass through opposite directions: the lowest and the highest
-    direction between the pushes are where one of them is at an end of the piece, or square to x. So the hull of both ends
-    is told, widened by as much as directions may sag between them. A normal sags by no more than ``turned``. With a
-    ``share`` (see ``shared_push``) sums p of two normals are meant: normals turn at a rate that changes by at most
-    8 turned / w^2, so w times the rate is at most the turn from end to end and 4 turned; abs(p'') w^2 / 8 is at most the
-    square of that over 4 and 2 turned, and p, nowhere shorter than 0.4, may be seen under twice that over 0.4.
-    """
-    write_hull(row, low, high, 0.0, turned)
-    turn = largest_turn(low, high) + 4.0 * turned
-    if share <= 0.0 or turn > LITTLE_TURN or not (sum_is_long(low, share) and sum_is_long(high, share)):
-        return
-    wide = row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH]
-    write_hull(row, low, high, share, 5.0 * (2.0 * turned + turn * turn / 4.0))
-    # Both are bounds.
-    row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH] = max(row[PUSH_LEFT_LOW], wide[0]), min(row[PUSH_LEFT_HIGH], wide[1])
-    row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = max(row[PUSH_RIGHT_LOW], wide[2]), min(row[PUSH_RIGHT_HIGH], wide[3])
-
-
-@inner
-def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
-    """Write the hull of the pushes (see ``shared_push``) at both ends of a piece, widened for a ``doubt`` of directions."""
-    for k in range(2):
-        # Pegs push against the outward normals; the right jaw's pegs push with -F.
-        sign = -1.0 if k == 0 else 1.0
-        bottom, top = shared_push(
-            sign * low[TAIL_X], sign * low[TAIL_Y], sign * low[HEAD_X], sign * low[HEAD_Y], share, 2.0 * doubt
-        )
-        first, last = shared_push(
-            sign * high[TAIL_X], sign * high[TAIL_Y], sign * high[HEAD_X], sign * high[HEAD_Y], share, 2.0 * doubt
-        )
-        row[PUSH_LEFT_LOW + 2 * k] = min(bottom, first) - 4.0 * doubt - HAIR
-        row[PUSH_LEFT_HIGH + 2 * k] = max(top, last) + 4.0 * doubt + HAIR
-        if bottom > top and first > last:
-            row[PUSH_LEFT_LOW + 2 * k], row[PUSH_LEFT_HIGH + 2 * k] = 2.0, -2.0
-        elif bottom > top or first > last:
-            row[PUSH_LEFT_LOW + 2 * k], row[PUSH_LEFT_HIGH + 2 * k] = -1.0, 1.0
 
 
 @inner
@@ -330,9 +207,6 @@ def write_steady(
     else:
         bend = (speed if a[0] == 0.0 else speed / a[6]) * (1.0 + HAIR)
     row[BEND_LOW], row[BEND_HIGH] = -bend, bend
-    doubt = max(low[EDGE_SLOPE_ERROR], high[EDGE_SLOPE_ERROR])
-    least, most = slope_range(row[SLOPE_LOW], row[SLOPE_HIGH], -bend, bend, width)
-    row[SLOPE_LEAST], row[SLOPE_MOST] = least - doubt, most + doubt
     doubt = bend * sag + max(row[VALUE_ERROR_LOW], row[VALUE_ERROR_HIGH])
     row[VALUE_LEAST] = min(row[VALUE_LOW], row[VALUE_HIGH]) - doubt
     row[VALUE_MOST] = max(row[VALUE_LOW], row[VALUE_HIGH]) + doubt
@@ -343,7 +217,7 @@ def write_steady(
         if turns_little:
             write_pushes(row, low, high, share, turned)
         else:
-            row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
+            write_all_pushes(row)
     # The slope of y . P is bounded by |P| + K.
     doubt = 0.5 * (center + speed) * width + blurred + HAIR
     row[ACROSS_LEAST] = min(low[EDGE_ACROSS], high[EDGE_ACROSS]) - doubt
@@ -372,12 +246,11 @@ def write_beside(
         row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low + SAME, mode)
     if tangent_high > 0.0 or not isfinite(row[VALUE_ERROR_HIGH]):
         row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high + SAME, mode)
-    row[SLOPE_LEAST], row[SLOPE_MOST] = -inf, inf
     value, doubt = value_disc(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
     place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + HAIR
     row[X_LEFT], row[X_RIGHT] = place - doubt, place + doubt
-    row[PUSH_LEFT_LOW], row[PUSH_LEFT_HIGH], row[PUSH_RIGHT_LOW], row[PUSH_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
+    write_all_pushes(row)
     row[ACROSS_LEAST], row[ACROSS_MOST] = -inf, inf
     row[STEADY] = 0.0
 
@@ -444,8 +317,7 @@ def add_pieces(
         if not known:
             write_edge(at_low, a, b, curve, left, mode)
         write_edge(at_high, a, b, curve, right, mode)
-        if count == out.shape[0]:
-            out = grown(out)
+        out = with_room(out, count)
         row = out[count]
         count += 1
         row[LOW], row[HIGH], row[CURVE] = left, right, index
@@ -481,8 +353,7 @@ def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
     width = row[HIGH] - row[LOW]
     for k in range(2):
         psi = row[LOW] + width / 64.0 if k == 0 else row[HIGH] - width / 64.0
-        cosine, sine = cos(psi), sin(psi)
-        middle = valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, POSITION)[0]
+        middle = curve_value(a, b, curve, psi, POSITION)[0]
         column = VALUE_LOW if k == 0 else VALUE_HIGH
         row[column] = unwrapped(row[column], middle)
 
@@ -507,7 +378,7 @@ def cell_pieces(
     cell_low, cell_high : psi in radians, less than a turn apart.
     members : (M,) indices of the curves to consider, ascending.
     features : (F, 8) rows.
-    integers, reals, stretches : (C, 7), (C, 14) and (S, 14) curve table.
+    integers, reals, stretches : (C, 7), (C, 14) and (S, 13) curve table.
     pitch_x : column pitch in mm.
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
         m / (1 - 3 m) of any other.
@@ -515,7 +386,7 @@ def cell_pieces(
 
     Returns
     -------
-    (N, 26) array, in the order of the curves
+    (N, 24) array, in the order of the curves
     """
     share = least_margin / (1.0 - 3.0 * least_margin)
     out = np.empty((64, PIECE_LENGTH))

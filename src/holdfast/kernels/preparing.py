@@ -13,6 +13,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from holdfast.kernels.certifying import certified
+from holdfast.kernels.contacts import SETTING_LENGTH
 from holdfast.kernels.curve_columns import CURVE_INTEGERS, CURVE_REALS
 from holdfast.kernels.curve_table import tail_curves
 from holdfast.kernels.standing import contacts_of, stand
@@ -25,7 +26,6 @@ from holdfast.kernels.vise_checks import LIMITS, RECORD_LENGTH
 __all__ = ["prepare_crossings", "prepare_table_and_listing"]
 
 FEATURE_LENGTH, CHECKED_LENGTH = 8, 10
-SETTING_LENGTH = 8
 
 
 @contextmanager

@@ -4,11 +4,11 @@ All lattice steps of one length share the stretches of their curves: P, seen fro
 alpha only. Beside a tangency, where P runs off to infinity, a short stretch tells of X^3 P' and X^3 instead (see
 ``chord_bounds``), from which the signs of second derivatives follow.
 
-Columns of a stretch: LOW and HIGH (alpha in radians), SPEED (bound of |P'| in mm per radian, infinite beside a tangency),
-X_LOW, X_HIGH, Y_LOW, Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), TURN
-(largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3), PART_A, PART_B
-(largest sizes of the parts of X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this stretch
-once more, for lattice steps whose curves it tells too little of).
+Columns of a stretch: HIGH (where it ends, alpha in radians; it begins where the one before it ends, the first part of a
+stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a tangency), X_LOW, X_HIGH, Y_LOW, Y_HIGH
+(of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), TURN (largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3),
+PART_A, PART_B (largest sizes of the parts of X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this
+stretch once more, for lattice steps whose curves it tells too little of).
 """
 
 from __future__ import annotations
@@ -22,14 +22,12 @@ from holdfast.kernels.chord import chord
 from holdfast.kernels.chord_bounds import center_motion
 from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import BRANCH, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
-from holdfast.kernels.growing import grown
+from holdfast.kernels.growing import with_room
 
 Array = NDArray[np.float64]
 
-LOW, HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH, TURN, LEAST_CUBE, PART_A, PART_B, PARTS = range(
-    14
-)
-STRETCH_LENGTH = 14
+HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH, TURN, LEAST_CUBE, PART_A, PART_B, PARTS = range(13)
+STRETCH_LENGTH = 13
 
 # Widest and narrowest stretches in radians, and the length to which those beside a tangency are cut.
 WIDEST = 0.25
@@ -49,13 +47,13 @@ MOST_MOTION = 1.0
 
 @inner
 def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high: float, sign: float) -> bool:
-    """Write the stretch over [low, high] to a (14,) row; whether it is good enough, and not to be cut further.
+    """Write the stretch over [low, high] to a (13,) row; whether it is good enough, and not to be cut further.
 
     The speed is good enough when it is of the order of that in the middle, so that a shorter stretch would tell no more, or
     when P moves no farther than some part of the chord's length.
     """
     turn, x, y, along, part_a, part_b = center_motion(a, b, curve, low, high, sign)
-    row[LOW], row[HIGH], row[PARTS] = low, high, 0.0
+    row[HIGH], row[PARTS] = high, 0.0
     row[X_LOW], row[X_HIGH], row[Y_LOW], row[Y_HIGH] = x[0], x[1], y[0], y[1]
     row[ALONG_LOW], row[ALONG_HIGH] = along
     row[PART_A], row[PART_B] = max(-part_a[0], part_a[1]), max(-part_b[0], part_b[1])
@@ -92,8 +90,7 @@ def add_parts(
     out[count - 1, PARTS] = number
     low = left
     for k in range(number):
-        if count == out.shape[0]:
-            out = grown(out)
+        out = with_room(out, count)
         # The parts grow away from the tangency.
         high = (
             left + (right - left) * SHORTER ** -(number - 1.0 - k)
@@ -118,8 +115,7 @@ def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> t
     depth = 0
     left, right = low, high
     while True:
-        if count == out.shape[0]:
-            out = grown(out)
+        out = with_room(out, count)
         width = right - left
         good = write_stretch(out[count], a, b, curve, left, right, sign)
         at_low = left == low and curve[TANGENT_FROM] > 0.0

@@ -20,8 +20,8 @@ from holdfast.kernels.chord_discs import chord_tail
 from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.crossing import MOST_ROOTS, MULTIPLE, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
-from holdfast.kernels.growing import grown
-from holdfast.kernels.pieces import (
+from holdfast.kernels.growing import with_room
+from holdfast.kernels.piece_columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
     CURVE,
@@ -32,8 +32,8 @@ from holdfast.kernels.pieces import (
     VALUE_LEAST,
     VALUE_MOST,
     X_LEFT,
-    cell_pieces,
 )
+from holdfast.kernels.pieces import cell_pieces
 from holdfast.kernels.vise_checks import (
     GAP_SLACK,
     LEAST_CLAMPING,
@@ -51,9 +51,9 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought, four contacts
-# examined, those that may be inside their features, and those kept as possible fixtures.
-PAIRS, CROSSED, CANDIDATES, CONTACTS, FOUND = range(5)
-STATISTICS = 5
+# examined, and those that may be inside their features.
+PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
+STATISTICS = 4
 # Rounding of places along x in mm, generously counted.
 HAIR = 1e-6
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that jaw.
@@ -162,7 +162,7 @@ def type_one_cells(
     loose, features : (F, 8) rows of the features, with ends moved out by a hair (to search) and as they are (to check).
     integers, reals, stretches : the curve table.
     counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only.
-    stats : (5,) counts to add to.
+    stats : (4,) counts to add to.
 
     Returns
     -------
@@ -225,8 +225,7 @@ def type_one_cells(
                     first, second, loose, integers, reals, HEIGHT, row_offset, pitch_y, flat, stack, roots
                 )
                 if number < 0:
-                    if count == out.shape[0]:
-                        out = grown(out)
+                    out = with_room(out, count)
                     write_given_up(out[count], 1.0, first, second, integers)
                     count += 1
                 for root in range(number):
@@ -239,9 +238,7 @@ def type_one_cells(
                     if verdict > 0:
                         stats[CONTACTS] += 1
                     if verdict == 2 and not counting:
-                        if count == out.shape[0]:
-                            out = grown(out)
+                        out = with_room(out, count)
                         write_record(out[count], 1.0, pegs, psi, apart, reach)
                         count += 1
-                        stats[FOUND] += 1
     return out[:count]

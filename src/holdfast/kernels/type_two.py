@@ -17,9 +17,10 @@ from holdfast.kernels.closure import outward_normal
 from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from holdfast.kernels.curve_columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL
-from holdfast.kernels.growing import grown
-from holdfast.kernels.pieces import CURVE, HIGH, LOW, STEADY, VALUE_LEAST, VALUE_MOST, X_LEFT, cell_pieces
-from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, FOUND, HAIR, PAIRS, place_chord
+from holdfast.kernels.growing import with_room
+from holdfast.kernels.piece_columns import CURVE, HIGH, LOW, STEADY, VALUE_LEAST, VALUE_MOST, X_LEFT
+from holdfast.kernels.pieces import cell_pieces
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, HAIR, PAIRS, place_chord
 from holdfast.kernels.vise_checks import (
     GAP_SLACK,
     LEAST_CLAMPING,
@@ -218,11 +219,9 @@ def add_right_pegs(
                 if verdict > 0:
                     stats[CONTACTS] += 1
                 if verdict == 2 and not counting:
-                    if count == out.shape[0]:
-                        out = grown(out)
+                    out = with_room(out, count)
                     write_record(out[count], 2.0, pegs, psi, apart, reach)
                     count += 1
-                    stats[FOUND] += 1
     return out, count
 
 
@@ -318,8 +317,7 @@ def type_two_cells(
                 stats[CROSSED] += 1
                 number = crossings(first, second, loose, integers, reals, POSITION, 0.0, period, 0.0, stack, roots)
                 if number < 0:
-                    if count == out.shape[0]:
-                        out = grown(out)
+                    out = with_room(out, count)
                     write_given_up(out[count], 2.0, first, second, integers)
                     count += 1
                 for root in range(number):

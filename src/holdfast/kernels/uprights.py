@@ -24,9 +24,9 @@ from holdfast.kernels.compiling import compiled, inner
 from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL
 from holdfast.kernels.curve_columns import FROM as CURVE_FROM
 from holdfast.kernels.curve_columns import TO as CURVE_TO
-from holdfast.kernels.growing import grown
+from holdfast.kernels.growing import with_room
 from holdfast.kernels.through_motion import are_one_chord_apart, shares_a_line
-from holdfast.kernels.type_one import CANDIDATES, CONTACTS, FOUND, place_chord
+from holdfast.kernels.type_one import CANDIDATES, CONTACTS, place_chord
 from holdfast.kernels.type_two import add_right_pegs, height_range, place_triple, row_meets
 from holdfast.kernels.vise_checks import (
     PEG_LENGTH,
@@ -230,11 +230,9 @@ def upright_type_one(
                         if verdict > 0 and order == 0:
                             stats[CONTACTS] += 1
                         if verdict == 2 and not counting:
-                            if count == out.shape[0]:
-                                out = grown(out)
+                            out = with_room(out, count)
                             write_record(out[count], 1.0, pegs, psi, apart, reach)
                             count += 1
-                            stats[FOUND] += 1
     return out[:count]
 
 

@@ -26,7 +26,7 @@ from holdfast.kernels.chord import parameter_on
 from holdfast.kernels.closure import minors, outward_normal
 from holdfast.kernels.compiling import inner
 from holdfast.kernels.curve_columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL
-from holdfast.kernels.pieces import CURVE, HIGH, LOW
+from holdfast.kernels.piece_columns import CURVE, HIGH, LOW
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

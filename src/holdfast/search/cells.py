@@ -13,6 +13,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from holdfast.contact.curves import CurveTable
+from holdfast.kernels.curve_columns import FROM, SHIFT, TO
 from holdfast.listing.problem import Progress
 
 __all__ = ["Block", "cell_edges", "members_of_cell", "run_blocks", "thread_count"]
@@ -47,8 +48,8 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
     slack = 1e-9
-    base = table.reals[:, 0] - table.reals[:, 6]
-    span = table.reals[:, 1] - table.reals[:, 0]
+    base = table.reals[:, FROM] - table.reals[:, SHIFT]
+    span = table.reals[:, TO] - table.reals[:, FROM]
     behind = (low - slack - base) % tau
     return np.flatnonzero((behind <= span) | (behind + (high - low) + 2 * slack >= tau))
 

@@ -19,7 +19,7 @@ from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table, loose
 from holdfast.kernels.curve_columns import FROM, TO
 from holdfast.kernels.type_one import STATISTICS, type_one_cells
 from holdfast.kernels.type_two import type_two_cells
-from holdfast.kernels.uprights import upright_type_one, upright_type_two
+from holdfast.kernels.uprights import ORIENTATION, upright_type_one, upright_type_two
 from holdfast.kernels.vise_checks import GAP_SLACK, LEAST_MARGIN
 from holdfast.listing.problem import Problem
 from holdfast.model.vise import Vise
@@ -128,7 +128,7 @@ class ViseSearch:
     table : chord curves and uprights between the loose features.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     limits : what bounds a fixture, see ``kernels.vise_checks``.
-    stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
+    stats : (blocks, 4) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
     problem: Problem
@@ -192,9 +192,9 @@ class ViseSearch:
 
     def upright_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
         """Uprights by the cell their orientation falls into."""
-        psi = self.table.upright_reals[:, 4]
+        psi = self.table.upright_reals[:, ORIENTATION]
         psi = FIRST_ORIENTATION + (psi - FIRST_ORIENTATION) % tau
-        self.table.upright_reals[:, 4] = psi
+        self.table.upright_reals[:, ORIENTATION] = psi
         cells = np.searchsorted(edges, psi, side="right") - 1
         cells[psi >= FIRST_ORIENTATION + half_turns * pi] = -1
         return [np.flatnonzero(cells == cell) for cell in range(len(edges) - 1)]
