@@ -87,7 +87,9 @@ def design(
     contact_margin: Annotated[
         str,
         typer.Option(
-            metavar="LENGTH", help="Smallest distance from a contact to the end of its face.", rich_help_panel=RULING_OUT
+            metavar="LENGTH",
+            help="Smallest distance from a contact to the end of its face.",
+            rich_help_panel=RULING_OUT,
         ),
     ] = "0",
     load: LoadOption = None,

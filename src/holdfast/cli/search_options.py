@@ -121,7 +121,9 @@ def zone(text: str, unit: Unit) -> Zone:
     from holdfast.model.restrictions import circle_zone, polygon_zone
 
     kind, _, rest = text.partition("=")
-    points = [[length("--keep-out", word, unit) for word in words.split(",")] for words in rest.split(";") if words.strip()]
+    points = [
+        [length("--keep-out", word, unit) for word in words.split(",")] for words in rest.split(";") if words.strip()
+    ]
     kind = kind.strip().lower()
     if kind == "circle" and len(points) == 1 and len(points[0]) == 3:
         return circle_zone(*points[0])

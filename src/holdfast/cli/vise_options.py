@@ -148,7 +148,11 @@ class ViseWords:
 
             loaded = load_vise(self.vise)
             fields, tolerance = loaded.fields | fields, loaded.tolerance
-        for name, words in (("pitch", "distance between holes"), ("columns", "columns"), ("peg_radius", "pegs' radius")):
+        for name, words in (
+            ("pitch", "distance between holes"),
+            ("columns", "columns"),
+            ("peg_radius", "pegs' radius"),
+        ):
             if name not in fields:
                 option_name = f"--{name.replace('_', '-')}"
                 raise InputError(

@@ -39,9 +39,11 @@ from holdfast.kernels.vise_checks import (
     LEAST_CLAMPING,
     LEAST_MARGIN,
     MIN_GAP,
+    MOST_LISTED,
     PEG_LENGTH,
     RECORD_LENGTH,
     is_fixture,
+    is_listed,
     place_peg,
     write_given_up,
     write_record,
@@ -161,7 +163,8 @@ def type_one_cells(
     members : (M,) indices of the curves that exist in some of them, ascending.
     loose, features : (F, 8) rows of the features, with ends moved out by a hair (to search) and as they are (to check).
     integers, reals, stretches : the curve table.
-    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only.
+    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that are listed,
+        if any, are listed with either chord on the left.
     stats : (4,) counts to add to.
 
     Returns
@@ -214,7 +217,7 @@ def type_one_cells(
                 two = int(second[CURVE])
                 if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
                     continue
-                if counting and once and one > two:
+                if counting and once and one > two and limits[MOST_LISTED] == 0.0:
                     continue
                 steady = first[STEADY] * second[STEADY] == 1.0
                 if steady and not may_meet(first, second, row_offset, pitch_y):
@@ -237,7 +240,7 @@ def type_one_cells(
                     stats[CANDIDATES] += 1
                     if verdict > 0:
                         stats[CONTACTS] += 1
-                    if verdict == 2 and not counting:
+                    if is_listed(verdict, counting, count, limits):
                         out = with_room(out, count)
                         write_record(out[count], 1.0, pegs, psi, apart, reach)
                         count += 1

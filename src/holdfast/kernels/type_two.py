@@ -31,6 +31,7 @@ from holdfast.kernels.vise_checks import (
     ROUNDING,
     WRENCH_LENGTH,
     is_fixture,
+    is_listed,
     place_peg,
     share_a_jaw,
     write_given_up,
@@ -218,7 +219,7 @@ def add_right_pegs(
                 stats[CANDIDATES] += 1
                 if verdict > 0:
                     stats[CONTACTS] += 1
-                if verdict == 2 and not counting:
+                if is_listed(verdict, counting, count, limits):
                     out = with_room(out, count)
                     write_record(out[count], 2.0, pegs, psi, apart, reach)
                     count += 1

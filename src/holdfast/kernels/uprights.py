@@ -33,6 +33,7 @@ from holdfast.kernels.vise_checks import (
     RECORD_LENGTH,
     WRENCH_LENGTH,
     is_fixture,
+    is_listed,
     place_peg,
     share_a_jaw,
     write_record,
@@ -229,7 +230,7 @@ def upright_type_one(
                         stats[CANDIDATES] += 1
                         if verdict > 0 and order == 0:
                             stats[CONTACTS] += 1
-                        if verdict == 2 and not counting:
+                        if is_listed(verdict, counting, count, limits):
                             out = with_room(out, count)
                             write_record(out[count], 1.0, pegs, psi, apart, reach)
                             count += 1

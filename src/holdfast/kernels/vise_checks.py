@@ -53,8 +53,8 @@ LEAST_SPAN = 1e-7
 ROUNDING = 1e-14
 
 # Indices into the limits handed to the kernels.
-MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS, LEAST_MARGIN = range(5)
-LIMITS = 5
+MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS, LEAST_MARGIN, MOST_LISTED = range(6)
+LIMITS = 6
 
 
 @inner
@@ -88,8 +88,8 @@ def is_fixture(
     pegs : (4, 6) places; the first ``lefts`` on the left jaw.
     psi, reach : orientation of the pegs in the workpiece's frame, and how far it may be off, in radians.
     features : (F, 10) rows with the slack of their ends.
-    limits : min gap, contact margin and wrench length in mm, the largest column difference on one jaw, and the smallest
-        closure margin of interest.
+    limits : min gap, contact margin and wrench length in mm, the largest column difference on one jaw, the smallest
+        closure margin of interest, and how many contacts a block lists when it counts them.
     work : (8, 2) work space.
     null : (4,) receives the null vector, not scaled.
 
@@ -145,6 +145,15 @@ def is_fixture(
         if (abs(null[3]) + band) * push <= LEAST_CLAMPING * (size - 4.0 * band):
             return (1, 0.0)
     return (2, first_right - first_left)
+
+
+@inner
+def is_listed(verdict: int, counting: bool, count: int, limits: Array) -> bool:
+    """Whether four contacts with a verdict of :func:`is_fixture` are written to the records, ``count`` of which there are:
+    what may be a fixture, or, when contacts are counted, all up to so many."""
+    if counting:
+        return verdict > 0 and count < limits[MOST_LISTED]
+    return verdict == 2
 
 
 @inner

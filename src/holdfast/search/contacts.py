@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from holdfast.kernels.type_one import CONTACTS
 from holdfast.listing.problem import TYPES, Problem
 from holdfast.model.vise import Vise
@@ -27,11 +29,11 @@ def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = No
     InputError
         For a peg that fits nowhere along the part.
     """
-    return contacts_of(Problem.of(workpiece, vise), threads)
+    return contacts_of(Problem.of(workpiece, vise), TYPES, threads)
 
 
-def contacts_of(problem: Problem, threads: int | None) -> int:
+def contacts_of(problem: Problem, types: Sequence[str], threads: int | None) -> int:
     """Simultaneous contacts of a problem, see :func:`count_contacts`."""
     search = ViseSearch.of(problem, counting=True)
-    run_blocks(search.blocks(TYPES), thread_count(threads), None, None)
+    run_blocks(search.blocks(types), thread_count(threads), None, None)
     return int(search.totals[CONTACTS])

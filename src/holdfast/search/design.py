@@ -108,7 +108,8 @@ def design(
         rest = stage(progress, SEARCH, 1.0)
         result = listed_result(problem, preference, records, work, progress=rest, cancel=cancel, threads=workers)
     if result.complete and not any(result.found.values()) and not result.notes:
-        return evolve(result, notes=(why_none(search, int(totals[CONTACTS]), threads),))
+        proven = 0 if result.proof is None else result.proof.verified
+        return evolve(result, notes=(why_none(search, types, int(totals[CONTACTS]), proven, threads),))
     return result
 
 
@@ -119,7 +120,7 @@ def stage(progress: Progress | None, low: float, high: float) -> Progress | None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def why_none(search: ViseSearch, contacts: int, threads: int | None) -> str:
+def why_none(search: ViseSearch, types: Sequence[str], contacts: int, proven: int, threads: int | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
     problem, table = search.problem, search.table
     arcs = problem.rows[:, 0] != 0.0
@@ -131,8 +132,13 @@ def why_none(search: ViseSearch, contacts: int, threads: int | None) -> str:
     if len(table) + len(table.upright_integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
-    if contacts == 0 and contacts_of(problem, threads) == 0:
+    if contacts == 0 and contacts_of(problem, types, threads) == 0:
         return "No four pegs of the two jaws can touch the part at the same time inside their faces."
+    if proven:
+        return (
+            f"{proven} sets of four pegs would hold the part, but none of them can stand in the jaws as asked: with the "
+            "rows, opening, angles, shoulders and blocked holes given."
+        )
     return "Four pegs can touch the part at the same time, but no such set keeps the smallest gap, closes and clamps."
 
 

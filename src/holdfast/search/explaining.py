@@ -96,7 +96,7 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
     records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.KIND] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = standing(candidates_of(together, problem))
+    c = facing(standing(candidates_of(together, problem)))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
     minors = wrench_minors(c.point, normals, problem.wrench_length)
@@ -112,6 +112,15 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
         clamping=-(null * along * is_left(c.kind)).sum(axis=1),
         end_distance=end_distances(rows, c.point).min(axis=1, initial=np.inf),
     )
+
+
+def facing(c: Candidates) -> Candidates:
+    """Contacts with the right chord on the right: of Type I those whose right pegs are farther right in the middle.
+
+    Either chord may be on the left, and each set of four contacts is found both ways.
+    """
+    along = c.point[..., 0] * np.cos(c.theta)[:, None] - c.point[..., 1] * np.sin(c.theta)[:, None]
+    return c.take((c.kind != 1) | (along[:, 2:].sum(axis=1) >= along[:, :2].sum(axis=1)))
 
 
 def end_distances(rows: Array, points: Array) -> Array:
@@ -160,7 +169,9 @@ def rules(problem: Problem) -> list[Rule]:
     out: list[Rule] = []
     if margin > 0.0:
         out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin)))
-    out.append(("smallest gap", lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK, partial(too_near, vise)))
+    out.append(
+        ("smallest gap", lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK, partial(too_near, vise))
+    )
     out.append(("closure", lambda c: c.margin > record.LEAST_CLOSURE, open_contact))
     out.append(("clamping", lambda c: c.clamping > record.LEAST_CLAMPING, unclamped))
     return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
@@ -217,7 +228,10 @@ def open_contact(c: Contacts) -> tuple[int, str]:
     """The contact that comes nearest to force closure."""
     index = int(c.margin.argmax())
     if c.margin[index] > -ROUNDING:
-        return index, "the lines of force of the pegs meet in one point or are parallel, so one peg would not press at all."
+        return (
+            index,
+            "the lines of force of the pegs meet in one point or are parallel, so one peg would not press at all.",
+        )
     pulls = int((c.null[index] < 0).sum())
     many = "one peg" if pulls == 1 else f"{pulls} pegs"
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
@@ -260,7 +274,6 @@ def helps(problem: Problem, types: Sequence[str], threads: int | None) -> tuple[
                 restrictions=restrictions,
                 rank_by=["closure_margin"],
                 threads=threads,
-                why=False,
             ).found
         except InputError:
             continue
@@ -274,7 +287,12 @@ def changes(problem: Problem) -> Iterator[tuple[str, Vise, Restrictions, float]]
     vise, asked, margin = problem.vise, problem.restrictions, problem.contact_margin
     if asked.avoid:
         faces = ", ".join(str(number) for number in asked.avoid)
-        yield f"touching {'face' if len(asked.avoid) == 1 else 'faces'} {faces} too", vise, evolve(asked, avoid=()), margin
+        yield (
+            f"touching {'face' if len(asked.avoid) == 1 else 'faces'} {faces} too",
+            vise,
+            evolve(asked, avoid=()),
+            margin,
+        )
     if asked.zones:
         yield "without the keep-out zones", vise, evolve(asked, zones=()), margin
     if asked.angles:
@@ -298,5 +316,9 @@ def changes(problem: Problem) -> Iterator[tuple[str, Vise, Restrictions, float]]
         yield f"with the right jaw's rows offset by {offset:g} mm", evolve(vise, row_offset=offset), asked, margin
     if min(vise.pitch) >= 4 * vise.peg_radius:
         half = (vise.pitch[0] / 2, vise.pitch[1] / 2)
-        yield "with half the pitch", evolve(vise, pitch=half, min_gap=min(vise.min_gap, half[0]), blocked=()), asked, margin
-
+        yield (
+            "with half the pitch",
+            evolve(vise, pitch=half, min_gap=min(vise.min_gap, half[0]), blocked=()),
+            asked,
+            margin,
+        )

@@ -127,6 +127,7 @@ class ViseSearch:
     loose : (F, 8) rows of the features with their ends moved out by a hair.
     table : chord curves and uprights between the loose features.
     counting : count all simultaneous contacts instead of looking for fixtures only.
+    most_listed : of these so many are listed by each block, whatever the rules say of them.
     limits : what bounds a fixture, see ``kernels.vise_checks``.
     stats : (blocks, 4) statistics the kernels add to, one row for each block so that threads never share one.
     """
@@ -135,21 +136,29 @@ class ViseSearch:
     loose: Array
     table: CurveTable
     counting: bool = False
+    most_listed: int = 0
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
     limits: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         """Write the limits as the kernels take them (see ``kernels.vise_checks``)."""
         problem, vise = self.problem, self.problem.vise
-        self.limits = np.array([vise.min_gap, problem.contact_margin, problem.wrench_length, vise.columns - 1.0, 0.0])
+        lengths = [vise.min_gap, problem.contact_margin, problem.wrench_length]
+        self.limits = np.array([*lengths, vise.columns - 1.0, 0.0, self.most_listed])
 
     @classmethod
-    def of(cls, problem: Problem, counting: bool = False) -> ViseSearch:
+    def of(cls, problem: Problem, counting: bool = False, most_listed: int = 0) -> ViseSearch:
         """The search of a problem, with its chord curves; ``counting`` leaves the contact margin out."""
         if counting:
             problem = evolve(problem, contact_margin=0.0)
         loose = loosened(problem.rows[:, :8])
-        return cls(problem, loose, curve_table(loose, lattice_steps(problem.vise, problem.diameter + 1e-6)), counting)
+        return cls(
+            problem,
+            loose,
+            curve_table(loose, lattice_steps(problem.vise, problem.diameter + 1e-6)),
+            counting,
+            most_listed,
+        )
 
     @property
     def vise(self) -> Vise:
