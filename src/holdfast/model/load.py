@@ -31,7 +31,8 @@ def direction_range(directions: Iterable[float]) -> tuple[float, float]:
         )
     if abs(high - low) == 360.0:
         return ANY_DIRECTION
-    start = low % 360.0
+    # The rest of a tiny negative angle rounds up to the whole turn.
+    start = low % 360.0 % 360.0
     return start, start + (high - low) % 360.0
 
 

@@ -121,6 +121,7 @@ def load_cases(
     needs = [needed(forces, load, center) for load in loads]
     if jaw_force is None:
         jaw_force = max((worst.value for worst in needs), default=0.0)
+    jaw_force = float(jaw_force)
     return tuple(
         LoadCase(
             load=load,

@@ -1,30 +1,13 @@
-<<<<<<< HEAD
-"""The figures of quality of whole tables of fixtures (MODEL.md, "Quality")."""
-=======
 """The figures of quality of whole tables of fixtures (model: "Quality"; what they mean is in docs/quality.md)."""
->>>>>>> d509a59 (Figures of quality of whole tables, loads on one fixture, and loads from the command line and files)
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-<<<<<<< HEAD
-=======
 from math import cos, pi
->>>>>>> d509a59 (Figures of quality of whole tables, loads on one fixture, and loads from the command line and files)
 
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
-from holdfast.model.load import Load
-from holdfast.model.quality import CLAMP_AMPLIFICATION
-from holdfast.model.result import FixtureTable, unknown_quality
-from holdfast.model.tolerance import Tolerance
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
-
-__all__ = ["quality_of"]
-=======
 from holdfast.geometry.hull import convex_hull
 from holdfast.geometry.segment import Arc
 from holdfast.kernels.quality import figures
@@ -42,7 +25,6 @@ __all__ = ["load_rows", "quality_of"]
 Array = NDArray[np.float64]
 # Fixtures looked at together; what is needed for them beside the table and the figures takes 3 MB.
 BLOCK = 1 << 13
->>>>>>> d509a59 (Figures of quality of whole tables, loads on one fixture, and loads from the command line and files)
 
 
 def quality_of(
@@ -51,13 +33,6 @@ def quality_of(
     vise: Vise,
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
-<<<<<<< HEAD
-) -> NDArray[np.float64]:
-    """Figures of quality (N, 6) in the order of ``model.quality.FIGURES``."""
-    quality = unknown_quality(table.null_vector)
-    quality[:, CLAMP_AMPLIFICATION] = table.force.max(axis=1, initial=0.0)
-    return quality
-=======
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -141,4 +116,3 @@ def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
         for x, y in convex_hull(load.points) or [center]:
             rows.append([load.force, x - center[0], y - center[1], load.moment, *ends, cos(half)])
     return np.array(rows, np.float64).reshape(-1, LOAD_LENGTH)
->>>>>>> d509a59 (Figures of quality of whole tables, loads on one fixture, and loads from the command line and files)
