@@ -1,0 +1,67 @@
+"""What Coulomb friction could add to a fixture's hold.
+
+Every contact may press within its friction cone, that is along -n + mu t and -n - mu t with forces x >= 0. The least jaw
+force that allows a balance with a load g is the linear program
+
+    minimize r . x   subject to   W x = -g,  x >= 0,
+
+with r the share of each edge in pushing the right jaw. Its dual asks for the motion y of the part that does the most work
+-g . y among those with W^T y <= r; these form a polytope, because the wrenches span the space, and its few corners answer
+every load. Duality: V. Chvatal, *Linear Programming* (1983), chapter 5; the cones: V.-D. Nguyen, *Constructing
+force-closure grasps*, International Journal of Robotics Research 7 (1988).
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["cone_edges", "possible_motions"]
+
+Array = NDArray[np.float64]
+# Planes with a determinant below this have no common corner, and a corner may be outside by this much (no unit).
+FLAT = 1e-12
+OUTSIDE = 1e-9
+
+
+def cone_edges(
+    contacts: Array, normals: Array, right: NDArray[np.bool_], closing: Array, friction: float, length: float
+) -> tuple[Array, Array]:
+    """Wrenches (8, 3) of the edges of four friction cones, and how much each pushes the right jaw open (8,).
+
+    Parameters
+    ----------
+    contacts : (4, 2) contact points about c in mm (with friction they are not the peg centres).
+    normals : (4, 2) outward unit normals.
+    right : (4,) which pegs are on the right jaw.
+    closing : (2,) the vise's x axis in the part's frame; the right jaw closes against it.
+    friction : the coefficient mu.
+    length : L in mm, which moments are divided by.
+    """
+    tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    edges = np.concatenate([-normals + friction * tangents, -normals - friction * tangents])
+    at = np.concatenate([contacts, contacts])
+    moments = (at[:, 0] * edges[:, 1] - at[:, 1] * edges[:, 0]) / length
+    share = -(edges @ closing) * np.concatenate([right, right])
+    return np.column_stack([edges, moments]), share
+
+
+def possible_motions(
+    contacts: Array, normals: Array, right: NDArray[np.bool_], closing: Array, friction: float, length: float
+) -> Array:
+    """Corners (M, 3) of the dual polytope as jaw force per unit of (g_x, g_y, moment); parameters as :func:`cone_edges`.
+
+    The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no corners where
+    friction alone could jam the part between pegs of one jaw: then no load needs any jaw force.
+    """
+    wrenches, share = cone_edges(contacts, normals, right, closing, friction, length)
+    corners = []
+    for chosen in combinations(range(len(wrenches)), 3):
+        planes = wrenches[list(chosen)]
+        if abs(np.linalg.det(planes)) > FLAT:
+            corner = np.linalg.solve(planes, share[list(chosen)])
+            if (wrenches @ corner - share <= OUTSIDE * (1.0 + np.abs(corner).max())).all():
+                corners.append(corner)
+    return np.asarray(-np.array(corners).reshape(-1, 3) / [1.0, 1.0, length])
