@@ -27,18 +27,40 @@ CASES = (
     ("ring", 12, 2, 3, 30),
     ("triangle", 20, 2, 3, 30),
     ("rocker", 10, 2, 2, 50),
+    ("channel", 8, 2, 2, 40),
 )
 # A plate with round ends of different size, a notch with a concave arc, and a round hole off the middle.
 ROCKER = [
     [[-20, -9, 0], [25, -14, 1], [25, 14, 0], [6, 11, -0.5], [-6, 10, 0], [-20, 9, 1]],
     [[24, 0, -1], [30, 0, -1]],
 ]
+# A channel with a nose that comes so near to its floor that no peg passes: the floor leaves two contact features.
+CHANNEL = [
+    [
+        [*point, 0.0]
+        for point in (
+            (0, -9),
+            (50, -11),
+            (50, 0),
+            (8, 0),
+            (8, 16),
+            (22, 16),
+            (22, 3),
+            (28, 3),
+            (28, 15),
+            (50, 15),
+            (47, 26),
+        )
+    ]
+    + [[0, 25, 0.1]],
+]
+DRAWN = {"rocker": ROCKER, "channel": CHANNEL}
 
 
 def held_part(name: str) -> Workpiece:
-    """The rocker, a part of a complete set, or a built-in one."""
-    if name == "rocker":
-        return Workpiece.from_loops(name, ROCKER)
+    """One of the parts above, one of a complete set, or a built-in one."""
+    if name in DRAWN:
+        return Workpiece.from_loops(name, DRAWN[name])
     for path in COMPLETE.glob(f"{name}_*.json"):
         return Workpiece.from_loops(name, json.loads(path.read_text())["workpiece"]["loops"])
     return holdfast.load(name)
