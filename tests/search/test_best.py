@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from threading import Event
 
 import numpy as np
 import pytest
 
 from holdfast import Vise, Workpiece, count_contacts, design, load
+from holdfast.files.result_file import write_result
 from holdfast.listing.best import BestFixtures
 from holdfast.search.vise_search import ViseSearch
 
@@ -38,6 +40,19 @@ def test_the_best_are_the_first_of_all(name: str, vise: Vise, most: int, threads
     assert best.proof is not None and not best.proof.undecided
 
 
+def test_what_is_left_out_does_not_depend_on_threads(tmp_path: Path) -> None:
+    """The file of a search for the best, counts of its work included, is the same byte for byte."""
+    files = []
+    for threads in (1, 2, 5):
+        best = design(
+            load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=threads
+        )
+        files.append(tmp_path / f"{threads}.json")
+        write_result(best, files[-1])
+    assert len({file.read_bytes() for file in files}) == 1
+    assert any("not counted" in note for note in best.notes)
+
+
 def test_more_than_there_are_is_all_of_them() -> None:
     """When nothing is left out the result counts all, and does not say otherwise."""
     part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
@@ -57,8 +72,14 @@ def test_work_is_left_out() -> None:
 def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the kernels are told rises, and stays below the margin of the last fixture listed in the end."""
     told: list[float] = []
-    monkeypatch.setattr(ViseSearch, "seek", lambda self, margin: told.append(margin))
-    best = design(load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25)
+    limits_from = ViseSearch.limits_from
+
+    def watched(self: ViseSearch, margin: float) -> np.ndarray:
+        told.append(margin)
+        return limits_from(self, margin)
+
+    monkeypatch.setattr(ViseSearch, "limits_from", watched)
+    best = design(load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=1)
     assert told == sorted(told) and told[-1] > 0.0
     assert told[-1] < np.round(best.table.null_vector[-1].min(), 9)
 

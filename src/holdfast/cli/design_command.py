@@ -179,18 +179,12 @@ def design(
     refuse_outputs(out, folder)
     in_vise, of_vise = vise_words.asked(shown)
     restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
-    options = {
-        "types": types,
-        "contact_margin": margin,
-        "restrictions": restrictions,
-        "rank_by": asked_ranking(rank_by),
-        "tolerance": asked_tolerance(tolerance, shown, of_vise),
-        "loads": asked_loads(load, loads, shown),
-    }
+    ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
+    off = asked_tolerance(tolerance, shown, of_vise)
     from holdfast.kernels.compiling import is_first_run
     from holdfast.listing.ranking import preference_of
 
-    preference_of(options["rank_by"], options["tolerance"], options["loads"])
+    preference_of(ranking, off, forces)
     workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
     first_run = is_first_run()
     start = perf_counter()
@@ -199,7 +193,19 @@ def design(
             from holdfast.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        result = find_fixtures(workpiece, in_vise, best=kept, progress=progress, cancel=cancel, **options)
+        result = find_fixtures(
+            workpiece,
+            in_vise,
+            types=types,
+            contact_margin=margin,
+            restrictions=restrictions,
+            rank_by=ranking,
+            tolerance=off,
+            loads=forces,
+            best=kept,
+            progress=progress,
+            cancel=cancel,
+        )
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
     report(result, spent, out, form, listed, shown)
     if not result.complete:

@@ -2,18 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from holdfast.errors import InputError
 
 if TYPE_CHECKING:
+    from holdfast.model.fixture import Fixture
     from holdfast.model.result import Result
 
-__all__ = ["BEST_DRAWN", "draw_best"]
+__all__ = ["BEST_DRAWN", "draw_best", "draw_one"]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
+
+
+def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str) -> list[Path]:
+    """Draw one fixture of a result's part and vise into a folder, as SVG and PNG; returns the files written.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from holdfast.drawing.fixture_picture import draw_fixture
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    return write_pictures({name: draw_fixture(fixture, result.workpiece, result.vise, title=title)}, folder)
+
+
+def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
+    """Write pictures, by name, as SVG and PNG; returns the files written."""
+    from holdfast.drawing.render import render
+    from holdfast.files.atomic import write_bytes
+
+    written = []
+    for name, svg in pictures.items():
+        for ending in ENDINGS:
+            path = folder / f"{name}{ending}"
+            write_bytes(path, render(svg, ending))
+            written.append(path)
+    return written
 
 
 def draw_best(result: Result, folder: Path) -> list[Path]:
@@ -28,9 +61,7 @@ def draw_best(result: Result, folder: Path) -> list[Path]:
         When the folder cannot be written.
     """
     from holdfast.drawing.fixture_picture import draw_fixture
-    from holdfast.drawing.render import render
     from holdfast.drawing.thumbnails import draw_thumbnails
-    from holdfast.files.atomic import write_bytes
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -48,10 +79,4 @@ def draw_best(result: Result, folder: Path) -> list[Path]:
         pictures[f"fixture-{rank:02d}"] = draw_fixture(fixture, result.workpiece, result.vise, title=title)
     titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
     pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles)
-    written = []
-    for name, svg in pictures.items():
-        for ending in ENDINGS:
-            path = folder / f"{name}{ending}"
-            write_bytes(path, render(svg, ending))
-            written.append(path)
-    return written
+    return write_pictures(pictures, folder)

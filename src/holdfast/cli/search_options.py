@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
+from holdfast.cli.load_option import LOAD_HELP, parse_load
 from holdfast.cli.values import length, number, whole_number
 from holdfast.errors import InputError
 from holdfast.model.units import Unit
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 __all__ = [
     "AngleOption",
     "AvoidOption",
+    "FrictionOption",
+    "JawForceOption",
     "KeepOutOption",
     "LoadOption",
     "LoadsOption",
@@ -61,11 +64,24 @@ LoadOption = Annotated[
     option(
         LOADS,
         metavar="LOAD",
-        help='What the fixture must resist: "force=200 at=10,5 direction=30..60", "force=150 path=0,0;40,0" or '
-        '"moment=5000", in N, N mm and degrees. May be repeated.',
+        help=LOAD_HELP,
     ),
 ]
 LoadsOption = Annotated[str | None, option(LOADS, metavar="FILE", help="Loads from a TOML file.")]
+JawForceOption = Annotated[
+    str | None,
+    option(
+        LOADS,
+        metavar="N",
+        help="Force in N that closes the vise; the one needed so that no peg lets go if not given.",
+    ),
+]
+FrictionOption = Annotated[
+    str | None,
+    option(
+        LOADS, metavar="MU", help="Coefficient of friction, to tell what friction could add; none counts elsewhere."
+    ),
+]
 RankByOption = Annotated[
     str | None,
     option(
@@ -181,7 +197,6 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
     """
     if not loads and file is None:
         return ()
-    from holdfast.cli.load_option import parse_load
     from holdfast.files.loads_file import read_loads
 
     typed = tuple(parse_load(text, unit.millimetres) for text in loads or ())

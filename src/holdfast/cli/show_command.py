@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from holdfast.cli.options import ShownUnitOption
-from holdfast.cli.values import length_unit, picture_ending, whole_number
+from holdfast.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
+from holdfast.cli.values import length_unit, picture_ending, positive_number, whole_number
 from holdfast.errors import InputError
 
 __all__ = ["show"]
@@ -22,9 +23,14 @@ def show(
     draw: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
     ] = None,
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    jaw_force: JawForceOption = None,
+    friction: FrictionOption = None,
     unit: ShownUnitOption = None,
 ) -> None:
-    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose.
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its quality, and what
+    loads do to it (those of the result, if none are given here).
 
     A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
 
@@ -37,6 +43,9 @@ def show(
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
     shown_unit = length_unit(unit)
+    force = positive_number("--jaw-force", jaw_force)
+    coefficient = positive_number("--friction", friction)
+    asked = asked_loads(load, loads, shown_unit)
     picture = None if draw is None else Path(draw)
     ending = None
     if picture is not None:
@@ -47,9 +56,15 @@ def show(
         raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
     fixture = result[rank - 1]
 
-    from holdfast.cli.tables import fixture_tables, print_tables
+    from holdfast.cli.load_tables import load_tables
+    from holdfast.cli.tables import fixture_tables, print_tables, quality_table
 
-    print_tables(*fixture_tables(fixture, rank, len(result), shown_unit))
+    print_tables(*fixture_tables(fixture, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit))
+    if asked or result.loads:
+        from holdfast.statics.loads import load_cases
+
+        cases = load_cases(fixture, result.workpiece, result.vise, asked or result.loads, force, coefficient)
+        print_tables(*load_tables(cases, fixture, shown_unit))
     if not result.complete:
         typer.echo("holdfast: the search for this result was interrupted; there may be better fixtures.", err=True)
     if picture is not None and ending is not None:

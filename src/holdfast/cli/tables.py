@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from holdfast.geometry.face import Face
     from holdfast.model.fixture import Fixture
     from holdfast.model.proof import Proof, Undecided
+    from holdfast.model.quality import Figure
     from holdfast.model.result import Result
     from holdfast.model.workpiece import Workpiece
 
@@ -26,6 +27,7 @@ __all__ = [
     "plural",
     "print_tables",
     "proof_sentences",
+    "quality_table",
     "result_table",
 ]
 
@@ -145,7 +147,9 @@ def undecided_words(item: Undecided) -> str:
 def result_table(result: Result, count: int, unit: Unit = MILLIMETRE) -> Table:
     """The best fixtures, one line each, with lengths in a unit."""
     opening = f">opening {unit.abbreviation}"
-    table = Table((">rank", "type", "left holes", "right holes", opening, ">angle deg", ">closure margin"))
+    figures = listed_figures(result)
+    headings = [f">{heading(figure, unit)}" for figure in figures]
+    table = Table((">rank", "type", "left holes", "right holes", opening, ">angle deg", *headings))
     for rank, fixture in enumerate(result[:count], 1):
         holes = {jaw: " ".join(peg.hole for peg in fixture.pegs if peg.jaw == jaw) for jaw in ("left", "right")}
         table.add_row(
@@ -155,8 +159,45 @@ def result_table(result: Result, count: int, unit: Unit = MILLIMETRE) -> Table:
             holes["right"],
             unit.number(fixture.jaw_separation),
             f"{fixture.pose.theta_deg:.3f}",
-            f"{fixture.quality['closure_margin']:.4f}",
+            *(figure_number(figure, fixture.quality[figure.key], unit) for figure in figures),
         )
+    return table
+
+
+def listed_figures(result: Result) -> list[Figure]:
+    """The figures of quality shown with each fixture: those it is ranked by, and the closure margin."""
+    from holdfast.model.quality import FIGURES
+
+    by_key = {figure.key: figure for figure in FIGURES}
+    known = result[0].quality if len(result) else {}
+    keys = dict.fromkeys([*result.ranking, "closure_margin"])
+    return [by_key[key] for key in keys if key in known]
+
+
+def heading(figure: Figure, unit: Unit) -> str:
+    """A figure's name and unit."""
+    of = unit.abbreviation if figure.unit == "mm" else figure.unit
+    return f"{figure.words} {of}".rstrip()
+
+
+def figure_number(figure: Figure, value: float, unit: Unit) -> str:
+    """A figure's value as a number of its unit."""
+    if figure.unit == "mm":
+        return unit.number(value, unit.decimals + 1)
+    return f"{value:.1f}" if figure.unit == "N" else f"{value:.4f}"
+
+
+def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
+    """All figures of quality of a fixture, and what they mean."""
+    from holdfast.model.quality import FIGURES
+
+    table = Table(("figure", ">value", "unit", "better", "meaning"))
+    for figure in FIGURES:
+        if figure.key in fixture.quality:
+            of = unit.abbreviation if figure.unit == "mm" else figure.unit
+            better = "more" if figure.more_is_better else "less"
+            value = figure_number(figure, fixture.quality[figure.key], unit)
+            table.add_row(figure.words, value, of, better, figure.meaning)
     return table
 
 
@@ -169,7 +210,7 @@ def fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit = MILLIME
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {fixture.type}",
-        f"Jaw separation {unit.text(fixture.jaw_separation)}, closure margin {fixture.quality['closure_margin']:.4f}",
+        f"Jaw separation {unit.text(fixture.jaw_separation)}",
         f"The part is turned by {pose.theta_deg:.3f} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
         f"{unit.abbreviation} from the left jaw's hole L-A1",
         pegs,

@@ -18,6 +18,7 @@ __all__ = [
     "number",
     "optional_length",
     "picture_ending",
+    "positive_number",
     "pitches",
     "whole_number",
 ]
@@ -146,6 +147,22 @@ def counting_number(option: str, text: str | None, what: str) -> int | None:
     value = whole_number(option, text)
     if value < 1:
         raise InputError(f"{option} {text} is not a number of {what}: give 1 or more.")
+    return value
+
+
+def positive_number(option: str, text: str | None) -> float | None:
+    """A finite number, zero or more, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return None
+    value = number(text.strip())
+    if not (isfinite(value) and value >= 0):
+        raise InputError(f"{option} {text!r} cannot be used: give a number, 0 or more.")
     return value
 
 

@@ -22,6 +22,8 @@ Records = NDArray[np.float64]
 
 # Orientations are counted from here, so that no aligned part has its coincidences at the edge of a cell.
 FIRST_ORIENTATION = -0.7320508075688772
+# A block is told the closure margin known so many blocks before it; as many may run at the same time.
+LAG = 8
 
 
 @define(frozen=True)
@@ -30,12 +32,12 @@ class Block:
 
     Parameters
     ----------
-    work : does it and returns records.
+    work : does it, given a closure margin that is to be reached, and returns records.
     cost : a guess of how long it takes, in any unit.
     cells : how many cells it works on.
     """
 
-    work: Callable[[], Records]
+    work: Callable[[float], Records]
     cost: float
     cells: int = 1
 
@@ -66,47 +68,64 @@ def run_blocks(
     threads: int,
     progress: Progress | None,
     cancel: Event | None,
-    receive: Callable[[Records], None] | None = None,
+    receive: Callable[[Records], float] | None = None,
 ) -> tuple[list[Records], list[Block]]:
     """Do all blocks on some threads.
 
     Parameters
     ----------
-    receive : called from this thread with the records of each block as it is done; they are then not kept.
+    receive : called from this thread with the records of each block, in the order of the blocks; they are then not kept. It
+        returns the closure margin that further fixtures must reach, which is told to the block ``LAG`` places later: so what
+        a block leaves out does not depend on how fast the others are.
 
     Returns
     -------
     (records of the blocks done, in the order of the blocks; those blocks)
     """
     total = sum(block.cost for block in blocks) or 1.0
-    results: list[Records | None] = [None] * len(blocks)
+    results: dict[int, Records] = {}
+    # The margin to reach once so many blocks have been received.
+    margins = [0.0]
     done_cost, found = 0.0, 0
     done: list[Block] = []
-    for index, records in finished_blocks(blocks, threads, cancel):
-        if receive is None:
-            results[index] = records
-        else:
-            receive(records)
+    for index, records in finished_blocks(blocks, threads, cancel, margins if receive is not None else None):
+        results[index] = records
+        while receive is not None and len(margins) - 1 in results:
+            margins.append(receive(results.pop(len(margins) - 1)))
         done_cost += blocks[index].cost
         found += len(records)
         done.append(blocks[index])
         if progress is not None:
             progress(min(done_cost / total, 1.0), found)
-    return [records for records in results if records is not None], done
+    rest = [results[index] for index in sorted(results)]
+    if receive is not None:
+        # Blocks that were done when others before them were cancelled.
+        for records in rest:
+            receive(records)
+        rest = []
+    return rest, done
 
 
-def finished_blocks(blocks: Sequence[Block], threads: int, cancel: Event | None) -> Iterator[tuple[int, Records]]:
-    """Blocks as they finish; no new one is begun once ``cancel`` is set."""
-    waiting = iter(range(len(blocks)))
-    running: dict[Future[Records], int] = {}
+def finished_blocks(
+    blocks: Sequence[Block], threads: int, cancel: Event | None, margins: list[float] | None
+) -> Iterator[tuple[int, Records]]:
+    """Blocks as they finish; no new one is begun once ``cancel`` is set.
+
+    Parameters
+    ----------
+    margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
+    """
+    first, running = 0, dict[Future[Records], int]()
     with ThreadPoolExecutor(max_workers=threads) as pool:
         while True:
             # Short naps between looks at the flag keep Ctrl-C alive; the queue is kept just full enough.
-            while len(running) < 2 * threads and not (cancel is not None and cancel.is_set()):
-                index = next(waiting, None)
-                if index is None:
+            while first < len(blocks) and len(running) < 2 * threads and not (cancel is not None and cancel.is_set()):
+                known = max(first - LAG, 0)
+                if margins is not None and known >= len(margins):
                     break
-                running[pool.submit(blocks[index].work)] = index
+                margin = 0.0 if margins is None else margins[known]
+                running[pool.submit(blocks[first].work, margin)] = first
+                first += 1
             if not running:
                 return
             done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)

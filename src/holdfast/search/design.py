@@ -92,8 +92,8 @@ def design(
     search = ViseSearch.of(problem)
     blocks = search.blocks(types)
     kept = None if best is None else BestFixtures(problem, preference, best, cancel)
-    receive = None if kept is None else lambda records: search.seek(kept.add(records))
     workers = thread_count(threads)
+    receive = None if kept is None else kept.add
     records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive)
     totals = search.totals
     work = Work(

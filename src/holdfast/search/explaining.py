@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from holdfast.errors import InputError
 from holdfast.kernels import vise_checks as record
-from holdfast.listing.candidates import Candidates, candidates_of, standing
+from holdfast.listing.candidates import Candidates, candidates_of, listed_once, standing
 from holdfast.listing.deciding import is_left
 from holdfast.listing.placing import arranged, placed
 from holdfast.listing.problem import TYPES, Problem
@@ -36,7 +36,11 @@ Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 # Contacts kept from each block of the search; far more than a part without a fixture has.
-MOST_LISTED = 50_000
+MOST_LISTED = 5_000
+# Faces to avoid that are given back one by one.
+MOST_FACES = 8
+# Pegs this near in x, in mm, are even.
+EVEN = 1e-6
 # A contact misses closure by this much at most to be called near.
 ROUNDING = 1e-12
 
@@ -76,7 +80,7 @@ def explain(problem: Problem, types: Sequence[str] = TYPES, threads: int | None 
     threads : how many threads share the work; None for one on each processor.
     """
     contacts = all_contacts(problem, types, threads)
-    first, removals = restriction_removals(problem, types, threads)
+    first, removals = restriction_removals(problem, types, threads, len(contacts.margin))
     nearest = None
     for rule, keeps, miss in rules(problem):
         if len(contacts.margin) == 0:
@@ -96,7 +100,7 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
     records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.KIND] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = facing(standing(candidates_of(together, problem)))
+    c = listed_once(facing(standing(candidates_of(together, problem))))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
     minors = wrench_minors(c.point, normals, problem.wrench_length)
@@ -117,10 +121,14 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
 def facing(c: Candidates) -> Candidates:
     """Contacts with the right chord on the right: of Type I those whose right pegs are farther right in the middle.
 
-    Either chord may be on the left, and each set of four contacts is found both ways.
+    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
+    lower one is taken for the right one.
     """
-    along = c.point[..., 0] * np.cos(c.theta)[:, None] - c.point[..., 1] * np.sin(c.theta)[:, None]
-    return c.take((c.kind != 1) | (along[:, 2:].sum(axis=1) >= along[:, :2].sum(axis=1)))
+    cosine, sine = np.cos(c.theta)[:, None], np.sin(c.theta)[:, None]
+    across = c.point[..., 0] * cosine - c.point[..., 1] * sine
+    upward = c.point[..., 0] * sine + c.point[..., 1] * cosine
+    right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
+    return c.take((c.kind != 1) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
 
 
 def end_distances(rows: Array, points: Array) -> Array:
@@ -133,8 +141,15 @@ def end_distances(rows: Array, points: Array) -> Array:
     return np.where(is_arc & (rows[..., 5] >= np.pi), np.inf, distance)
 
 
-def restriction_removals(problem: Problem, types: Sequence[str], threads: int | None) -> tuple[int, list[Removal]]:
-    """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them."""
+def restriction_removals(
+    problem: Problem, types: Sequence[str], threads: int | None, left: int
+) -> tuple[int, list[Removal]]:
+    """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
+
+    Parameters
+    ----------
+    left : contacts that keep all restrictions.
+    """
     vise, asked = problem.vise, problem.restrictions
     free_vise = evolve(vise, blocked=(), body_radius=vise.peg_radius)
     steps: list[tuple[str, Restrictions, Vise]] = []
@@ -151,10 +166,10 @@ def restriction_removals(problem: Problem, types: Sequence[str], threads: int | 
         part = Problem.of(problem.workpiece, in_vise, 0.0, restrictions)
         return contacts_of(part, types, threads)
 
-    first = before = count(Restrictions(), free_vise)
+    first = before = max(count(Restrictions(), free_vise), left) if steps else left
     removals = []
     for rule, restrictions, in_vise in steps:
-        after = count(restrictions, in_vise)
+        after = left if rule == steps[-1][0] else min(max(count(restrictions, in_vise), left), before)
         removals.append(Removal(rule, before, after))
         before = after
     return first, removals
@@ -286,13 +301,12 @@ def changes(problem: Problem) -> Iterator[tuple[str, Vise, Restrictions, float]]
     """Changes to try, one at a time."""
     vise, asked, margin = problem.vise, problem.restrictions, problem.contact_margin
     if asked.avoid:
-        faces = ", ".join(str(number) for number in asked.avoid)
-        yield (
-            f"touching {'face' if len(asked.avoid) == 1 else 'faces'} {faces} too",
-            vise,
-            evolve(asked, avoid=()),
-            margin,
-        )
+        if len(asked.avoid) > 1:
+            faces = ", ".join(str(number) for number in asked.avoid)
+            yield f"touching faces {faces} too", vise, evolve(asked, avoid=()), margin
+        for face in asked.avoid[:MOST_FACES]:
+            rest = tuple(number for number in asked.avoid if number != face)
+            yield f"touching face {face} too", vise, evolve(asked, avoid=rest), margin
     if asked.zones:
         yield "without the keep-out zones", vise, evolve(asked, zones=()), margin
     if asked.angles:

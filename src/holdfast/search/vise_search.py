@@ -34,7 +34,7 @@ CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
 # Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
 PAIRS_PER_BLOCK = 2e6
-LEAST_BLOCKS = 16
+LEAST_BLOCKS = 32
 # Cells this near to a range of angles, in degrees, are searched too.
 ANGLE_HAIR = 1e-5
 
@@ -170,10 +170,6 @@ class ViseSearch:
         """Statistics (5,) of all blocks together."""
         return np.asarray(np.array(self.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0))
 
-    def seek(self, margin: float) -> None:
-        """Leave out what cannot reach a closure margin; blocks that run take note of it with their next cell."""
-        self.limits[LEAST_MARGIN] = margin
-
     @property
     def alive(self) -> float:
         """How many chord curves exist at an orientation, on average."""
@@ -230,10 +226,21 @@ class ViseSearch:
         self.stats.append(np.zeros(STATISTICS, np.int64))
         return self.stats[-1]
 
+    def limits_from(self, margin: float) -> Array:
+        """The limits with a closure margin to reach."""
+        limits = self.limits.copy()
+        limits[LEAST_MARGIN] = margin
+        return limits
+
     def cross(
-        self, kernel: Callable[..., Array], edges: Array, members: NDArray[np.int64], stats: NDArray[np.int64]
+        self,
+        kernel: Callable[..., Array],
+        edges: Array,
+        members: NDArray[np.int64],
+        stats: NDArray[np.int64],
+        margin: float,
     ) -> Array:
-        """Run a kernel of crossings on some cells."""
+        """Run a kernel of crossings on some cells, for fixtures of a closure margin or more."""
         return kernel(
             edges,
             members,
@@ -245,7 +252,7 @@ class ViseSearch:
             self.vise.pitch[0],
             self.vise.pitch[1],
             self.vise.row_offset,
-            self.limits,
+            self.limits_from(margin),
             self.counting,
             stats,
         )
@@ -256,8 +263,9 @@ class ViseSearch:
         uprights: NDArray[np.int64],
         members: NDArray[np.int64],
         stats: NDArray[np.int64],
+        margin: float,
     ) -> Array:
-        """Run a kernel of uprights on one cell."""
+        """Run a kernel of uprights on one cell, for fixtures of a closure margin or more."""
         return kernel(
             uprights,
             self.table.upright_integers,
@@ -269,7 +277,7 @@ class ViseSearch:
             self.table.reals,
             self.vise.pitch[1],
             self.vise.row_offset,
-            self.limits,
+            self.limits_from(margin),
             self.counting,
             stats,
         )
