@@ -59,10 +59,10 @@ class LengthUnit:
         """A length in mm with the sign of the unit."""
         return f"{self.number(length, decimals)} {self.sign}"
 
-    def plain(self, length: float) -> str:
-        """A length in mm, such as a pitch, with as few decimals as it has.
+    def plain(self, length: float, digits: int = 6) -> str:
+        """A length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
 
         >>> LengthUnit.inch().plain(12.7), LengthUnit.mm().plain(10.0)
         ('0.5 in', '10 mm')
         """
-        return f"{length / self.millimetres:.6g} {self.sign}"
+        return f"{length / self.millimetres:.{digits}g} {self.sign}"

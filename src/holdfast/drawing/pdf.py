@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from datetime import UTC, date, datetime, time
 
 from fpdf import FPDF
@@ -36,22 +37,20 @@ STYLE = {"fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-
 CAPS = {"butt": "butt", "round": "round"}
 
 
-def svg_to_pdf(svg: str, created: date) -> bytes:
-    """Turn a page of SVG into a PDF of one page.
+def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
+    """Turn pages of SVG into a PDF.
 
     Parameters
     ----------
-    svg : text written by :meth:`holdfast.drawing.scene.Scene.svg`.
-    created : the day the document is dated; the bytes depend on nothing else than it and the picture.
+    pages : texts written by :meth:`holdfast.drawing.scene.Scene.svg`.
+    created : the day the document is dated; the bytes depend on nothing else than it and the pages.
 
     Raises
     ------
     ValueError
         For SVG of another origin, which may hold what is not understood here.
     """
-    root = ET.fromstring(svg.encode("utf-8"))
-    _, _, width, height = (float(word) for word in root.attrib["viewBox"].split())
-    pdf = FPDF(unit=POINTS_PER_UNIT, format=(width, height))
+    pdf = FPDF(unit=POINTS_PER_UNIT)
     pdf.set_margin(0.0)
     pdf.set_auto_page_break(False)
     pdf.set_creation_date(datetime.combine(created, time(), UTC))
@@ -59,8 +58,11 @@ def svg_to_pdf(svg: str, created: date) -> bytes:
     regular, bold = font_files()
     pdf.add_font(FONT, "", regular)
     pdf.add_font(FONT, "B", bold)
-    pdf.add_page()
-    draw_children(pdf, root)
+    for svg in pages:
+        root = ET.fromstring(svg.encode("utf-8"))
+        _, _, width, height = (float(word) for word in root.attrib["viewBox"].split())
+        pdf.add_page(format=(width, height))
+        draw_children(pdf, root)
     return bytes(pdf.output())
 
 

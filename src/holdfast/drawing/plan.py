@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, radians, sin
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from holdfast.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow, peg_radius
 from holdfast.drawing.dimensions import angle_mark, dimension
 from holdfast.drawing.fonts import text_width
+from holdfast.drawing.inset import draw_zero
 from holdfast.drawing.jaws import JawView, labelled
 from holdfast.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
 from holdfast.drawing.length_unit import LengthUnit
@@ -27,13 +29,28 @@ LONGEST_ARROW = 62.0
 LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
 TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
 ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
+MARK_RADIUS = 5.0
+RIM_WORD = 10.0
 
 # In denser lattices labels cannot help covering holes.
 MOST_HOLES_AVOIDED = 2000
 
 
-def draw_plan(scene: Scene, bench: Bench, view: View, workpiece: Workpiece, bounds: Box, lengths: LengthUnit) -> None:
-    """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels."""
+def draw_plan(
+    scene: Scene,
+    bench: Bench,
+    view: View,
+    workpiece: Workpiece,
+    bounds: Box,
+    lengths: LengthUnit,
+    marks: Sequence[tuple[Point, str]] = (),
+) -> None:
+    """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
+
+    Parameters
+    ----------
+    marks : points in the vise frame (mm) to mark, each with its name; those outside the picture are left out.
+    """
     frame = view.box(bench.extent)
     names = draw_hole_names(scene, bench, view, frame)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
@@ -41,7 +58,8 @@ def draw_plan(scene: Scene, bench: Bench, view: View, workpiece: Workpiece, boun
     names += draw_captions(scene, bench, view, frame, bounds)
     center = view(placed_point(workpiece.center, bench.fixture.pose))
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
-    draw_labels(scene, bench, view, workpiece, bounds, names)
+    marks = [(view(point), name) for point, name in marks if bench.extent.contains(Box(*point, *point))]
+    draw_labels(scene, bench, view, workpiece, bounds, names, marks)
 
 
 def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
@@ -65,6 +83,18 @@ def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[
             for rim, inner, way in ((frame.y0, plate.y0, -1), (frame.y1, plate.y1, 1)):
                 ruling(group, (x, rim), (x, inner))
                 boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
+    return boxes + write_rim_words(group, frame, boxes)
+
+
+def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
+    """Say at the left rim which names are rows and which are columns, where no name stands, and return the room taken."""
+    boxes = []
+    for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
+        right = frame.x0 - 5
+        box = Box(right - text_width(word, RIM_WORD), y - RIM_WORD / 2, right, y + RIM_WORD / 2)
+        if all(box.grown(2.0).overlap(name) == 0 for name in names):
+            scene.text((right, y), word, RIM_WORD, "end", fill=GREY)
+            boxes.append(box)
     return boxes
 
 
@@ -129,13 +159,24 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
     ]
 
 
-def draw_labels(scene: Scene, bench: Bench, view: View, workpiece: Workpiece, bounds: Box, names: list[Box]) -> None:
-    """Label pegs by their holes, touched faces by their numbers, and the part's turn, where they hide nothing."""
+def draw_labels(
+    scene: Scene,
+    bench: Bench,
+    view: View,
+    workpiece: Workpiece,
+    bounds: Box,
+    names: list[Box],
+    marks: Sequence[tuple[Point, str]],
+) -> None:
+    """Label pegs by their holes, touched faces by their numbers, the part's turn and marked page points, where the labels
+    hide nothing."""
     center = view(placed_point(workpiece.center, bench.fixture.pose))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
     avoid_drawing(placer, bench, view, center)
     for box in names:
         placer.avoid_box(box)
+    for (x, y), _ in marks:
+        placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(peg.segment for peg in pegs))
     angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°"
@@ -143,17 +184,20 @@ def draw_labels(scene: Scene, bench: Bench, view: View, workpiece: Workpiece, bo
     places = placer.place(
         [
             *(peg_label(bench, index, view) for index in range(4)),
-            *(face_tag(bench, number, view) for number in numbers),
+            *(face_tag(bench, face, view) for face in numbers),
             around(center, direction, (text_width(angle, 13) + 4, 16), (26, 32, 40, 50, 64), spread(24), turn_cost=4),
+            *(mark_label(point, name) for point, name in marks),
         ]
     )
     group = scene.group("labels")
     radius = peg_radius(bench.vise, view.scale)
     for peg, place in zip(pegs, places, strict=False):
         draw_flag(group, place, radius, peg.hole)
-    for number, place in zip(numbers, places[4:], strict=False):
-        draw_tag(group, place, str(number))
-    group.text(places[-1].box.center, angle, 13, "middle", fill=GREY, halo=3)
+    for face, place in zip(numbers, places[4:], strict=False):
+        draw_tag(group, place, str(face))
+    group.text(places[4 + len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
+    for (_, name), place in zip(marks, places[5 + len(numbers) :], strict=True):
+        draw_mark(group, place, name)
 
 
 def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
@@ -196,11 +240,18 @@ def peg_label(bench: Bench, index: int, view: View) -> Label:
     return around(view((peg.x, peg.y)), atan2(-ny, nx), size, distances, spread(24))
 
 
-def face_tag(bench: Bench, number: int, view: View) -> Label:
+def mark_label(point: Point, name: str) -> Label:
+    """Candidates for the name of a marked page point."""
+    size = (text_width(name, TAG_SIZE) + 6, TAG_SIZE + 4)
+    distances = [MARK_RADIUS + gap for gap in (3, 10, 20, 34, 52, 76, 110)]
+    return around(point, pi / 4, size, distances, spread(24), turn_cost=2)
+
+
+def face_tag(bench: Bench, face_number: int, view: View) -> Label:
     """Candidates for the number of a face: inside the part, beside the contacts on it."""
-    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.segment == number)
+    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.segment == face_number)
     face = bench.faces[index]
-    size = (max(TAG_HEIGHT, text_width(str(number), TAG_SIZE) + 8), TAG_HEIGHT)
+    size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     half = face.half_extent
     near = face.parameter(bench.contacts[index][0])
     labels = []
@@ -224,8 +275,15 @@ def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
     scene.text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
 
 
-def draw_tag(scene: Scene, place: Place, number: str) -> None:
+def draw_mark(scene: Scene, place: Place, name: str) -> None:
+    """Draw the sign of a zero point, a quartered disc, and its name with a leader."""
+    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
+    draw_zero(scene, place.anchor, MARK_RADIUS)
+    scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
+
+
+def draw_tag(scene: Scene, place: Place, name: str) -> None:
     """Draw the number of a face in a rounded frame with a short leader to the face."""
     scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
     scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
-    scene.text(place.box.center, number, TAG_SIZE, "middle")
+    scene.text(place.box.center, name, TAG_SIZE, "middle")

@@ -19,7 +19,18 @@ from attrs import frozen
 from holdfast.drawing.fonts import FAMILY
 from holdfast.geometry.segment import Point
 
-__all__ = ["BLACK", "GREY", "LANDSCAPE", "PORTRAIT", "Box", "Scene", "View", "decimals_for", "number"]
+__all__ = [
+    "BLACK",
+    "GREY",
+    "LANDSCAPE",
+    "PORTRAIT",
+    "UNITS_PER_MM",
+    "Box",
+    "Scene",
+    "View",
+    "decimals_for",
+    "number",
+]
 
 LANDSCAPE = (1188.0, 840.0)
 PORTRAIT = (840.0, 1188.0)

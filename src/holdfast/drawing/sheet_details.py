@@ -1,0 +1,67 @@
+"""What a setup sheet says besides the fixture: paper, unit, names, dates, and what the loads do."""
+
+from __future__ import annotations
+
+from datetime import date
+
+from attrs import field, frozen
+
+from holdfast.model.tolerance import Tolerance
+
+__all__ = ["PAPERS", "LoadLine", "SheetDetails"]
+
+# Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
+PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
+
+
+@frozen
+class LoadLine:
+    """One load and how the fixture takes it; forces in N.
+
+    Parameters
+    ----------
+    name : what the load is called, and in words what it is.
+    needed : the smallest jaw force at which no peg lets go.
+    largest : the largest peg force at the sheet's jaw force, or at ``needed`` where the sheet has none.
+    needed_with_friction : as ``needed``, with friction; None when no friction was asked for.
+    """
+
+    name: str
+    needed: float
+    largest: float
+    needed_with_friction: float | None = None
+
+
+@frozen
+class SheetDetails:
+    """Everything on a setup sheet that the fixture does not tell.
+
+    Parameters
+    ----------
+    number, count : the fixture's rank in its result and how many there are.
+    day : the date written on the sheet.
+    result_hash : SHA-256 of the result file in hexadecimal.
+    version : of the program.
+    paper : "a4" or "letter".
+    unit : of lengths, "mm" or "inch".
+    part_name : written instead of the workpiece's own name.
+    tolerance : how far pegs and faces may be off, which the location error is for.
+    jaw_force : in N; None when it is left open.
+    friction : coefficient of friction that ``needed_with_friction`` is for.
+    loads : what acts on the part.
+    others : how many other fixtures of the result use the same holes.
+    """
+
+    number: int
+    count: int
+    day: date
+    result_hash: str
+    version: str
+    paper: str = "a4"
+    unit: str = "mm"
+    part_name: str | None = None
+    tolerance: Tolerance = field(factory=Tolerance)
+    jaw_force: float | None = None
+    friction: float | None = None
+    loads: tuple[LoadLine, ...] = ()
+    others: int = 0
