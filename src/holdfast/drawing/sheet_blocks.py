@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
+from math import ceil
 
 from attrs import frozen
 
@@ -26,6 +27,9 @@ NAME_SIZES = (26.0, 22.0, 18.0)
 MOST_NAME_LINES = 3
 # More loads than this are left to the command line; the hardest are shown.
 MOST_LOADS = 6
+# Of the width of a column, how much the name of a load may take.
+WIDEST_LOAD = 0.3
+ROUNDING = 1e-9
 KILO = 1000.0
 
 Block = Callable[[Column], None]
@@ -193,26 +197,41 @@ def write_quality(column: Column, sheet: Sheet) -> None:
 
 
 def write_loads(column: Column, sheet: Sheet) -> None:
-    """Write what acts on the part and what the jaws must do about it, the hardest load first."""
+    """Write what acts on the part, the jaw force it needs and each peg's largest force, the hardest load first."""
     details = sheet.details
-    heading(column, "Loads and reactions")
-    loads = sorted(details.loads, key=lambda load: -load.needed)
-    header = ["Load", "jaws"]
-    if details.friction is not None:
-        header.append(f"with µ {details.friction:g}")
-    header.append("peg")
+    heading(column, "Loads and reactions, N")
+    cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
+    friction = [] if details.friction is None else [f"µ {details.friction:g}"]
+    header = ["Load", "jaws", *friction, *(peg.hole for peg in sheet.fixture.pegs)]
     rows = []
-    for load in loads[:MOST_LOADS]:
-        row = [shortened(load.name, BODY, 0.3 * column.width, bold=True), newtons(load.needed)]
-        if load.needed_with_friction is not None:
-            row.append(newtons(load.needed_with_friction))
-        rows.append([*row, newtons(load.largest)])
+    for number, case in cases[:MOST_LOADS]:
+        name = shortened(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
+        more = [] if details.friction is None else [optional_force(case.needed_with_friction)]
+        rows.append([name, plain_force(case.needed.value), *more, *map(plain_force, case.largest)])
     write_table(column, header, rows)
-    if len(loads) > MOST_LOADS:
-        column.paragraph(f"{len(loads) - MOST_LOADS} more loads need less jaw force.", NOTE)
-    at = "that jaw force" if details.jaw_force is None else f"a jaw force of {newtons(details.jaw_force)}"
-    friction = "" if details.friction is None else " without friction, and with it"
-    column.paragraph(f"Jaws: the jaw force below which a peg lets go{friction}. Peg: the largest force at {at}.", NOTE)
+    if len(cases) > MOST_LOADS:
+        column.paragraph(f"The other {len(cases) - MOST_LOADS} loads need no more jaw force than these.", NOTE)
+    at = newtons(cases[0][1].jaw_force)
+    column.paragraph("Jaws: the jaw force below which a peg lets go, without friction.", NOTE)
+    if details.friction is not None:
+        column.paragraph(
+            f"µ {details.friction:g}: the least jaw force that could hold at all with that friction.", NOTE
+        )
+    column.paragraph(f"Under each peg: its largest force on the part at a jaw force of {at}.", NOTE)
+
+
+def optional_force(force: float | None) -> str:
+    """A force, or a dash where it is not known."""
+    return "–" if force is None else plain_force(force)
+
+
+def plain_force(force: float) -> str:
+    """A force in N without the sign of the unit, rounded up so that nothing is promised that does not hold.
+
+    >>> plain_force(1234.2), plain_force(0.0)
+    ('1235', '0')
+    """
+    return f"{ceil(force - ROUNDING * abs(force)):d}"
 
 
 def newtons(force: float) -> str:

@@ -7,29 +7,12 @@ from datetime import date
 from attrs import field, frozen
 
 from holdfast.model.tolerance import Tolerance
+from holdfast.statics.loads import LoadCase
 
-__all__ = ["PAPERS", "LoadLine", "SheetDetails"]
+__all__ = ["PAPERS", "SheetDetails"]
 
 # Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
-
-
-@frozen
-class LoadLine:
-    """One load and how the fixture takes it; forces in N.
-
-    Parameters
-    ----------
-    name : what the load is called, and in words what it is.
-    needed : the smallest jaw force at which no peg lets go.
-    largest : the largest peg force at the sheet's jaw force, or at ``needed`` where the sheet has none.
-    needed_with_friction : as ``needed``, with friction; None when no friction was asked for.
-    """
-
-    name: str
-    needed: float
-    largest: float
-    needed_with_friction: float | None = None
 
 
 @frozen
@@ -47,8 +30,8 @@ class SheetDetails:
     part_name : written instead of the workpiece's own name.
     tolerance : how far pegs and faces may be off, which the location error is for.
     jaw_force : in N; None when it is left open.
-    friction : coefficient of friction that ``needed_with_friction`` is for.
-    loads : what acts on the part.
+    friction : coefficient of friction that was asked for with the loads.
+    loads : what acts on the part, and the peg forces that answer it.
     others : how many other fixtures of the result use the same holes.
     """
 
@@ -63,5 +46,5 @@ class SheetDetails:
     tolerance: Tolerance = field(factory=Tolerance)
     jaw_force: float | None = None
     friction: float | None = None
-    loads: tuple[LoadLine, ...] = ()
+    loads: tuple[LoadCase, ...] = ()
     others: int = 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, hypot, inf, radians, sin
+from math import ceil, cos, hypot, inf, radians, sin
 
 import numpy as np
 from attrs import frozen
@@ -174,10 +174,11 @@ def cautions_of(
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
     if details.jaw_force is not None:
-        for load in details.loads:
-            if load.needed > details.jaw_force:
-                words = f"Under {load.name} a peg lets go below {load.needed:.0f} N of jaw force"
-                found.append(Caution("load", f"{words}, more than the {details.jaw_force:.0f} N given."))
+        for number, case in enumerate(details.loads, 1):
+            if not case.keeps_contact:
+                name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
+                words = f"Under {name} {peg.hole} lets go at the {details.jaw_force:.0f} N given"
+                found.append(Caution("load", f"{words}: clamp with more than {ceil(case.needed.value)} N."))
     if details.others:
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"
         found.append(Caution("pose", f"The same four holes hold this part in {ways}: make sure of angle and faces."))
