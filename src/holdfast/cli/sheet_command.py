@@ -97,15 +97,16 @@ def sheet(
         raise InputError(
             f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf or .step."
         )
+    length_unit = choice("--unit", unit, ("mm", "inch"))
     settings = {
         "paper": choice("--paper", paper, ("a4", "letter")),
-        "unit": choice("--unit", unit, ("mm", "inch")),
+        "unit": length_unit,
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
         "jaw_force": positive("--jaw-force", jaw_force, "a force in N, such as 3000"),
         "friction": positive("--friction", friction, "a coefficient such as 0.15"),
     }
-    given = given_loads(load or [], loads, settings["unit"])
+    given = given_loads(load or [], loads, length_unit)
     refuse_unwritable(path)
     from holdfast.files.result_reader import read_result
 
@@ -172,9 +173,13 @@ def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
 
         write_setup_dxf(*setup)
         return
-    from holdfast.files.setup_step import write_setup_step
+    from importlib import import_module
 
-    write_setup_step(*setup)
+    try:
+        writer = import_module("holdfast.files.setup_step")
+    except ImportError as error:
+        raise InputError("this holdfast writes no STEP files: let the name end in .dxf.") from error
+    writer.write_setup_step(*setup)
 
 
 def write_paper(

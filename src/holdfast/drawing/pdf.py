@@ -34,7 +34,6 @@ TURN = re.compile(r"rotate\(([-\d.]+) ([-\d.]+) ([-\d.]+)\)")
 # Attributes that change nothing on the page, or that are read where they occur.
 SILENT = {"class", "data-model-to-page", "stroke-linejoin", "font-family"}
 STYLE = {"fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap"}
-CAPS = {"butt": "butt", "round": "round"}
 
 
 def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
@@ -117,7 +116,8 @@ def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})
         x, y, width, height, round_by = (float(attributes.get(k, "0")) for k in ("x", "y", "width", "height", "rx"))
-        path.rectangle(x, y, width, height, min(round_by, width / 2, height / 2))
+        corner = min(round_by, width / 2, height / 2)
+        path.rectangle(x, y, width, height, corner, corner)
     elif tag == "circle":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"cx", "cy", "r"})
         path.circle(*(float(attributes[k]) for k in ("cx", "cy", "r")))

@@ -44,11 +44,13 @@ def draw_plan(
     bounds: Box,
     lengths: LengthUnit,
     marks: Sequence[tuple[Point, str]] = (),
+    angle: str | None = None,
 ) -> None:
     """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
 
     Parameters
     ----------
+    angle : what to write at the part's turn; its size if not given.
     marks : points in the vise frame (mm) to mark, each with its name; those outside the picture are left out.
     """
     frame = view.box(bench.extent)
@@ -59,7 +61,8 @@ def draw_plan(
     center = view(placed_point(workpiece.center, bench.fixture.pose))
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks if bench.extent.contains(Box(*point, *point))]
-    draw_labels(scene, bench, view, workpiece, bounds, names, marks)
+    angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
+    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle)
 
 
 def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
@@ -167,6 +170,7 @@ def draw_labels(
     bounds: Box,
     names: list[Box],
     marks: Sequence[tuple[Point, str]],
+    angle: str,
 ) -> None:
     """Label pegs by their holes, touched faces by their numbers, the part's turn and marked page points, where the labels
     hide nothing."""
@@ -179,7 +183,6 @@ def draw_labels(
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(peg.segment for peg in pegs))
-    angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°"
     direction = -radians(bench.fixture.pose.theta_deg) / 2
     places = placer.place(
         [

@@ -44,17 +44,18 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, vise: Vise, details: Shee
     """
     lengths = LengthUnit.for_pitch(details.unit, min(vise.pitch))
     cautions = cautions_of(fixture, edge_distances(fixture, workpiece, vise), details, lengths)
-    sheet = Sheet(fixture, workpiece, vise, details, lengths, tuple(cautions))
-    bench = bench_of(fixture, workpiece, vise)
+    bench, zero = bench_of(fixture, workpiece, vise), (fixture.pose.x, fixture.pose.y)
+    shown = bench.extent.contains(Box(*zero, *zero))
+    sheet = Sheet(fixture, workpiece, vise, details, lengths, tuple(cautions), shown)
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
     arrangement = arranged((width, height), bench.extent, *blocks_of(sheet))
     scene = new_page(arrangement, sheet)
     room = arrangement.plan
     view = View.fitting(bench.extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
-    marks = [((fixture.pose.x, fixture.pose.y), "part zero")]
+    marks = [(zero, "part zero")]
     if all(peg.hole != "L-A1" for peg in fixture.pegs):
         marks.append(((0.0, 0.0), "L-A1 (0, 0)"))
-    draw_plan(scene, bench, view, workpiece, room, lengths, marks)
+    draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ")
     words = f", scale {arrangement.scale.name}"
     if min(vise.pitch) * view.scale < CLOSEST_HOLES:
         words += "; only the holes near the pegs are drawn"

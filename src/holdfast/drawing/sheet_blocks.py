@@ -37,7 +37,7 @@ Block = Callable[[Column], None]
 
 @frozen
 class Sheet:
-    """What the blocks speak of."""
+    """What the blocks speak of; ``zero_shown`` tells whether the part's zero point lies within the plan."""
 
     fixture: Fixture
     workpiece: Workpiece
@@ -45,6 +45,7 @@ class Sheet:
     details: SheetDetails
     lengths: LengthUnit
     cautions: tuple[Caution, ...]
+    zero_shown: bool = True
 
     @property
     def name(self) -> str:
@@ -172,7 +173,8 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     column.fact("x from hole L-A1", lengths.words(pose.x), bold=True)
     column.fact("y from hole L-A1", lengths.words(pose.y), bold=True)
     column.fact("turned by θ, counter-clockwise", f"{pose.theta_deg:.4f}°", bold=True)
-    column.paragraph("Part zero is (0, 0) of the part's drawing. x runs along the vise, y along the rows upward.", NOTE)
+    place = "" if sheet.zero_shown else ", here outside the plan"
+    column.paragraph(f"Part zero is (0, 0) of the part's drawing{place}. x runs to the right, y upward.", NOTE)
 
 
 def write_quality(column: Column, sheet: Sheet) -> None:

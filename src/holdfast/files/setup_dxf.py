@@ -13,9 +13,9 @@ from math import cos, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import ezdxf
-from ezdxf import options, units
+from ezdxf import options, units  # type: ignore[attr-defined]
 from ezdxf.enums import TextEntityAlignment
+from ezdxf.filemanagement import new
 
 from holdfast.files.atomic import write_bytes
 from holdfast.files.setup_plates import Plate, plate_of, posed_workpiece
@@ -26,7 +26,7 @@ from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
-    from ezdxf.layouts import Modelspace
+    from ezdxf.layouts.layout import Modelspace
 
 __all__ = ["LAYERS", "setup_dxf", "write_setup_dxf"]
 
@@ -63,7 +63,7 @@ def write_setup_dxf(fixture: Fixture, workpiece: Workpiece, vise: Vise, path: st
 def setup_dxf(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> bytes:
     """The bytes of a set-up's DXF drawing, see :func:`write_setup_dxf`."""
     with fixed_stamps():
-        document = ezdxf.new(VERSION)
+        document = new(VERSION)
         document.units = units.MM
         document.header["$MEASUREMENT"] = 1
         for name, color in LAYERS.items():
