@@ -11,6 +11,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from datetime import UTC, date, datetime, time
+from math import asin, atan2, cos, hypot, sin, tan
 
 from fpdf import FPDF
 from fpdf.drawing import DrawingContext, GraphicsStyle, PaintedPath
@@ -19,6 +20,7 @@ from fpdf.enums import TextMode
 
 from holdfast.drawing.fonts import font_files, has_character, text_width
 from holdfast.drawing.scene import UNITS_PER_MM
+from holdfast.geometry.segment import Point
 
 __all__ = ["svg_to_pdf"]
 
@@ -130,6 +132,7 @@ def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
 
 def trace(path: PaintedPath, d: str) -> None:
     """Follow SVG path data with absolute commands."""
+    here = (0.0, 0.0)
     for letter, numbers in COMMAND.findall(d):
         values = [float(word) for word in NUMBER.findall(numbers)]
         match letter:
@@ -138,12 +141,42 @@ def trace(path: PaintedPath, d: str) -> None:
             case "L":
                 path.line_to(*values)
             case "A":
-                rx, ry, turn, large, positive, x, y = values
-                path.arc_to(rx, ry, turn, bool(large), bool(positive), x, y)
+                trace_arc(path, here, values)
             case "Z":
                 path.close()
+                continue
             case _:
                 raise ValueError(f"no way to print the SVG path command {letter}")
+        here = (values[-2], values[-1])
+
+
+def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
+    """Follow a circular arc of at most half a turn as two Bezier curves.
+
+    A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the tangents (A. Riskus,
+    *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns are off by 3e-4 radii.
+
+    Parameters
+    ----------
+    values : of the command A: two equal radii, no turn, no large arc, the sense, and the end.
+    """
+    radius, other, turn, large, positive, x1, y1 = values
+    if radius != other or turn or large:
+        raise ValueError("no way to print an SVG arc that is an ellipse's or more than half a turn")
+    (x0, y0), sense = start, 1.0 if positive else -1.0
+    chord = hypot(x1 - x0, y1 - y0)
+    if chord == 0:
+        return
+    half = asin(min(chord / (2 * radius), 1.0))
+    # From the middle of the chord, the middle of the arc lies on the side its sense tells, y running down the page.
+    direction, height = atan2(y1 - y0, x1 - x0), sense * chord / 2 * tan(half / 2)
+    middle = ((x0 + x1) / 2 + height * sin(direction), (y0 + y1) / 2 - height * cos(direction))
+    reach = 4 / 3 * tan(half / 4) * chord / (2 * sin(half))
+    tangents = [direction + sense * share * half for share in (-1, 0, 1)]
+    for (x, y), end, first, last in ((start, middle, *tangents[:2]), (middle, (x1, y1), *tangents[1:])):
+        path.curve_to(
+            x + reach * cos(first), y + reach * sin(first), end[0] - reach * cos(last), end[1] - reach * sin(last), *end
+        )
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:

@@ -31,8 +31,8 @@ SCALE_BAR = 24.0
 PANELS = {1: 340.0, 2: 310.0}
 # A plan smaller than this on paper in either direction, page units, is no plan.
 SMALLEST_PLAN = 120.0
-# At this scale a second page is no gain any more.
-LARGE_ENOUGH = 1.0
+# A drawing this wide or high on paper, page units, needs no second page to become larger.
+LARGE_ENOUGH = 90 * UNITS_PER_MM
 
 Page = tuple[float, float]
 Filled = tuple[Box, tuple[Block, ...]]
@@ -72,7 +72,8 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
     single = [choice for choice in found if not choice.second]
     if single:
         largest = max(single, key=lambda choice: choice.scale.factor)
-        if largest.scale.factor >= min(best.scale.factor, LARGE_ENOUGH):
+        drawn = largest.scale.factor * UNITS_PER_MM * max(extent.width, extent.height)
+        if largest.scale.factor == best.scale.factor or drawn >= LARGE_ENOUGH:
             return largest
     return best
 
