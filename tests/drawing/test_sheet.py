@@ -31,6 +31,7 @@ from holdfast.model.fixture import Fixture, Peg
 from holdfast.model.holes import Holes
 from holdfast.model.load import Load
 from holdfast.model.result import hole_position
+from holdfast.model.units import INCH, MILLIMETRE, Unit
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 from holdfast.statics.loads import load_cases
@@ -58,11 +59,11 @@ def joined(pages: tuple[str, ...]) -> str:
 
 
 @pytest.mark.parametrize("size", [0.01, 1.0, 40.0], ids=["tiny", "usual", "huge"])
-@pytest.mark.parametrize(("paper", "unit"), [("a4", "mm"), ("letter", "inch")])
+@pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
 @pytest.mark.parametrize("name", ["plate", LONG_NAME], ids=["named", "long name"])
 @pytest.mark.parametrize("made", [example, diamond])
 def test_nothing_is_covered_or_cut_off(
-    size: float, paper: str, unit: str, name: str, made: Callable[..., Held]
+    size: float, paper: str, unit: Unit, name: str, made: Callable[..., Held]
 ) -> None:
     """No word lies on another, and all lie within what a printer prints."""
     held = made(size)
@@ -93,7 +94,7 @@ def test_distances_on_paper_times_the_scale_are_those_of_the_model(held: Held) -
 
 def test_scale_bar_is_as_long_as_it_says(held: Held) -> None:
     """The four pieces of the bar together measure the length beside it, in inches too."""
-    for unit, size in (("mm", 1.0), ("inch", 25.4)):
+    for unit, size in ((MILLIMETRE, 1.0), (INCH, 25.4)):
         page = draw_sheet(*held, evolve(DETAILS, unit=unit))[0]
         (part,) = by_class(page, "part")
         (bar,) = by_class(page, "scale")
@@ -125,7 +126,7 @@ def test_all_a_machinist_needs_is_written(size: float) -> None:
     held = diamond(size)
     fixture, workpiece, _ = held
     words = joined(draw_sheet(*held, details_for(held)))
-    pose, lengths = fixture.pose, LengthUnit.for_pitch("mm", held[2].pitch[0])
+    pose, lengths = fixture.pose, LengthUnit.for_pitch(MILLIMETRE, held[2].pitch[0])
     for wanted in [
         workpiece.name,
         "2026-03-31",
@@ -249,10 +250,11 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
 
 
 def test_other_fixtures_in_the_same_holes_are_counted() -> None:
-    """Fixture 0 put into a table three times has two others in its holes."""
+    """Fixture 0 put into a table three times has two others in its holes, and a third with a twin."""
     table = fake_result(5).table
     again = table.take([0, 1, 0, 2, 0])  # type: ignore[arg-type]
-    assert [same_holes(again, index) for index in range(5)] == [2, 0, 2, 0, 2]
+    assert [same_holes(again, index, table.take(slice(0, 0))) for index in range(5)] == [2, 0, 2, 0, 2]
+    assert same_holes(again, 0, table.take(slice(0, 1))) == 3
 
 
 def test_names_in_other_scripts_and_without_end_are_drawn() -> None:

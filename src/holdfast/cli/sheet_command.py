@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from holdfast.cli.load_option import LOAD_HELP
-from holdfast.cli.values import choice, whole_number
+from holdfast.cli.options import ShownUnitOption
+from holdfast.cli.values import choice, length_unit, whole_number
 from holdfast.errors import InputError
 
 if TYPE_CHECKING:
     from holdfast.model.fixture import Fixture
     from holdfast.model.load import Load
     from holdfast.model.result import Result
+    from holdfast.model.units import Unit
 
 __all__ = ["sheet"]
 
@@ -41,9 +43,7 @@ def sheet(
         ),
     ],
     paper: Annotated[str, typer.Option(metavar="SIZE", help="a4 or letter.", rich_help_panel=ON_PAPER)] = "a4",
-    unit: Annotated[
-        str, typer.Option(metavar="UNIT", help="Unit of lengths, mm or inch.", rich_help_panel=ON_PAPER)
-    ] = "mm",
+    unit: ShownUnitOption = None,
     part_name: Annotated[
         str | None,
         typer.Option(
@@ -97,16 +97,16 @@ def sheet(
         raise InputError(
             f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf or .step."
         )
-    length_unit = choice("--unit", unit, ("mm", "inch"))
+    shown_unit = length_unit(unit)
     settings = {
         "paper": choice("--paper", paper, ("a4", "letter")),
-        "unit": length_unit,
+        "unit": shown_unit,
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
         "jaw_force": positive("--jaw-force", jaw_force, "a force in N, such as 3000"),
         "friction": positive("--friction", friction, "a coefficient such as 0.15"),
     }
-    given = given_loads(load or [], loads, length_unit)
+    given = given_loads(load or [], loads, shown_unit)
     refuse_unwritable(path)
     from holdfast.files.result_reader import read_result
 
@@ -153,15 +153,14 @@ def positive(option: str, text: str | None, what: str) -> float | None:
     return value
 
 
-def given_loads(words: list[str], path: str | None, unit: str) -> tuple[Load, ...]:
+def given_loads(words: list[str], path: str | None, unit: Unit) -> tuple[Load, ...]:
     """The loads of the command line, then those of the file."""
     if not words and path is None:
         return ()
     from holdfast.cli.load_option import parse_load
     from holdfast.files.loads_file import read_loads
-    from holdfast.files.units import millimetres_per
 
-    scale = millimetres_per(unit)
+    scale = unit.millimetres
     return (*(parse_load(word, scale) for word in words), *(read_loads(path, scale) if path is not None else ()))
 
 
@@ -212,7 +211,7 @@ def write_paper(
         version=__version__,
         tolerance=result.tolerance,
         loads=load_cases(fixture, result.workpiece, result.vise, loads, jaw_force, friction),
-        others=same_holes(result.table, rank - 1),
+        others=same_holes(result.table, rank - 1, result.twins),
         **settings,
     )
     pages = draw_sheet(fixture, result.workpiece, result.vise, details)

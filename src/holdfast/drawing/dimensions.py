@@ -21,7 +21,7 @@ def millimetres(length: float, decimals: int = 3) -> str:
     >>> millimetres(24.125), millimetres(-0.0)
     ('24.125 mm', '0.000 mm')
     """
-    return MILLIMETRES.words(length, decimals)
+    return LengthUnit.mm(decimals).words(length)
 
 
 def dimension(scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False) -> None:
@@ -72,7 +72,7 @@ def scale_bar(
     lengths : the unit in which the length is round.
     more : words behind the length.
     """
-    scale *= lengths.millimetres
+    scale *= lengths.unit.millimetres
     length = round_length(longest / scale)
     x, y = at
     part = length * scale / 4

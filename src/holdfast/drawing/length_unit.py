@@ -1,68 +1,61 @@
-"""Lengths in words: millimetres or inches, with a number of decimals."""
+"""Lengths in words on pictures: in a unit, with decimals that suit the size of what is drawn."""
 
 from __future__ import annotations
 
 from attrs import frozen
 
 from holdfast.drawing.scene import decimals_for
+from holdfast.model.units import MILLIMETRE, Unit
 
 __all__ = ["LengthUnit"]
-
-# Exact by definition (international inch, 1959).
-MM_PER_INCH = 25.4
 
 
 @frozen
 class LengthUnit:
-    """How lengths in mm are written.
+    """How a picture writes lengths.
 
     Parameters
     ----------
-    name : "mm" or "inch", as it stands in headings.
-    sign : as it stands behind a number.
-    millimetres : in one unit.
+    unit : what they are written in.
     decimals : of a length.
 
     Examples
     --------
-    >>> LengthUnit.mm().words(24.125), LengthUnit.inch().words(-25.4), LengthUnit.mm().number(-0.0)
+    >>> from holdfast.model.units import INCH
+    >>> LengthUnit.mm().words(24.125), LengthUnit.for_pitch(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """
 
-    name: str
-    sign: str
-    millimetres: float
+    unit: Unit
     decimals: int
 
     @classmethod
-    def mm(cls, decimals: int = 3) -> LengthUnit:
+    def mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
         """Millimetres."""
-        return cls("mm", "mm", 1.0, decimals)
+        return cls(MILLIMETRE, decimals)
 
     @classmethod
-    def inch(cls, decimals: int = 4) -> LengthUnit:
-        """Inches; four decimals are about as fine as three of a millimetre."""
-        return cls("inch", "in", MM_PER_INCH, decimals)
+    def for_pitch(cls, unit: Unit, pitch: float) -> LengthUnit:
+        """A unit with decimals that suit a vise of a pitch in mm."""
+        return cls(unit, unit.decimals + decimals_for(pitch) - decimals_for(1.0))
 
-    @classmethod
-    def for_pitch(cls, name: str, pitch: float) -> LengthUnit:
-        """The unit of a name ("mm" or "inch") with decimals that suit a vise of a pitch in mm."""
-        decimals = decimals_for(pitch)
-        return cls.mm(decimals) if name == "mm" else cls.inch(decimals + 1)
+    @property
+    def sign(self) -> str:
+        """What stands behind a number."""
+        return self.unit.abbreviation
 
-    def number(self, length: float, decimals: int | None = None) -> str:
+    def number(self, length: float) -> str:
         """A length in mm as a number of this unit, with a real minus sign and no negative zero."""
-        text = f"{length / self.millimetres:.{self.decimals if decimals is None else decimals}f}"
-        return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
+        return self.unit.number(length, self.decimals).replace("-", "−")
 
-    def words(self, length: float, decimals: int | None = None) -> str:
+    def words(self, length: float) -> str:
         """A length in mm with the sign of the unit."""
-        return f"{self.number(length, decimals)} {self.sign}"
+        return f"{self.number(length)} {self.sign}"
 
     def plain(self, length: float, digits: int = 6) -> str:
         """A length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
 
-        >>> LengthUnit.inch().plain(12.7), LengthUnit.mm().plain(10.0)
-        ('0.5 in', '10 mm')
+        >>> LengthUnit.mm().plain(12.7), LengthUnit.mm().plain(10.0)
+        ('12.7 mm', '10 mm')
         """
-        return f"{length / self.millimetres:.{digits}g} {self.sign}"
+        return f"{length / self.unit.millimetres:.{digits}g} {self.sign}"

@@ -172,11 +172,11 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
     direction, height = atan2(y1 - y0, x1 - x0), sense * chord / 2 * tan(half / 2)
     middle = ((x0 + x1) / 2 + height * sin(direction), (y0 + y1) / 2 - height * cos(direction))
     reach = 4 / 3 * tan(half / 4) * chord / (2 * sin(half))
-    tangents = [direction + sense * share * half for share in (-1, 0, 1)]
-    for (x, y), end, first, last in ((start, middle, *tangents[:2]), (middle, (x1, y1), *tangents[1:])):
-        path.curve_to(
-            x + reach * cos(first), y + reach * sin(first), end[0] - reach * cos(last), end[1] - reach * sin(last), *end
-        )
+    ways = [(reach * cos(a), reach * sin(a)) for a in (direction - sense * half, direction, direction + sense * half)]
+    points = [start, middle, (x1, y1)]
+    for k in (0, 1):
+        (x, y), (end_x, end_y) = points[k : k + 2]
+        path.curve_to(x + ways[k][0], y + ways[k][1], end_x - ways[k + 1][0], end_y - ways[k + 1][1], end_x, end_y)
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:

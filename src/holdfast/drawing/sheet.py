@@ -103,7 +103,7 @@ def draw_foot(scene: Scene, arrangement: Arrangement, sheet: Sheet, page: str) -
         ("Fixture", f"{details.number} of {details.count}"),
         ("Scale", f"{arrangement.scale.name} on {PAPER_NAMES[details.paper]}"),
         ("Print at", "100 %"),
-        ("Lengths", sheet.lengths.name),
+        ("Lengths", sheet.lengths.unit.name),
         ("Date", details.day.isoformat()),
         ("Result file, SHA-256", f"{details.result_hash[:12]}…"),
         ("Program", f"holdfast {details.version}"),

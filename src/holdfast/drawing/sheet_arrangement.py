@@ -32,7 +32,7 @@ PANELS = {1: 340.0, 2: 310.0}
 # A plan smaller than this on paper in either direction, page units, is no plan.
 SMALLEST_PLAN = 120.0
 # A drawing this wide or high on paper, page units, needs no second page to become larger.
-LARGE_ENOUGH = 90 * UNITS_PER_MM
+LARGE_ENOUGH = 70 * UNITS_PER_MM
 
 Page = tuple[float, float]
 Filled = tuple[Box, tuple[Block, ...]]

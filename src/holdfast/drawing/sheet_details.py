@@ -7,6 +7,7 @@ from datetime import date
 from attrs import field, frozen
 
 from holdfast.model.tolerance import Tolerance
+from holdfast.model.units import MILLIMETRE, Unit
 from holdfast.statics.loads import LoadCase
 
 __all__ = ["PAPERS", "SheetDetails"]
@@ -26,7 +27,7 @@ class SheetDetails:
     result_hash : SHA-256 of the result file in hexadecimal.
     version : of the program.
     paper : "a4" or "letter".
-    unit : of lengths, "mm" or "inch".
+    unit : of lengths.
     part_name : written instead of the workpiece's own name.
     tolerance : how far pegs and faces may be off, which the location error is for.
     jaw_force : in N; None when it is left open.
@@ -41,7 +42,7 @@ class SheetDetails:
     result_hash: str
     version: str
     paper: str = "a4"
-    unit: str = "mm"
+    unit: Unit = MILLIMETRE
     part_name: str | None = None
     tolerance: Tolerance = field(factory=Tolerance)
     jaw_force: float | None = None

@@ -136,13 +136,15 @@ def in_part(peg: Peg, fixture: Fixture) -> tuple[float, float]:
     return c * x + s * y, c * y - s * x
 
 
-def same_holes(table: FixtureTable, index: int) -> int:
-    """How many other fixtures of a table have their pegs in the same holes as the one of an index."""
-    same = np.ones(len(table), dtype=bool)
-    for name in ("jaw", "column", "row"):
-        array = getattr(table, name)
-        same &= (array == array[index]).all(axis=1)
-    return int(same.sum()) - 1
+def same_holes(table: FixtureTable, index: int, twins: FixtureTable) -> int:
+    """How many other fixtures, of a table or of its twins, have their pegs in the same holes as the one of an index."""
+    count = -1
+    for others in (table, twins):
+        same = np.ones(len(others), dtype=bool)
+        for name in ("jaw", "column", "row"):
+            same &= (getattr(others, name) == getattr(table, name)[index]).all(axis=1)
+        count += int(same.sum())
+    return count
 
 
 def cautions_of(
