@@ -113,6 +113,16 @@ def test_paper_unit_and_name(run: Any, folder: Path) -> None:
     assert f"{diamond()[0].jaw_separation / 25.4:.4f} in" in words
 
 
+def test_lengths_of_loads_are_in_the_unit_of_the_sheet(run: Any, folder: Path) -> None:
+    """A force half an inch off the corner gives the reactions of one 12.7 mm off; one 0.5 mm off gives others."""
+
+    def reactions(unit: str, place: str) -> list[str]:
+        run("sheet", "r.json", 1, "-o", "a.pdf", "--unit", unit, "--load", f"force=50 at={place},0")
+        return words_in(folder / "a.pdf").split("load 1 ")[1].split()[:5]
+
+    assert reactions("inch", "0.5") == reactions("mm", "12.7") != reactions("mm", "0.5")
+
+
 def test_fixtures_in_the_same_holes_are_warned_of(run: Any, folder: Path) -> None:
     """The result tells the same holes twice."""
     run("sheet", "r.json", 1, "-o", "a.pdf")
