@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import tan
+from math import sqrt, tan
 
 import numpy as np
 
@@ -43,3 +43,31 @@ def example(size: float = 1.0, name: str = "notched plate") -> tuple[Fixture, Wo
     pose = Pose(90.0, 43.0 * size, -5.0 * size)
     quality = {"closure_margin": 0.125}
     return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, separation, quality), workpiece, vise
+
+
+def diamond(size: float = 1.0, rounded: bool = False, name: str = "diamond") -> tuple[Fixture, Workpiece, Vise]:
+    """A true fixture: a square of side 40 times ``size``, turned by 45 degrees and held by two pegs on either side.
+
+    Every peg touches a side of its own, 20 - (cx - 10) / sqrt(2) from the nearer corner with cx = 23 sqrt(2) - 10 the height
+    of the square's centre over the left pegs, and takes 1 / sqrt(2) of the jaw force.
+
+    Parameters
+    ----------
+    rounded : round the corner between the two left sides, so that these end in tangent joints there.
+    """
+    corner = [[5, 40, QUARTER], [0, 35, 0]] if rounded else [[0, 40, 0]]
+    loop = [[0, 0, 0], [40, 0, 0], [40, 40, 0], *corner]
+    workpiece = Workpiece.from_loops(name, [[[size * x, size * y, bulge] for x, y, bulge in loop]])
+    vise = Vise(pitch=10 * size, columns=1, peg_radius=3 * size)
+    center = 23 * sqrt(2) - 10
+    separation = 2 * center * size
+    pegs = []
+    for jaw, row, segment in [(0, 0, 4 if rounded else 3), (0, 2, 2), (1, 0, 0), (1, 2, 1)]:
+        x, y = hole_position(vise, jaw, 0, row, separation)
+        pegs.append(Peg("right" if jaw else "left", 0, row, x, y, segment, 1 / sqrt(2)))
+    pose = Pose(45.0, center * size, (10 - 20 * sqrt(2)) * size)
+    return (
+        Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, separation, {"closure_margin": 0.25}),
+        workpiece,
+        vise,
+    )

@@ -22,6 +22,7 @@ from holdfast.cli.commands import PlainCommand, PlainGroup
 from holdfast.cli.design_command import design
 from holdfast.cli.features_command import features
 from holdfast.cli.parts_command import parts
+from holdfast.cli.sheet_command import sheet
 from holdfast.cli.show_command import show
 from holdfast.cli.verify_command import verify
 from holdfast.cli.vises_command import vises
@@ -41,6 +42,8 @@ EXAMPLES = f"""
       each, 10 mm apart, and pegs of 6 mm diameter
   holdfast show part.json 1 --draw setup.png
       how to set up the best of them, with a picture for the wall
+  holdfast sheet part.json 1 -o setup.pdf
+      the same to scale on paper, with all there is to know at the machine
   holdfast features part.dxf --draw faces.svg
       the numbers of the part's faces, to talk about them
 
@@ -91,6 +94,7 @@ app = typer.Typer(
 )
 app.command(cls=PlainCommand)(design)
 app.command(cls=PlainCommand)(show)
+app.command(cls=PlainCommand)(sheet)
 app.command(cls=PlainCommand)(features)
 app.command(cls=PlainCommand)(parts)
 app.command(cls=PlainCommand)(vises)

@@ -7,6 +7,17 @@ The map from millimetres to the page is kept in the pictures: groups that show t
 from holdfast.drawing.features_picture import draw_features
 from holdfast.drawing.fixture_picture import draw_fixture
 from holdfast.drawing.render import render, svg_to_png
+from holdfast.drawing.sheet import draw_sheet
+from holdfast.drawing.sheet_details import SheetDetails
 from holdfast.drawing.thumbnails import MOST_THUMBNAILS, draw_thumbnails
 
-__all__ = ["MOST_THUMBNAILS", "draw_features", "draw_fixture", "draw_thumbnails", "render", "svg_to_png"]
+__all__ = [
+    "MOST_THUMBNAILS",
+    "SheetDetails",
+    "draw_features",
+    "draw_fixture",
+    "draw_sheet",
+    "draw_thumbnails",
+    "render",
+    "svg_to_png",
+]

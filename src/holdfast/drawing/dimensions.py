@@ -5,12 +5,14 @@ from __future__ import annotations
 from math import cos, floor, hypot, log10, pi, radians, sin
 
 from holdfast.drawing.fonts import text_width
+from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.scene import BLACK, GREY, Scene, number
 from holdfast.geometry.segment import Point
 
 __all__ = ["angle_mark", "dimension", "millimetres", "round_length", "scale_bar"]
 
 TIGHT = 34.0
+MILLIMETRES = LengthUnit.mm()
 
 
 def millimetres(length: float, decimals: int = 3) -> str:
@@ -19,8 +21,7 @@ def millimetres(length: float, decimals: int = 3) -> str:
     >>> millimetres(24.125), millimetres(-0.0)
     ('24.125 mm', '0.000 mm')
     """
-    text = f"{length:.{decimals}f}"
-    return f"{text.removeprefix('-') if float(text) == 0 else text.replace('-', '−')} mm"
+    return LengthUnit.mm(decimals).words(length)
 
 
 def dimension(scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False) -> None:
@@ -53,8 +54,25 @@ def round_length(length: float) -> float:
     return float(next(k * power for k in (5, 2, 1) if k * power <= length * (1 + 1e-9)))
 
 
-def scale_bar(scene: Scene, at: Point, scale: float, longest: float = 150.0, size: float = 12.0) -> float:
-    """Draw a bar of a round length in mm with its lower left corner at a page point; return its total width."""
+def scale_bar(
+    scene: Scene,
+    at: Point,
+    scale: float,
+    longest: float = 150.0,
+    size: float = 12.0,
+    lengths: LengthUnit = MILLIMETRES,
+    more: str = "",
+) -> float:
+    """Draw a bar of a round length with its lower left corner at a page point; return its total width.
+
+    Parameters
+    ----------
+    scale : page units for a mm.
+    longest : page units the bar may take.
+    lengths : the unit in which the length is round.
+    more : words behind the length.
+    """
+    scale *= lengths.unit.millimetres
     length = round_length(longest / scale)
     x, y = at
     part = length * scale / 4
@@ -62,7 +80,7 @@ def scale_bar(scene: Scene, at: Point, scale: float, longest: float = 150.0, siz
     for k in range(4):
         corners = [(x + k * part, y - 6), (x + (k + 1) * part, y - 6), (x + (k + 1) * part, y), (x + k * part, y)]
         bar.polygon(corners, BLACK if k % 2 == 0 else "#ffffff", BLACK, 0.8)
-    text = f"{length:g} mm"
+    text = f"{length:g} {lengths.sign}{more}"
     bar.text((x + 4 * part + 8, y - 3), text, size)
     return 4 * part + 8 + text_width(text, size)
 

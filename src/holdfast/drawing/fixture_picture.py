@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, pi, radians, sin
-
-import numpy as np
 from attrs import frozen
 
-from holdfast.drawing.bench import PEG_FILL, Bench, bench_of, draw_bench, force_arrow, peg_radius
-from holdfast.drawing.dimensions import angle_mark, dimension, millimetres, scale_bar
-from holdfast.drawing.fonts import text_width
+from holdfast.drawing.bench import Bench, bench_of
+from holdfast.drawing.dimensions import scale_bar
 from holdfast.drawing.inset import draw_inset
-from holdfast.drawing.jaws import CLOSEST_HOLES, JawView, labelled
-from holdfast.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
+from holdfast.drawing.jaws import CLOSEST_HOLES
+from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.panel import Column, draw_legend, draw_peg_table, draw_settings, draw_title
-from holdfast.drawing.part import placed_point
-from holdfast.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View, decimals_for
-from holdfast.geometry.segment import Point
+from holdfast.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
+from holdfast.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View, decimals_for
 from holdfast.model.fixture import Fixture
-from holdfast.model.holes import column_letters
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -26,17 +20,8 @@ __all__ = ["draw_fixture"]
 
 EDGE = 32.0
 PANEL = 326.0
-# Room around jaws and part for row numbers, column letters, the dimension, captions and the scale bar.
-LEFT, TOP, RIGHT, BOTTOM = 48.0, 84.0, 48.0, 118.0
-LONGEST_ARROW = 62.0
+SCALE_BAR = 36.0
 HIGHEST_INSET = 320.0
-
-LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
-TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
-ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
-
-# In denser lattices labels cannot help covering holes.
-MOST_HOLES_AVOIDED = 2000
 
 
 @frozen
@@ -50,7 +35,7 @@ class Layout:
     def view(self, bench: Bench) -> View:
         """The largest view of a bench that leaves room for the lettering."""
         box = self.drawing
-        inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM)
+        inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
         return View.fitting(bench.extent, inner)
 
 
@@ -81,206 +66,10 @@ def draw_fixture(fixture: Fixture, workpiece: Workpiece, vise: Vise, *, title: s
     layout = portrait if portrait.view(bench).scale > 1.15 * landscape.view(bench).scale else landscape
     view = layout.view(bench)
     scene = Scene.page(layout.page, f"{workpiece.name}: {title or 'Fixture'}")
-    frame = view.box(bench.extent)
-    names = draw_hole_names(scene, bench, view, frame)
-    draw_bench(scene, bench, view, longest=LONGEST_ARROW)
-    draw_separation(scene, bench, view, frame)
-    names += draw_captions(scene, bench, view, frame, layout.drawing)
+    draw_plan(scene, bench, view, workpiece, layout.drawing, LengthUnit.mm(decimals_for(min(vise.pitch))))
     scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale)
-    angle_mark(
-        scene, view(placed_point(workpiece.center, fixture.pose)), fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH
-    )
-    draw_labels(scene, bench, view, workpiece, layout.drawing, names)
     draw_panel(scene, layout.panel, view.scale, fixture, workpiece, vise, title)
     return scene.svg()
-
-
-def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
-    """Write column letters above and below the jaws and row numbers at their outer sides, as on the rim of a map.
-
-    Returns where they stand.
-    """
-    group, boxes = scene.group("hole-names"), []
-    for jaw in bench.jaws:
-        plate = view.box(jaw.plate)
-        pegs = [peg for peg in bench.fixture.pegs if peg.jaw == jaw.jaw]
-        rows = [(row, view((0.0, y))[1]) for row, y in zip(jaw.rows, jaw.y, strict=True)]
-        for row, y, used in labelled(rows, {peg.row for peg in pegs}, 15.0):
-            rim, inner, way = (frame.x0, plate.x0, -1) if jaw.jaw == "left" else (frame.x1, plate.x1, 1)
-            ruling(group, (rim, y), (inner, y))
-            anchor = "end" if way < 0 else "start"
-            boxes.append(write_name(group, (rim + 10 * way, y), str(row + 1), used, anchor))
-        columns = [(column, view((x, 0.0))[0]) for column, x in zip(jaw.columns, jaw.x, strict=True)]
-        for column, x, used in labelled(columns, {peg.column for peg in pegs}, 17.0):
-            anchor = inner_anchor(jaw, column, bench.fixture.jaw_separation * view.scale)
-            for rim, inner, way in ((frame.y0, plate.y0, -1), (frame.y1, plate.y1, 1)):
-                ruling(group, (x, rim), (x, inner))
-                boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
-    return boxes
-
-
-def inner_anchor(jaw: JawView, column: int, gap: float) -> str:
-    """How the letter of a column stands: beside its column when the jaws all but meet, else on it."""
-    if gap >= 20:
-        return "middle"
-    if jaw.jaw == "left" and column == jaw.columns[-1]:
-        return "end"
-    return "start" if jaw.jaw == "right" and column == 0 else "middle"
-
-
-def ruling(scene: Scene, rim: Point, plate: Point) -> None:
-    """Draw a faint line that leads from a name at the rim to a plate that lies further in."""
-    if abs(rim[0] - plate[0]) + abs(rim[1] - plate[1]) > 12:
-        scene.line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
-
-
-def write_name(scene: Scene, at: Point, name: str, used: bool, anchor: str) -> Box:
-    """Write a column letter or row number, bold when a peg stands there, and return its box."""
-    size = 14.0 if used else 12.0
-    scene.text(at, name, size, anchor, bold=used, fill=BLACK if used else GREY)
-    width = text_width(name, size, used)
-    left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
-    return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
-
-
-def draw_separation(scene: Scene, bench: Bench, view: View, frame: Box) -> None:
-    """Dimension the jaw separation from the left jaw's last column to the right jaw's first."""
-    group = scene.group("jaw-separation")
-    left, right = bench.jaws[0].x[-1], bench.jaws[1].x[0]
-    y = frame.y0 - 42
-    for x in (left, right):
-        page_x = view((x, 0.0))[0]
-        group.line([(page_x, frame.y0 - 23), (page_x, y - 3)], BLACK, 0.7)
-    decimals = decimals_for(min(bench.vise.pitch))
-    text = f"S = {millimetres(bench.fixture.jaw_separation, decimals)}"
-    dimension(group, (view((left, 0.0))[0], y), (view((right, 0.0))[0], y), text, 17, bold=True)
-
-
-def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Name the jaws below them and show with an arrow which way the right one closes.
-
-    Returns the room this takes.
-    """
-    group = scene.group("captions")
-    y = frame.y1 + 40
-    fixed, sliding, closing = "fixed jaw (L)", "sliding jaw (R)", "closing"
-    left, right = view.box(bench.jaws[0].plate).x1 - 6, view.box(bench.jaws[1].plate).x0 + 6
-    if right - left < 16:  # the jaws all but meet
-        left, right = (left + right) / 2 - 8, (left + right) / 2 + 8
-    left = max(left, bounds.x0 + text_width(fixed, 14))
-    right = min(right, bounds.x1 - text_width(sliding, 14))
-    group.text((left, y), fixed, 14, "end")
-    group.text((right, y), sliding, 14)
-    tip = min(right, bounds.x1 - 66 - text_width(closing, 13))
-    outline = [(0, 0), (18, -11), (18, -5), (58, -5), (58, 5), (18, 5), (18, 11)]
-    group.polygon([(tip + x, y + 24 + dy) for x, dy in outline], "#ffffff", BLACK, 1.4)
-    group.text((tip + 66, y + 24), closing, 13)
-    return [
-        Box(left - text_width(fixed, 14), y - 8, left, y + 8),
-        Box(min(right, tip), y - 8, max(right + text_width(sliding, 14), tip + 66 + text_width(closing, 13)), y + 38),
-    ]
-
-
-def draw_labels(scene: Scene, bench: Bench, view: View, workpiece: Workpiece, bounds: Box, names: list[Box]) -> None:
-    """Label pegs by their holes, touched faces by their numbers, and the part's turn, where they hide nothing."""
-    center = view(placed_point(workpiece.center, bench.fixture.pose))
-    placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
-    avoid_drawing(placer, bench, view, center)
-    for box in names:
-        placer.avoid_box(box)
-    pegs = bench.fixture.pegs
-    numbers = list(dict.fromkeys(peg.segment for peg in pegs))
-    angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°"
-    direction = -radians(bench.fixture.pose.theta_deg) / 2
-    places = placer.place(
-        [
-            *(peg_label(bench, index, view) for index in range(4)),
-            *(face_tag(bench, number, view) for number in numbers),
-            around(center, direction, (text_width(angle, 13) + 4, 16), (26, 32, 40, 50, 64), spread(24), turn_cost=4),
-        ]
-    )
-    group = scene.group("labels")
-    radius = peg_radius(bench.vise, view.scale)
-    for peg, place in zip(pegs, places, strict=False):
-        draw_flag(group, place, radius, peg.hole)
-    for number, place in zip(numbers, places[4:], strict=False):
-        draw_tag(group, place, str(number))
-    group.text(places[-1].box.center, angle, 13, "middle", fill=GREY, halo=3)
-
-
-def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
-    """Tell where the drawing is, so that labels keep off; the part's turn is drawn around ``center``."""
-    for outline in bench.outlines(view, 4.0):
-        placer.avoid_ink(outline, 3.0)
-        placer.avoid_walls(outline[::3])
-    radius = peg_radius(bench.vise, view.scale)
-    for index, peg in enumerate(bench.fixture.pegs):
-        x, y = view((peg.x, peg.y))
-        placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
-        placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
-    turn = radians(bench.fixture.pose.theta_deg)
-    x, y = center
-    placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
-    placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
-    arc = np.linspace(0.0, turn, 24)
-    placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
-    for jaw in bench.jaws:
-        # The columns between which the jaw separation is measured.
-        column = jaw.x[-1] if jaw.jaw == "left" else jaw.x[0]
-        placer.avoid_line(view((column, jaw.plate.y0)), view((column, jaw.plate.y1)), 0.5)
-        if len(jaw.x) * len(jaw.y) < MOST_HOLES_AVOIDED:
-            placer.avoid_ink([view((hole_x, hole_y)) for hole_x in jaw.x for hole_y in jaw.y], 2.0)
-
-
-def spread(count: int) -> list[float]:
-    """Turns all around, the small ones first, radians."""
-    turns = [2 * pi * k / count for k in range(-count // 2 + 1, count // 2 + 1)]
-    return sorted(turns, key=lambda turn: (abs(turn), turn))
-
-
-def peg_label(bench: Bench, index: int, view: View) -> Label:
-    """Candidates for the label of a peg: best away from the part, close by."""
-    peg = bench.fixture.pegs[index]
-    nx, ny = bench.contacts[index][1]
-    size = (text_width(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
-    radius = peg_radius(bench.vise, view.scale)
-    distances = [radius + gap for gap in (5, 14, 26, 42, 64, 90)]
-    return around(view((peg.x, peg.y)), atan2(-ny, nx), size, distances, spread(24))
-
-
-def face_tag(bench: Bench, number: int, view: View) -> Label:
-    """Candidates for the number of a face: inside the part, beside the contacts on it."""
-    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.segment == number)
-    face = bench.faces[index]
-    size = (max(TAG_HEIGHT, text_width(str(number), TAG_SIZE) + 8), TAG_HEIGHT)
-    half = face.half_extent
-    near = face.parameter(bench.contacts[index][0])
-    labels = []
-    for share in (-0.85, -0.6, -0.35, 0.0, 0.35, 0.6, 0.85):
-        parameter = share * half
-        nx, ny = face.normal(parameter)
-        extra = 4 * abs(parameter - near) / half
-        labels.append(around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24), (0.0, 0.5, -0.5), extra))
-    return joined(labels)
-
-
-def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
-    """Draw the label of a peg: a framed name, and a leader when it stands off."""
-    peg = place.anchor
-    x, y = leader_end(peg, place.box)
-    gap = hypot(x - peg[0], y - peg[1])
-    if gap > radius + 2:
-        share = radius / gap
-        scene.line([(peg[0] + share * (x - peg[0]), peg[1] + share * (y - peg[1])), (x, y)], PEG_FILL, 1.4)
-    scene.rectangle(place.box, "#ffffff", PEG_FILL, 1.4, 4)
-    scene.text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
-
-
-def draw_tag(scene: Scene, place: Place, number: str) -> None:
-    """Draw the number of a face in a rounded frame with a short leader to the face."""
-    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
-    scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
-    scene.text(place.box.center, number, TAG_SIZE, "middle")
 
 
 def draw_panel(

@@ -6,7 +6,7 @@ import json
 from functools import cache
 from pathlib import Path
 
-__all__ = ["FAMILY", "font_files", "shortened", "text_width"]
+__all__ = ["FAMILY", "font_files", "has_character", "shortened", "text_width", "wrapped"]
 
 FAMILY = "DejaVu Sans, Verdana, Arial, sans-serif"
 
@@ -38,6 +38,15 @@ def text_width(content: str, size: float, bold: bool = False) -> float:
     return size * sum(widths.get(character, UNKNOWN_WIDTH) for character in content)
 
 
+def has_character(character: str) -> bool:
+    """Whether the bundled typeface has a character.
+
+    >>> has_character("Ø"), has_character("樂")
+    (True, False)
+    """
+    return character in advance_widths()["regular"]
+
+
 def shortened(content: str, size: float, width: float, bold: bool = False) -> str:
     """The text itself, or its beginning and an ellipsis when it is wider than ``width`` page units.
 
@@ -49,3 +58,22 @@ def shortened(content: str, size: float, width: float, bold: bool = False) -> st
     while content and text_width(content + "…", size, bold) > width:
         content = content[:-1]
     return content.rstrip() + "…"
+
+
+def wrapped(content: str, size: float, width: float, bold: bool = False) -> list[str]:
+    """The text in lines no wider than ``width`` page units, broken at spaces, or inside words that are too long.
+
+    >>> wrapped("a plate with holes", 10, 50)
+    ['a plate', 'with', 'holes']
+    """
+    lines: list[str] = []
+    for word in content.split():
+        if lines and text_width(f"{lines[-1]} {word}", size, bold) <= width:
+            lines[-1] += f" {word}"
+            continue
+        while len(word) > 1 and text_width(word, size, bold) > width:
+            cut = next(k for k in range(len(word) - 1, 0, -1) if k == 1 or text_width(word[:k], size, bold) <= width)
+            lines.append(word[:cut])
+            word = word[cut:]
+        lines.append(word)
+    return lines

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 from holdfast.drawing.bench import ARROW, PEG_FILL, TOUCHED
 from holdfast.drawing.dimensions import millimetres
-from holdfast.drawing.fonts import shortened, text_width
+from holdfast.drawing.fonts import shortened, text_width, wrapped
 from holdfast.drawing.scene import BLACK, GREY, Scene, decimals_for
 from holdfast.model.fixture import Fixture
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
+__all__ = ["TYPE_WORDS", "Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
 
 TYPE_WORDS = {"I": "Type I: two pegs on each jaw", "II": "Type II: three pegs left, one right"}
 
@@ -36,6 +36,13 @@ class Column:
         content = shortened(content, size, self.width, bold)
         self.scene.text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
         self.y += gap * size
+
+    def paragraph(self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0) -> None:
+        """Write as many lines as it takes, ``indent`` page units further in."""
+        for line in wrapped(content, size, self.width - indent, bold):
+            self.y += 0.75 * size
+            self.scene.text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
+            self.y += 0.55 * size
 
     def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
         """Write a name at the left and its value at the right of one line."""
@@ -111,8 +118,8 @@ def draw_peg_table(column: Column, fixture: Fixture, vise: Vise) -> None:
     column.rule()
 
 
-def draw_legend(column: Column) -> None:
-    """Explain the signs."""
+def draw_legend(column: Column, fill: str = GREY) -> None:
+    """Explain the signs; ``fill`` is the colour of the words."""
     scene, x = column.scene, column.x + 16
     words = [
         "peg to place, with its hole: jaw, column, row",
@@ -132,7 +139,7 @@ def draw_legend(column: Column) -> None:
         else:
             scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
             scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
-        scene.text((x + 28, y), line, 11.5, fill=GREY)
+        scene.text((x + 28, y), line, 11.5, fill=fill)
         column.y += 21
 
 

@@ -19,7 +19,19 @@ from attrs import frozen
 from holdfast.drawing.fonts import FAMILY
 from holdfast.geometry.segment import Point
 
-__all__ = ["BLACK", "GREY", "LANDSCAPE", "PORTRAIT", "Box", "Scene", "View", "decimals_for", "number"]
+__all__ = [
+    "BLACK",
+    "GREY",
+    "LANDSCAPE",
+    "PORTRAIT",
+    "UNITS_PER_MM",
+    "Box",
+    "Scene",
+    "View",
+    "decimals_for",
+    "number",
+    "stacked",
+]
 
 LANDSCAPE = (1188.0, 840.0)
 PORTRAIT = (840.0, 1188.0)
@@ -30,6 +42,8 @@ GREY = "#5f6670"
 
 # Height of capitals and figures of the typeface, in ems.
 CAP_HEIGHT = 0.729
+
+SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 
 Attributes = dict[str, str]
 
@@ -132,6 +146,21 @@ def plain(content: str) -> str:
     return "".join(c for c in content if c >= " " and c not in "\x7f\ufffe\uffff" and not "\ud800" <= c <= "\udfff")
 
 
+def stacked(pages: Sequence[str]) -> str:
+    """Pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
+    if len(pages) == 1:
+        return pages[0]
+    ET.register_namespace("", SVG_NAMESPACE)
+    roots = [ET.fromstring(page.encode("utf-8")) for page in pages]
+    _, _, width, height = (float(word) for word in roots[0].attrib["viewBox"].split())
+    whole = Scene.page((width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or "")
+    text = whole.svg().removesuffix("</svg>\n")
+    for k, root in enumerate(roots):
+        root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
+        text += ET.tostring(root, encoding="unicode") + "\n"
+    return text + "</svg>\n"
+
+
 class Scene:
     """An SVG page, or a group of one, that shapes are added to in page units.
 
@@ -150,7 +179,7 @@ class Scene:
         root = ET.Element(
             "svg",
             {
-                "xmlns": "http://www.w3.org/2000/svg",
+                "xmlns": SVG_NAMESPACE,
                 "width": f"{number(width / UNITS_PER_MM)}mm",
                 "height": f"{number(height / UNITS_PER_MM)}mm",
                 "viewBox": f"0 0 {number(width)} {number(height)}",

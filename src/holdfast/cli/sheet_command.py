@@ -1,0 +1,239 @@
+"""``holdfast sheet``: one fixture of a result file on paper, or as a drawing for the CAM system."""
+
+from __future__ import annotations
+
+from datetime import date
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from holdfast.cli.load_option import LOAD_HELP
+from holdfast.cli.options import ShownUnitOption
+from holdfast.cli.values import choice, length_unit, whole_number
+from holdfast.errors import InputError
+
+if TYPE_CHECKING:
+    from holdfast.model.fixture import Fixture
+    from holdfast.model.load import Load
+    from holdfast.model.result import Result
+    from holdfast.model.units import Unit
+
+__all__ = ["sheet"]
+
+PAPER_ENDINGS = (".pdf", ".svg", ".png")
+MODEL_ENDINGS = (".dxf", ".step", ".stp")
+# A PNG is so many pixels wide; a second page makes it higher.
+PNG_WIDTH = 2400
+
+ON_PAPER = "On the paper"
+CLAMPING = "Clamping and loads"
+
+
+def sheet(
+    result_file: Annotated[
+        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by holdfast design.")
+    ],
+    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    out: Annotated[
+        str,
+        typer.Option(
+            "--out", "-o", metavar="FILE", help="The file to write; its name ends in .pdf, .svg, .png, .dxf or .step."
+        ),
+    ],
+    paper: Annotated[str, typer.Option(metavar="SIZE", help="a4 or letter.", rich_help_panel=ON_PAPER)] = "a4",
+    unit: ShownUnitOption = None,
+    part_name: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="What to call the part; its own name if not given.", rich_help_panel=ON_PAPER
+        ),
+    ] = None,
+    day: Annotated[
+        str | None,
+        typer.Option(
+            "--date", metavar="YYYY-MM-DD", help="The date of the sheet; today if not given.", rich_help_panel=ON_PAPER
+        ),
+    ] = None,
+    jaw_force: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N", help="Force on the right jaw, to write what each peg takes.", rich_help_panel=CLAMPING
+        ),
+    ] = None,
+    load: Annotated[
+        list[str] | None, typer.Option("--load", metavar="LOAD", help=LOAD_HELP, rich_help_panel=CLAMPING)
+    ] = None,
+    loads: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="A file of loads. Loads given here stand instead of those in the result.",
+            rich_help_panel=CLAMPING,
+        ),
+    ] = None,
+    friction: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MU", help="Coefficient of friction, to tell what it could add.", rich_help_panel=CLAMPING
+        ),
+    ] = None,
+) -> None:
+    """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
+
+    The paper sizes are A4 and Letter. A .dxf or .step file holds the set-up itself, in mm, for a CAM system.
+
+    Example: holdfast sheet part.json 1 -o setup.pdf --jaw-force 3000
+    """
+    from holdfast.files.atomic import refuse_unwritable
+
+    rank = whole_number("fixture", number)
+    if rank < 1:
+        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    path = Path(out)
+    ending = path.suffix.lower()
+    if ending not in PAPER_ENDINGS + MODEL_ENDINGS:
+        raise InputError(
+            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf or .step."
+        )
+    shown_unit = length_unit(unit)
+    settings = {
+        "paper": choice("--paper", paper, ("a4", "letter")),
+        "unit": shown_unit,
+        "day": date.today() if day is None else day_of(day),
+        "part_name": part_name,
+        "jaw_force": positive("--jaw-force", jaw_force, "a force in N, such as 3000"),
+        "friction": positive("--friction", friction, "a coefficient such as 0.15"),
+    }
+    given = given_loads(load or [], loads, shown_unit)
+    refuse_unwritable(path)
+    from holdfast.files.result_reader import read_result
+
+    result = read_result(result_file)
+    if rank > len(result):
+        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    if ending in MODEL_ENDINGS:
+        write_model(path, ending, result, rank)
+    else:
+        write_paper(path, ending, result, rank, given or result.loads, result_file, settings)
+    typer.echo(f"Written to {path}.")
+
+
+def day_of(text: str) -> date:
+    """A date typed as YYYY-MM-DD.
+
+    Raises
+    ------
+    InputError
+        When it is none.
+    """
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        raise InputError(f"--date {text!r} is not a date: give it as YYYY-MM-DD, such as 2026-03-31.") from None
+
+
+def positive(option: str, text: str | None, what: str) -> float | None:
+    """A positive number, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not (isfinite(value) and value > 0):
+        raise InputError(f"{option} {text!r} is not a positive number: give {what}.")
+    return value
+
+
+def given_loads(words: list[str], path: str | None, unit: Unit) -> tuple[Load, ...]:
+    """The loads of the command line, then those of the file."""
+    if not words and path is None:
+        return ()
+    from holdfast.cli.load_option import parse_load
+    from holdfast.files.loads_file import read_loads
+
+    scale = unit.millimetres
+    return (*(parse_load(word, scale) for word in words), *(read_loads(path, scale) if path is not None else ()))
+
+
+def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
+    """Write the set-up for a CAM system."""
+    setup = (result[rank - 1], result.workpiece, result.vise, path)
+    if ending == ".dxf":
+        from holdfast.files.setup_dxf import write_setup_dxf
+
+        write_setup_dxf(*setup)
+        return
+    from importlib import import_module
+
+    try:
+        writer = import_module("holdfast.files.setup_step")
+    except ImportError as error:
+        raise InputError("this holdfast writes no STEP files: let the name end in .dxf.") from error
+    writer.write_setup_step(*setup)
+
+
+def write_paper(
+    path: Path,
+    ending: str,
+    result: Result,
+    rank: int,
+    loads: tuple[Load, ...],
+    result_file: str,
+    settings: dict[str, Any],
+) -> None:
+    """Write the sheet."""
+    from hashlib import sha256
+
+    from holdfast import __version__
+    from holdfast.drawing.render import svg_to_png
+    from holdfast.drawing.scene import stacked
+    from holdfast.drawing.sheet import draw_sheet
+    from holdfast.drawing.sheet_details import SheetDetails
+    from holdfast.drawing.sheet_facts import same_holes
+    from holdfast.files.atomic import write_bytes
+    from holdfast.statics.loads import load_cases
+
+    fixture = with_quality(result, rank, loads)
+    jaw_force, friction = settings["jaw_force"], settings["friction"]
+    details = SheetDetails(
+        number=rank,
+        count=len(result),
+        result_hash=sha256(Path(result_file).read_bytes()).hexdigest(),
+        version=__version__,
+        tolerance=result.tolerance,
+        loads=load_cases(fixture, result.workpiece, result.vise, loads, jaw_force, friction),
+        others=same_holes(result.table, rank - 1, result.twins),
+        **settings,
+    )
+    pages = draw_sheet(fixture, result.workpiece, result.vise, details)
+    if ending == ".pdf":
+        from holdfast.drawing.pdf import svg_to_pdf
+
+        write_bytes(path, svg_to_pdf(pages, details.day))
+    elif ending == ".svg":
+        write_bytes(path, stacked(pages).encode("utf-8"))
+    else:
+        write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))
+
+
+def with_quality(result: Result, rank: int, loads: tuple[Load, ...]) -> Fixture:
+    """A fixture of a result with all figures of quality that can be known, for the loads of the sheet."""
+    import numpy as np
+    from attrs import evolve
+
+    from holdfast.model.quality import FIGURES
+    from holdfast.statics.quality import quality_of
+
+    row = result.table.take(slice(rank - 1, rank))
+    figures = quality_of(row, result.workpiece, result.vise, result.tolerance, loads)[0]
+    known = {figure.key: float(value) for figure, value in zip(FIGURES, figures, strict=True) if not np.isnan(value)}
+    return evolve(result[rank - 1], quality=known)

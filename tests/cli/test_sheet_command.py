@@ -1,0 +1,163 @@
+"""``holdfast sheet``: every kind of file, every option, and what it refuses."""
+
+from __future__ import annotations
+
+from datetime import date
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pypdfium2
+import pytest
+from drawing_examples import diamond
+
+from holdfast import __version__
+from holdfast.files.result_file import write_result
+from holdfast.model.result import FixtureTable, Result, unknown_quality
+
+
+def diamond_result() -> Result:
+    """A result of one true fixture, told twice."""
+    fixture, workpiece, vise = diamond()
+    null_vector = np.full((1, 4), 0.25)
+    table = FixtureTable(
+        type=np.ones(1, np.int8),
+        jaw=np.array([[peg.jaw == "right" for peg in fixture.pegs]], np.int8),
+        column=np.array([[peg.column for peg in fixture.pegs]], np.int32),
+        row=np.array([[peg.row for peg in fixture.pegs]], np.int32),
+        segment=np.array([[peg.segment for peg in fixture.pegs]], np.int32),
+        theta=np.radians([fixture.pose.theta_deg]),
+        position=np.array([[fixture.pose.x, fixture.pose.y]]),
+        jaw_separation=np.array([fixture.jaw_separation]),
+        null_vector=null_vector,
+        force=np.array([[peg.force for peg in fixture.pegs]]),
+        quality=unknown_quality(null_vector),
+    )
+    counts = {"I": 2, "II": 0}
+    return Result(workpiece, vise, table.take(np.array([0, 0])), counts, counts)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a result file ``r.json`` and of a file of loads, from which commands are run."""
+    write_result(diamond_result(), tmp_path / "r.json")
+    loads = '[[load]]\nname = "drilling"\nforce = 80\nat = [20, 20]\n'
+    (tmp_path / "loads.toml").write_text(loads)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def words_in(path: Path) -> str:
+    """The text of a PDF."""
+    document = pypdfium2.PdfDocument(path.read_bytes())
+    return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
+
+
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [("a.pdf", b"%PDF-"), ("a.SVG", b"<?xml"), ("a.png", b"\x89PNG"), ("a.dxf", b"  0\nSECTION")],
+)
+def test_every_kind_of_file_is_written(run: Any, folder: Path, name: str, start: bytes) -> None:
+    """The ending tells what it is; the same command gives the same bytes."""
+    arguments = ("sheet", "r.json", 1, "-o", name, "--date", "2026-03-31")
+    outcome = run(*arguments)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert outcome.stdout == f"Written to {name}.\n"
+    first = (folder / name).read_bytes()
+    assert first.startswith(start)
+    run(*arguments)
+    assert (folder / name).read_bytes() == first
+
+
+def test_sheet_tells_where_it_comes_from(run: Any, folder: Path) -> None:
+    """Date, hash of the result file, version, rank; today's date when none is given."""
+    run("sheet", "r.json", 2, "--out", "a.pdf")
+    words = words_in(folder / "a.pdf")
+    for wanted in (
+        date.today().isoformat(),
+        sha256((folder / "r.json").read_bytes()).hexdigest()[:12],
+        f"holdfast {__version__}",
+        "Fixture 2 of 2",
+    ):
+        assert wanted in words
+
+
+def test_all_figures_of_quality_are_told(run: Any, folder: Path) -> None:
+    """Those that the result file lacks are computed."""
+    run("sheet", "r.json", 1, "-o", "a.pdf", "--load", "force=100 at=20,20")
+    words = words_in(folder / "a.pdf")
+    for figure in ("closure margin", "wrench radius", "location error", "end distance", "load reaction"):
+        assert figure in words
+
+
+def test_forces_loads_and_friction(run: Any, folder: Path) -> None:
+    """Loads of the command line and of a file, each with a name or a number; what each peg takes at the jaw force."""
+    options = ("--jaw-force", 2000, "--friction", 0.2, "--load", "force=50 at=0,0", "--loads", "loads.toml")
+    outcome = run("sheet", "r.json", 1, "-o", "a.pdf", *options)
+    assert outcome.exit_code == 0, outcome.stderr
+    words = words_in(folder / "a.pdf")
+    for wanted in ("load 1", "drilling", "at 2000 N", "1414 N", "µ 0.2"):
+        assert wanted in words
+
+
+def test_paper_unit_and_name(run: Any, folder: Path) -> None:
+    """Letter in inches under another name; numbers of --load are inches too."""
+    options = ("--paper", "LETTER", "--unit", "in", "--part-name", "Part 7", "--load", "force=50 at=1,1")
+    assert run("sheet", "r.json", 1, "-o", "a.pdf", *options).exit_code == 0
+    document = pypdfium2.PdfDocument((folder / "a.pdf").read_bytes())
+    assert sorted(document[0].get_size()) == pytest.approx([612, 792])
+    words = words_in(folder / "a.pdf")
+    assert "Part 7" in words and "diamond" not in words
+    assert f"{diamond()[0].jaw_separation / 25.4:.4f} in" in words
+
+
+def test_lengths_of_loads_are_in_the_unit_of_the_sheet(run: Any, folder: Path) -> None:
+    """A force half an inch off the corner gives the reactions of one 12.7 mm off; one 0.5 mm off gives others."""
+
+    def reactions(unit: str, place: str) -> list[str]:
+        run("sheet", "r.json", 1, "-o", "a.pdf", "--unit", unit, "--load", f"force=50 at={place},0")
+        return words_in(folder / "a.pdf").split("load 1 ")[1].split()[:5]
+
+    assert reactions("inch", "0.5") == reactions("mm", "12.7") != reactions("mm", "0.5")
+
+
+def test_fixtures_in_the_same_holes_are_warned_of(run: Any, folder: Path) -> None:
+    """The result tells the same holes twice."""
+    run("sheet", "r.json", 1, "-o", "a.pdf")
+    assert "The same four holes hold this part in one other way" in words_in(folder / "a.pdf")
+
+
+def test_dxf_is_the_set_up_in_mm(run: Any, folder: Path) -> None:
+    """Whatever the unit of the sheet, the model is in millimetres."""
+    run("sheet", "r.json", 1, "-o", "a.dxf", "--unit", "inch")
+    document = ezdxf.readfile(folder / "a.dxf")
+    assert document.header["$INSUNITS"] == 4
+    assert {peg.dxf.radius for peg in document.modelspace().query('CIRCLE[layer=="PEGS"]')} == {3.0}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("r.json", "0", "-o", "a.pdf"), "there is no fixture 0: fixtures are counted from 1"),
+        (("r.json", "3", "-o", "a.pdf"), "lists 2 fixtures: there is no fixture 3"),
+        (("r.json", "1"), "Missing option '--out'"),
+        (("r.json", "1", "-o", "a.doc"), "let the name end in .pdf, .svg, .png, .dxf or .step"),
+        (("r.json", "1", "-o", "missing/a.pdf"), "there is no folder missing"),
+        (("r.json", "1", "-o", "a.pdf", "--paper", "a3"), "--paper 'a3' is not known: give a4 or letter"),
+        (("r.json", "1", "-o", "a.pdf", "--unit", "foot"), "Unit 'foot' is not known"),
+        (("r.json", "1", "-o", "a.pdf", "--date", "31.3.2026"), "give it as YYYY-MM-DD"),
+        (("r.json", "1", "-o", "a.pdf", "--jaw-force", "-5"), "--jaw-force '-5' is not a positive number"),
+        (("r.json", "1", "-o", "a.pdf", "--friction", "much"), "--friction 'much' is not a positive number"),
+        (("r.json", "1", "-o", "a.pdf", "--load", "force=5"), "--load"),
+        (("r.json", "1", "-o", "a.pdf", "--loads", "none.toml"), "none.toml"),
+        (("none.json", "1", "-o", "a.pdf"), "none.json cannot be read"),
+    ],
+)
+def test_bad_requests_are_one_sentence(run: Any, folder: Path, arguments: tuple[str, ...], message: str) -> None:
+    """Exit code 2, one line on stderr, and no file."""
+    outcome = run("sheet", *arguments)
+    assert outcome.exit_code == 2
+    assert message in outcome.stderr and outcome.stderr.count("\n") == 1
+    assert not list(folder.glob("a.*"))
