@@ -1,0 +1,80 @@
+/**
+ * Below the drawing: the table of pegs, which says in words what the drawing shows, and the figures of quality.
+ */
+import { byId, make } from "./dom.js";
+import { on, state } from "./state.js";
+import { bareLength, figureText, length, number } from "./units.js";
+
+/** @type {any[]} */
+let figures = [];
+/** Forces under the load, or null. @type {number[]|null} */
+let loaded = null;
+
+/** @param {any[]} known the figures of quality */
+export function detailsPanel(known) {
+  figures = known;
+  on(["selected", "pinned", "unit"], write);
+}
+
+/** Tell the forces under a load instead of those by clamping alone. */
+export function tellForces(forces) {
+  loaded = forces;
+  if (state.selected) writePegs(state.selected);
+}
+
+/** Write everything. */
+function write() {
+  const row = state.selected;
+  if (!row) return;
+  writePegs(row);
+  writeQuality(row, state.pinned);
+}
+
+/** The table of pegs. */
+function writePegs(row) {
+  byId("force-title").textContent = loaded ? "Force N" : "Force per N";
+  byId("force-title").title = loaded ? "Under the load" : "For each newton of jaw force";
+  byId("pegs").replaceChildren(
+    ...row.holes.map((hole, k) =>
+      make("tr", {},
+        make("td", {}, hole), make("td", {}, String(row.faces[k])),
+        make("td.number", {}, bareLength(row.pegs[k][0])), make("td.number", {}, bareLength(row.pegs[k][1])),
+        make("td.number", {}, loaded ? number(loaded[k], 0) : number(row.forces[k], 3)),
+      ),
+    ),
+  );
+  byId("pose-words").textContent =
+    `Jaw separation ${length(row.jaw_separation)}. Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
+    `${bareLength(row.x)}, ${length(row.y)} from hole L-A1.`;
+}
+
+/** The figures of quality; beside those of the pinned fixture, the better one of each marked. */
+function writeQuality(row, pinned) {
+  const heads = ["Figure", ...(pinned ? [`${pinned.rank} pinned`] : []), pinned ? `${row.rank} shown` : `Fixture ${row.rank}`];
+  byId("quality-heads").replaceChildren(...heads.map((words, k) => make(k ? "th.number" : "th", { scope: "col" }, words)));
+  const lines = figures
+    .filter((figure) => figure.key in row.quality)
+    .map((figure) => {
+      const own = row.quality[figure.key];
+      const cells = [];
+      if (pinned) {
+        const other = pinned.quality[figure.key];
+        const more = (a, b) => (figure.more_is_better ? a > b : a < b) && figureText(figure, a) !== figureText(figure, b);
+        cells.push(figureCell(figure, other, more(other, own)), figureCell(figure, own, more(own, other)));
+      } else {
+        cells.push(figureCell(figure, own, false));
+      }
+      return make("tr", { title: figure.meaning }, make("th", { scope: "row" }, figure.words), ...cells);
+    });
+  if (pinned) {
+    const cells = [pinned, row].map((each) => make("td.number", {}, length(each.jaw_separation, 2)));
+    lines.push(make("tr", {}, make("th", { scope: "row" }, "jaw separation"), ...cells));
+  }
+  byId("quality").replaceChildren(...lines);
+}
+
+/** A figure in a table. */
+function figureCell(figure, value, better) {
+  const text = figureText(figure, value);
+  return make(`td.number${better ? ".better" : ""}`, {}, better ? `${text} ✓` : text);
+}

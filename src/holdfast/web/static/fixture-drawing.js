@@ -1,0 +1,194 @@
+/**
+ * The drawing of one fixture: jaws with their holes, the part in its pose, pegs, and what lies in mm.
+ *
+ * Lettering and arrows are in fixture-lettering.js; they keep their size when the drawing is zoomed.
+ */
+import { draw } from "./dom.js";
+import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
+import { drawLettering } from "./fixture-lettering.js";
+import { contactsOf, intoVise, jawViews, partSegments, poseMatrix } from "./pose.js";
+import { Viewport } from "./viewport.js";
+
+/** Room around the drawing for lettering, in pixels: top, right, bottom, left. */
+const MARGINS = [62, 52, 48, 52];
+const MOST_HOLES = 2500;
+
+/** A drawing of fixtures in an SVG element. */
+export class FixtureDrawing {
+  /**
+   * @param {SVGSVGElement} svg
+   * @param {(index: number|null, at: DOMRect|null) => void} pointed called with the peg that is pointed at or focused
+   */
+  constructor(svg, pointed = () => {}) {
+    this.svg = svg;
+    this.view = new Viewport(svg);
+    this.view.onview = () => this.letter();
+    this.pointed = pointed;
+    this.row = null;
+    this.load = null;
+    this.open = 0;
+    this.frame = 0;
+    this.underPegs = draw("g");
+  }
+
+  /**
+   * Draw a fixture.
+   * @param {any} part
+   * @param {any} vise
+   * @param {import("./pose.js").Row} row
+   * @param {{keepView?: boolean}} [options]
+   */
+  show(part, vise, row, { keepView = false } = {}) {
+    cancelAnimationFrame(this.frame);
+    this.open = 0;
+    const toVise = intoVise(row);
+    const box = boundsOf(partSegments(part).map(({ segment }) => segment), toVise);
+    this.part = part;
+    this.vise = vise;
+    this.row = row;
+    this.toVise = toVise;
+    this.jaws = jawViews(vise, row, box);
+    this.contacts = contactsOf(part, row).map(({ contact, normal }) => {
+      const [x, y] = toVise(normal);
+      return { at: toVise(contact), normal: [x - row.x, y - row.y] };
+    });
+    this.build();
+    const whole = [...box];
+    for (const { plate } of this.jaws) {
+      whole[0] = Math.min(whole[0], plate[0]);
+      whole[1] = Math.min(whole[1], plate[1]);
+      whole[2] = Math.max(whole[2], plate[2]);
+      whole[3] = Math.max(whole[3], plate[3]);
+    }
+    this.whole = whole;
+    const margins = this.svg.clientWidth < 520 ? [58, 34, 40, 34] : MARGINS;
+    if (keepView && !this.view.fitted) this.view.apply();
+    else this.view.fit(whole, margins);
+    this.svg.setAttribute("aria-label", this.words());
+  }
+
+  /** Nothing is shown. */
+  clear() {
+    cancelAnimationFrame(this.frame);
+    this.row = null;
+    this.view.world.replaceChildren();
+    this.view.overlay.replaceChildren();
+  }
+
+  /** What the drawing shows, for those who do not see it. */
+  words() {
+    const { row } = this;
+    return `Fixture ${row.rank || ""} of type ${row.type}: pegs in ${row.holes.join(", ")}, jaw separation ` +
+      `${row.jaw_separation.toFixed(3)} mm, part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
+  }
+
+  /** Make everything that lies in mm. */
+  build() {
+    const [left, right] = this.jaws;
+    const { part, row } = this;
+    const outline = outlinePath(part.loops);
+    const touched = new Set(row.faces);
+    const shape = draw("g.part", { transform: poseMatrix(row) }, draw("path.part-fill", { d: outline }));
+    for (const { segment, face } of partSegments(part)) {
+      if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
+    }
+    shape.append(draw("path.outline", { d: outline }));
+    this.rightJaw = draw("g.right-jaw");
+    this.rightPegs = draw("g.right-jaw");
+    this.rightJaw.append(...this.jaw(right));
+    const pegs = draw("g.pegs");
+    this.underPegs = draw("g.under-pegs");
+    row.pegs.forEach((center, k) => {
+      const peg = this.peg(center, k);
+      (row.holes[k].startsWith("R") ? this.rightPegs : pegs).append(peg);
+    });
+    this.view.world.replaceChildren(draw("g.left-jaw", {}, ...this.jaw(left)), this.rightJaw, shape, pegs, this.rightPegs);
+    this.slide(this.open);
+  }
+
+  /** The plate of a jaw and its holes. */
+  jaw(jaw) {
+    const [x0, y0, x1, y1] = jaw.plate;
+    const { pitch, peg_radius: radius } = this.vise;
+    const size = radius > 0.05 * Math.min(...pitch) ? Math.min(radius, 0.42 * Math.min(...pitch)) : Math.min(...pitch) / 7;
+    const plate = draw(`rect.plate.${jaw.right ? "right" : "left"}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
+    const [columns, rows] = [jaw.columns, jaw.rows];
+    let holes = "";
+    if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) <= MOST_HOLES) {
+      for (let column = columns[0]; column <= columns[1]; column += 1) {
+        for (let row = rows[0]; row <= rows[1]; row += 1) {
+          const [x, y] = [jaw.x0 + column * pitch[0], jaw.y0 + row * pitch[1]];
+          holes += `M${x - size} ${y}a${size} ${size} 0 1 0 ${2 * size} 0a${size} ${size} 0 1 0 ${-2 * size} 0Z`;
+        }
+      }
+    }
+    return [plate, draw("path.holes", { d: holes })];
+  }
+
+  /** A peg that can be pointed at and focused. */
+  peg([x, y], k) {
+    const radius = Math.max(this.vise.peg_radius, Math.min(...this.vise.pitch) / 12);
+    const { row } = this;
+    const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of jaw force`;
+    const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
+    group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
+    const cross = radius / 2;
+    group.append(draw("path.peg-cross", { d: `M${x - cross} ${y}H${x + cross}M${x} ${y - cross}V${y + cross}` }));
+    const point = () => this.pointed(k, group.getBoundingClientRect());
+    const away = () => this.pointed(null, null);
+    group.addEventListener("pointerenter", point);
+    group.addEventListener("pointerleave", away);
+    group.addEventListener("focus", point);
+    group.addEventListener("blur", away);
+    return group;
+  }
+
+  /** Mark a peg, in the drawing only. */
+  mark(index) {
+    for (const peg of this.svg.querySelectorAll(".peg")) peg.classList.toggle("marked", Number(peg.dataset.peg) === index);
+  }
+
+  /** Draw the lettering for the view as it is. */
+  letter() {
+    if (this.row) drawLettering(this);
+  }
+
+  /**
+   * Show the forces of a load, or none.
+   * @param {null|{at: number[], vector: number[], forces: number[]}} load `at` and `vector` in mm in the vise frame
+   */
+  showLoad(load) {
+    this.load = load;
+    this.letter();
+  }
+
+  /** Put the right jaw `open` mm from where it clamps. */
+  slide(open) {
+    this.open = open;
+    const move = open ? `translate(${open} 0)` : null;
+    for (const group of [this.rightJaw, this.rightPegs]) {
+      if (move) group.setAttribute("transform", move);
+      else group.removeAttribute("transform");
+    }
+    this.letter();
+  }
+
+  /** Close the vise before the user's eyes; at once for those who want no motion. */
+  close() {
+    cancelAnimationFrame(this.frame);
+    if (!this.row) return;
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      this.slide(0);
+      return;
+    }
+    const far = Math.max(1.5 * this.vise.pitch[0], (this.whole[2] - this.whole[0]) * 0.16);
+    const begun = performance.now();
+    const step = (now) => {
+      const share = Math.min(1, (now - begun) / 650);
+      this.slide(far * (1 - share) ** 3);
+      if (share < 1) this.frame = requestAnimationFrame(step);
+    };
+    this.slide(far);
+    this.frame = requestAnimationFrame(step);
+  }
+}

@@ -1,0 +1,195 @@
+/**
+ * The list of fixtures: only the rows in sight exist, so ten thousand scroll like ten.
+ */
+import { make } from "./dom.js";
+import { state } from "./state.js";
+import { drawThumbnail } from "./thumbnails.js";
+import { figureText, length, number } from "./units.js";
+
+const ROW = 88;
+const THUMBNAIL = [84, 72];
+const SPARE = 4;
+/** Browsers end at about 33 million pixels; beyond this many the scroll bar is scaled. */
+const HIGHEST = 12_000_000;
+
+/** A scrolling list over rows that come in pages. */
+export class FixtureList {
+  /**
+   * @param {HTMLElement} frame scrolls, and is the listbox
+   * @param {(index: number, row: any) => void} chosen
+   */
+  constructor(frame, chosen) {
+    this.frame = frame;
+    this.chosen = chosen;
+    this.inner = make("div.list-inner", { role: "presentation" });
+    frame.append(this.inner);
+    /** @type {any[]} */
+    this.figures = [];
+    this.rows = null;
+    this.first = 0;
+    this.last = -1;
+    this.index = -1;
+    /** @type {Map<number, any>} elements by row index */
+    this.cells = new Map();
+    this.spare = [];
+    frame.addEventListener("scroll", () => this.paint(), { passive: true });
+    new ResizeObserver(() => this.paint()).observe(frame);
+    frame.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** Show other rows, from the top. */
+  use(rows) {
+    this.rows = rows;
+    this.frame.scrollTop = 0;
+    this.clear();
+    this.paint();
+  }
+
+  /** Throw the cells away: what they show has changed. */
+  clear() {
+    for (const cell of this.cells.values()) this.put(cell);
+    this.cells.clear();
+  }
+
+  /** Lay a cell aside for another row. */
+  put(cell) {
+    cell.element.remove();
+    this.spare.push(cell);
+  }
+
+  /** How much taller the list is than what can be scrolled. */
+  get squeeze() {
+    return Math.max(1, ((this.rows?.total ?? 0) * ROW) / HIGHEST);
+  }
+
+  /** Make the rows in sight, and only those. */
+  paint() {
+    const total = this.rows?.total ?? 0;
+    const height = this.frame.clientHeight;
+    this.inner.style.height = `${Math.min(total * ROW, HIGHEST)}px`;
+    const { squeeze } = this;
+    const top = this.frame.scrollTop;
+    const shown = squeeze === 1 ? top : (top / Math.max(1, HIGHEST - height)) * Math.max(0, total * ROW - height);
+    this.shift = top - shown;
+    this.first = Math.max(0, Math.floor(shown / ROW) - SPARE);
+    this.last = Math.min(total - 1, Math.ceil((shown + height) / ROW) + SPARE);
+    for (const [index, cell] of this.cells) {
+      if (index < this.first || index > this.last) {
+        this.put(cell);
+        this.cells.delete(index);
+      }
+    }
+    for (let index = this.first; index <= this.last; index += 1) this.cell(index, total);
+    if (!total && this.rows && !this.rows.known) this.rows.at(0);
+  }
+
+  /** The cell of a row, filled as soon as the row is there. */
+  cell(index, total) {
+    let cell = this.cells.get(index);
+    if (!cell) {
+      cell = this.spare.pop() ?? this.made();
+      cell.row = null;
+      cell.element.id = `fixture-${index}`;
+      cell.element.dataset.index = String(index);
+      this.cells.set(index, cell);
+      this.inner.append(cell.element);
+    }
+    cell.element.style.transform = `translateY(${index * ROW + this.shift}px)`;
+    cell.element.setAttribute("aria-setsize", String(total));
+    cell.element.setAttribute("aria-posinset", String(index + 1));
+    const row = this.rows.at(index);
+    if (row && cell.row !== row) this.fill(cell, row);
+    if (!row && cell.row === null) cell.element.classList.add("coming");
+    const chosen = index === this.index;
+    cell.element.setAttribute("aria-selected", String(chosen));
+    if (chosen) this.frame.setAttribute("aria-activedescendant", cell.element.id);
+  }
+
+  /** An empty cell. */
+  made() {
+    const [width, height] = THUMBNAIL;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const canvas = /** @type {HTMLCanvasElement} */ (
+      make("canvas.thumbnail", { width: width * ratio, height: height * ratio, "aria-hidden": "true" })
+    );
+    const title = make("span.row-title");
+    const holes = make("span.row-holes");
+    const figures = make("span.row-figures");
+    const element = make("div.row", { role: "option", "aria-selected": "false" }, canvas, make("span.row-words", {}, title, holes, figures));
+    element.addEventListener("click", () => {
+      const index = Number(element.dataset.index);
+      const row = this.rows?.at(index);
+      if (row) this.chosen(index, row);
+    });
+    return { element, canvas, title, holes, figures, row: null };
+  }
+
+  /** Fill a cell. */
+  fill(cell, row) {
+    cell.row = row;
+    cell.element.classList.remove("coming");
+    cell.title.replaceChildren(
+      make("b", {}, `${row.rank}`), ` Type ${row.type}`, make("span.faint", {}, ` S ${length(row.jaw_separation, 2)} · ${number(row.theta_deg, 1)}°`),
+    );
+    cell.holes.textContent = row.holes.join("  ");
+    cell.figures.replaceChildren(
+      ...this.shownFigures().map((figure) =>
+        make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
+          make("i", {}, `${figure.short} `), figureText(figure, row.quality[figure.key])),
+      ),
+    );
+    drawThumbnail(cell.canvas, state.part, state.vise, row);
+  }
+
+  /** Three figures at most: the one sorted by first, then those that fixtures are ranked by. */
+  shownFigures() {
+    const first = this.figures.filter((figure) => figure.key === state.list.sort);
+    const usual = ["location_error", "clamp_amplification", "closure_margin", "load_reaction"];
+    if (state.loads.length) usual.splice(1, 0, usual.pop());
+    const rest = usual.map((key) => this.figures.find((figure) => figure.key === key)).filter((f) => f && f !== first[0]);
+    return [...first, ...rest].slice(0, 3);
+  }
+
+  /** Rows have come or changed. */
+  update() {
+    this.paint();
+  }
+
+  /** Mark a row, and bring it into sight. */
+  choose(index, reveal = true) {
+    this.index = index;
+    if (index < 0) this.frame.removeAttribute("aria-activedescendant");
+    else if (reveal) this.reveal(index);
+    this.paint();
+  }
+
+  /** Scroll so that a row is in sight. */
+  reveal(index) {
+    const { squeeze, frame } = this;
+    const height = frame.clientHeight;
+    if (squeeze > 1) {
+      const total = this.rows.total * ROW;
+      frame.scrollTop = (Math.min(index * ROW, total - height) / (total - height)) * (HIGHEST - height);
+    } else if (index * ROW < frame.scrollTop) frame.scrollTop = index * ROW;
+    else if ((index + 1) * ROW > frame.scrollTop + height) frame.scrollTop = (index + 1) * ROW - height;
+  }
+
+  /** Up, down, Home, End and the page keys choose. @param {KeyboardEvent} event */
+  key(event) {
+    const total = this.rows?.total ?? 0;
+    const page = Math.max(1, Math.floor(this.frame.clientHeight / ROW) - 1);
+    const moves = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -total, End: total };
+    const move = moves[event.key];
+    if (!move || !total) return;
+    event.preventDefault();
+    this.go(Math.min(total - 1, Math.max(0, this.index + move)));
+  }
+
+  /** Choose a row that may not have come yet. */
+  async go(index) {
+    const { rows } = this;
+    this.choose(index);
+    const row = await rows?.whenAt(index);
+    if (row && this.rows === rows && this.index === index) this.chosen(index, row);
+  }
+}

@@ -1,0 +1,205 @@
+/**
+ * A force dragged onto the part: each peg's reaction at once, as bars and arrows, and which fixture resists it best.
+ */
+import { ApiError, send } from "./api.js";
+import { byId, make, quiet, show } from "./dom.js";
+import { tellForces } from "./details-panel.js";
+import { centerOf, reactions } from "./forces.js";
+import { inside } from "./geometry.js";
+import { intoPart, intoVise } from "./pose.js";
+import { selectRank } from "./selection.js";
+import { fixtureDrawing } from "./stage-panel.js";
+import { change, on, state } from "./state.js";
+import { fieldLength, number, readLength, readNumber } from "./units.js";
+
+/** A drag over the part's diagonal is this many newtons. */
+const NEWTONS = 1000;
+const STEP = 5;
+const FIELDS = ["force-x", "force-y", "force-size", "force-direction", "force-moment", "force-jaw"];
+
+/** @returns {HTMLInputElement} */
+const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
+
+/** How many newtons a millimetre of the arrow is. */
+function perMillimetre() {
+  const [x0, y0, x1, y1] = state.part.bounds;
+  return NEWTONS / Math.hypot(x1 - x0, y1 - y0);
+}
+
+/** Set the panel up. */
+export function forcesPanel() {
+  byId("push").addEventListener("click", togglePush);
+  byId("rank-load").addEventListener("click", rankByLoad);
+  for (const id of FIELDS) field(id).addEventListener("input", read);
+  fixtureDrawing.view.tool = { down: grab, move: drag, up: askBest };
+  on(["force", "selected", "part", "unit"], (changed) => {
+    write();
+    if (changed.has("force") && !held) askBest();
+  });
+  on(["selected", "force"], () => show(byId("forces"), state.force !== null && state.selected !== null));
+}
+
+/** Begin to push on the part, or stop. */
+export function togglePush() {
+  if (!state.selected) return;
+  if (state.force) {
+    change({ force: null });
+    return;
+  }
+  const [x, y] = centerOf(state.part);
+  change({ force: { x, y, size: 200, direction: 0, moment: 0, jaw: null } });
+  byId("forces").scrollIntoView({ block: "nearest" });
+}
+
+/** What is held while dragging: "tip" or "tail". @type {string|null} */
+let held = null;
+
+/** Take hold of the arrow, or begin a new one where the part is. */
+function grab(point) {
+  if (!state.force || !state.selected) return false;
+  const { view } = fixtureDrawing;
+  const at = view.page(point);
+  const { tail, tip } = arrowEnds();
+  const far = (end) => Math.hypot(at[0] - view.page(end)[0], at[1] - view.page(end)[1]);
+  if (far(tip) < 18) held = "tip";
+  else if (far(tail) < 14) held = "tail";
+  else {
+    const own = intoPart(state.selected)(point);
+    if (!inside(state.part.loops, own)) return false;
+    held = "tip";
+    change({ force: { ...state.force, x: own[0], y: own[1], size: 0 } });
+  }
+  return true;
+}
+
+/** The arrow in mm in the vise frame. */
+function arrowEnds() {
+  const { force, selected } = state;
+  const angle = ((force.direction + selected.theta_deg) * Math.PI) / 180;
+  const tail = intoVise(selected)([force.x, force.y]);
+  const long = force.size / perMillimetre();
+  return { tail, tip: [tail[0] + long * Math.cos(angle), tail[1] + long * Math.sin(angle)] };
+}
+
+/** The arrow follows the pointer. */
+function drag(point) {
+  const { force, selected } = state;
+  if (!force || !held) return;
+  const own = intoPart(selected)(point);
+  if (held === "tail") {
+    change({ force: { ...force, x: own[0], y: own[1] } });
+    return;
+  }
+  const [dx, dy] = [own[0] - force.x, own[1] - force.y];
+  const size = Math.round((Math.hypot(dx, dy) * perMillimetre()) / STEP) * STEP;
+  const direction = size ? Math.round((Math.atan2(dy, dx) * 1800) / Math.PI) / 10 : force.direction;
+  change({ force: { ...force, size, direction: (direction + 360) % 360 } });
+}
+
+/** Read the typed force. */
+function read() {
+  if (!state.force) return;
+  const [x, y] = [readLength(field("force-x").value), readLength(field("force-y").value)];
+  const [size, direction, moment, jaw] = FIELDS.slice(2).map((id) => readNumber(field(id).value));
+  const values = { x, y, size, direction, moment: moment ?? 0, jaw };
+  const wrong = {
+    "force-x": x === null || !Number.isFinite(x), "force-y": y === null || !Number.isFinite(y),
+    "force-size": !(size !== null && size >= 0), "force-direction": direction === null || !Number.isFinite(direction),
+    "force-moment": moment !== null && !Number.isFinite(moment), "force-jaw": jaw !== null && !(jaw >= 0),
+  };
+  for (const [id, bad] of Object.entries(wrong)) field(id).setAttribute("aria-invalid", String(bad));
+  if (!Object.values(wrong).some(Boolean)) change({ force: values });
+}
+
+/** Show the force and what it does. */
+function write() {
+  const { force, selected, part } = state;
+  byId("push").setAttribute("aria-pressed", String(force !== null));
+  if (!force || !selected || !part) {
+    tellForces(null);
+    fixtureDrawing.showLoad(null);
+    return;
+  }
+  const texts = [
+    fieldLength(rounded(force.x)), fieldLength(rounded(force.y)), String(force.size), String(force.direction),
+    force.moment ? String(force.moment) : "", force.jaw === null ? "" : String(force.jaw),
+  ];
+  FIELDS.forEach((id, k) => {
+    if (field(id) !== document.activeElement) field(id).value = texts[k];
+  });
+  const answer = reactions(part, selected, force);
+  if (!answer) {
+    byId("force-words").textContent = "The pegs of this fixture do not determine the forces.";
+    return;
+  }
+  const { tail, tip } = arrowEnds();
+  fixtureDrawing.showLoad({ at: tail, vector: [tip[0] - tail[0], tip[1] - tail[1]], forces: answer.forces, size: force.size });
+  tellForces(answer.forces);
+  writeBars(selected, answer);
+}
+
+/** @param {number} value */
+function rounded(value) {
+  return Math.round(value * 1000) / 1000;
+}
+
+/** A bar for each peg. */
+function writeBars(row, { forces, needed, jaw, loose }) {
+  const most = Math.max(...forces.map(Math.abs), 1e-9);
+  byId("bars").replaceChildren(
+    ...forces.map((force, k) => {
+      const pulls = force < -1e-6 * most;
+      const fill = make("div.bar-fill");
+      fill.style.transform = `scaleX(${Math.abs(force) / most})`;
+      return make(`div.bar${pulls ? ".pulls" : ""}`, {},
+        make("b", {}, row.holes[k]), make("div.bar-track", { "aria-hidden": "true" }, fill),
+        make("span.number", {}, pulls ? `lets go` : `${number(force, 0)} N`));
+    }),
+  );
+  const enough = jaw >= needed * (1 - 1e-9);
+  byId("force-words").textContent = needed === 0
+    ? `No peg lets go, however little the jaw presses. Told for a jaw force of ${number(jaw, 0)} N, without friction.`
+    : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.` +
+      (enough ? ` Told for ${number(jaw, 0)} N, without friction.` : ` With ${number(jaw, 0)} N it lets go.`);
+}
+
+let asked = 0;
+const askSoon = quiet(async () => {
+  const mine = ++asked;
+  const { force, job } = state;
+  if (!force || !job?.job || !(force.size > 0 || force.moment)) return;
+  try {
+    const { best } = await send(`jobs/${encodeURIComponent(job.job)}/resist`, { loads: [loadOf(force)] });
+    if (mine === asked && state.force && state.job?.job === job.job) writeBest(best);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (mine === asked) byId("resist-words").textContent = error.status === 404 ? "" : error.message;
+  }
+}, 160);
+
+/** Ask which fixture resists the force best, once it is let go. */
+function askBest() {
+  held = null;
+  askSoon();
+}
+
+/** Links to the fixtures that resist best. */
+function writeBest(best) {
+  const links = best.slice(0, 5).map(({ rank, load_reaction: most }) =>
+    make("button", { type: "button", click: () => selectRank(rank) }, `${rank}: ${number(most, 0)} N`),
+  );
+  byId("resist-words").replaceChildren("Resisted best, by the largest peg force: ", ...links.flatMap((link) => [link, " "]));
+}
+
+/** The force as a load of the API. */
+export function loadOf(force) {
+  return {
+    name: "pushed", points: [[force.x, force.y]], force: force.size, directions: [force.direction, force.direction], moment: force.moment,
+  };
+}
+
+/** Search anew, ranked by how well this load is resisted. */
+function rankByLoad() {
+  const { force } = state;
+  if (force) change({ loads: [loadOf(force)], ranking: ["load_reaction", "location_error"] });
+}

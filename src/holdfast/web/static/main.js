@@ -1,0 +1,101 @@
+/**
+ * The page: sets up its panels, asks the server what there is, and takes up the state that the address holds.
+ */
+import { ask, send } from "./api.js";
+import { detailsPanel } from "./details-panel.js";
+import { byId, quiet, show } from "./dom.js";
+import { forcesPanel } from "./forces-panel.js";
+import { listenToKeys } from "./keys.js";
+import { keep, restored } from "./link.js";
+import { offerParts, partPanel } from "./part-panel.js";
+import { resultsPanel, want, writeFilters } from "./results-panel.js";
+import { rulesPanel, writeRules } from "./rules-panel.js";
+import { takeUp } from "./search.js";
+import { partDrawing, showView, stagePanel } from "./stage-panel.js";
+import { change, on, state } from "./state.js";
+import { takePanel } from "./take-panel.js";
+import { unitWord } from "./units.js";
+import { offerVises, visePanel } from "./vise-panel.js";
+import { visesDialog } from "./vises-dialog.js";
+import { whyPanel } from "./why-panel.js";
+
+/** Distances of the drawing grid in the unit shown. */
+const GRIDS = { mm: [1, 2, 5, 10, 20], inch: [0.0625, 0.125, 0.25, 0.5, 1] };
+
+/** On a phone one section is shown at a time. */
+function listenToSections() {
+  const buttons = [...document.querySelectorAll(".sections button")];
+  const go = (name) => {
+    document.body.dataset.section = name;
+    for (const button of buttons) {
+      if (button.dataset.to === name) button.setAttribute("aria-current", "true");
+      else button.removeAttribute("aria-current");
+    }
+  };
+  for (const button of buttons) button.addEventListener("click", () => go(button.dataset.to));
+  byId("search").addEventListener("click", () => go("results"));
+  byId("draw-part").addEventListener("click", () => go("stage"));
+  byId("list").addEventListener("click", () => go("stage"));
+  for (const id of ["zone-circle", "zone-polygon"]) byId(id).addEventListener("click", () => go("stage"));
+}
+
+/** Offer grids in the unit shown. */
+function writeGrids() {
+  const select = /** @type {HTMLSelectElement} */ (byId("draw-grid"));
+  select.replaceChildren(...GRIDS[state.unit].map((step) => new Option(`${step} ${unitWord()}`, String(step))), new Option("none", "0"));
+  select.selectedIndex = 2;
+}
+
+/** Take up the state that the address holds. */
+async function takeUpState() {
+  const kept = await restored(location.hash);
+  if (!kept) return false;
+  change({ unit: kept.known.unit ?? "mm", view: "part" });
+  if (!kept.part) {
+    change(kept.known);
+    return Boolean(kept.known.vise);
+  }
+  const part = await send("parts/check", kept.part);
+  change({ part });
+  change({ ...kept.known, view: "part" });
+  writeRules(partDrawing);
+  writeFilters();
+  if (kept.searched) {
+    want(kept.rank, kept.pinned, kept.known.view);
+    await takeUp(kept.job);
+  }
+  return true;
+}
+
+/** Set everything up. */
+async function begin() {
+  stagePanel();
+  rulesPanel(partDrawing, () => change({ view: "part" }));
+  visePanel();
+  partPanel({ drawing: partDrawing, onDraw: () => change({ view: "draw" }) });
+  listenToSections();
+  listenToKeys();
+  writeGrids();
+  on(["unit"], writeGrids);
+  partDrawing.show();
+  showView();
+  const [about, figures] = await Promise.all([ask("about"), ask("figures"), offerParts()]);
+  byId("step-word").textContent = about.step ? ", STEP" : "";
+  detailsPanel(figures);
+  forcesPanel();
+  resultsPanel(figures);
+  whyPanel();
+  visesDialog(figures);
+  takePanel(about);
+  const taken = await takeUpState().catch(() => false);
+  await offerVises(taken);
+  const keepSoon = quiet(keep, 150);
+  on(Object.keys(state), keepSoon);
+  document.body.dataset.ready = "true";
+}
+
+begin().catch((error) => {
+  const box = byId("part-trouble");
+  box.textContent = error.message;
+  show(box, true);
+});

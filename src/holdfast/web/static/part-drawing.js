@@ -1,0 +1,175 @@
+/**
+ * The drawing of the part as it was given: faces to forbid by a click, keep-out zones, and the places of errors.
+ */
+import { draw } from "./dom.js";
+import { boundsOf, outlinePath, pointAt, normalAt, segmentPath, segmentsOf } from "./geometry.js";
+import { partSegments } from "./pose.js";
+import { change, state } from "./state.js";
+import { bareLength, unitWord } from "./units.js";
+import { Viewport } from "./viewport.js";
+
+const MARGINS = [40, 40, 46, 46];
+
+/** The drawing of the part. */
+export class PartDrawing {
+  /** @param {SVGSVGElement} svg */
+  constructor(svg) {
+    this.svg = svg;
+    this.view = new Viewport(svg);
+    this.view.onview = () => this.letter();
+    /** What a tool draws: in mm, and on top in pixels. */
+    this.sketch = draw("g.sketch");
+    /** @type {() => (Node|string)[]} */
+    this.lettering = () => [];
+    this.trouble = null;
+    this.stray = null;
+    this.pointed = null;
+    this.faces = new Map();
+  }
+
+  /** Draw the part of the state, seen whole. */
+  show() {
+    this.trouble = null;
+    this.stray = null;
+    this.build();
+    if (state.part) this.view.fit([...state.part.bounds], MARGINS);
+    else this.view.fit([0, 0, 120, 80], MARGINS);
+  }
+
+  /**
+   * Show where a file is wrong, with as much of it as could be drawn.
+   * @param {number[][][]} strokes lines and arcs of the file, each a chain of [x, y, bulge]
+   * @param {{x: number, y: number}|null} place
+   * @param {string} words
+   */
+  showTrouble(strokes, place, words) {
+    this.trouble = place && { place, words };
+    this.stray = strokes.length ? strokes.map((chain) => chainPath(chain)).join("") : "";
+    this.build();
+    const box = boundsOf(strokes.flatMap((chain) => segmentsOf(chain).slice(0, -1)));
+    if (place) for (const [k, value] of [place.x, place.y, place.x, place.y].entries()) {
+      box[k] = k < 2 ? Math.min(box[k], value) : Math.max(box[k], value);
+    }
+    const more = Math.max(box[2] - box[0], box[3] - box[1], 10) * 0.06;
+    if (Number.isFinite(box[0])) this.view.fit([box[0] - more, box[1] - more, box[2] + more, box[3] + more], MARGINS);
+    this.letter();
+  }
+
+  /** Make everything that lies in mm. */
+  build() {
+    const { part } = state;
+    this.faces.clear();
+    const shapes = [];
+    if (this.stray !== null) {
+      shapes.push(draw("path.stray", { d: this.stray }));
+    } else if (part) {
+      const outline = outlinePath(part.loops);
+      shapes.push(draw("path.part-fill", { d: outline }));
+      shapes.push(draw("g.zones", {}, ...state.zones.map((zone) => draw("path.zone", { d: outlinePath([zone]) }))));
+      const byFace = new Map();
+      for (const { segment, face } of partSegments(part)) {
+        byFace.set(face, `${byFace.get(face) ?? ""}${segmentPath(segment)}`);
+      }
+      for (const [face, d] of byFace) shapes.push(this.face(face, d));
+      shapes.push(draw("path.outline", { d: outline }));
+      for (const { hit } of this.faces.values()) shapes.push(hit);
+    }
+    this.view.world.replaceChildren(...shapes, this.sketch);
+    this.paint();
+    this.letter();
+  }
+
+  /** A face that can be clicked. */
+  face(number, d) {
+    const seen = draw("path.face", { d });
+    const hit = draw("path.face-hit", { d, "data-face": number });
+    hit.append(draw("title", {}, `Face ${number}`));
+    hit.addEventListener("click", () => {
+      if (!this.view.tool) toggleFace(number);
+    });
+    hit.addEventListener("pointerenter", () => this.point(number));
+    hit.addEventListener("pointerleave", () => this.point(null));
+    this.faces.set(number, { seen, hit });
+    return seen;
+  }
+
+  /** Mark a face that is pointed at, here or in the list of faces. */
+  point(number) {
+    this.pointed = number;
+    this.paint();
+    this.letter();
+  }
+
+  /** Show which faces are forbidden and which is pointed at. */
+  paint() {
+    for (const [number, { seen }] of this.faces) {
+      seen.classList.toggle("forbidden", state.avoid.includes(number));
+      seen.classList.toggle("pointed", number === this.pointed);
+    }
+  }
+
+  /** Draw what keeps its size: numbers of faces, the extent, errors, and what a tool wants. */
+  letter() {
+    const words = [];
+    const { part } = state;
+    if (part && this.stray === null && state.view !== "draw") words.push(...this.extent(part), ...this.numbers(part));
+    if (this.trouble) {
+      const [x, y] = this.view.page([this.trouble.place.x, this.trouble.place.y]);
+      words.push(draw("circle.trouble", { cx: x, cy: y, r: 13 }), draw("circle.trouble-dot", { cx: x, cy: y, r: 3 }));
+    }
+    this.view.overlay.replaceChildren(...words, ...this.lettering());
+  }
+
+  /** The number of each face, where there is room for it or it is asked for. */
+  numbers(part) {
+    const seen = new Map();
+    for (const { segment, face } of partSegments(part)) {
+      const long = Math.hypot(segment.end[0] - segment.start[0], segment.end[1] - segment.start[1]) * this.view.k;
+      if (!seen.has(face) || seen.get(face).long < long) seen.set(face, { segment, long });
+    }
+    return [...seen].flatMap(([face, { segment, long }]) => {
+      const forbidden = state.avoid.includes(face);
+      if (long < 24 && !forbidden && face !== this.pointed) return [];
+      const [x, y] = this.view.page(pointAt(segment, 0.5));
+      const [nx, ny] = normalAt(segment, 0.5);
+      const [px, py] = [x - 16 * nx, y + 16 * ny];
+      const kind = `${forbidden ? " forbidden" : ""}${face === this.pointed ? " pointed" : ""}`;
+      return [
+        draw(`circle`, { class: `face-label${kind}`, cx: px, cy: py, r: 10 }),
+        draw("text", { class: `face-name${kind}`, x: px, y: py, dy: "0.36em", "text-anchor": "middle" }, String(face)),
+      ];
+    });
+  }
+
+  /** Width and height of the part along its sides. */
+  extent(part) {
+    const [x0, y0, x1, y1] = part.bounds;
+    const [[ax, ay], [bx, by]] = [this.view.page([x0, y0]), this.view.page([x1, y1])];
+    const low = ay + 22;
+    const aside = ax - 22;
+    return [
+      draw("path.dimension", { d: `M${ax} ${low}H${bx}M${ax} ${low - 5}v10M${bx} ${low - 5}v10` }),
+      draw("path.dimension", { d: `M${aside} ${ay}V${by}M${aside - 5} ${ay}h10M${aside - 5} ${by}h10` }),
+      draw("text.dimension-text", { x: (ax + bx) / 2, y: low + 15, "text-anchor": "middle" }, `${bareLength(x1 - x0, 2)} ${unitWord()}`),
+      draw(
+        "text.dimension-text",
+        { "text-anchor": "middle", transform: `translate(${aside - 8} ${(ay + by) / 2}) rotate(-90)` },
+        `${bareLength(y1 - y0, 2)} ${unitWord()}`,
+      ),
+    ];
+  }
+}
+
+/** The path of an open chain of [x, y, bulge]. */
+function chainPath(chain) {
+  return segmentsOf(chain).slice(0, -1).map((segment, k) => segmentPath(segment, k === 0)).join("");
+}
+
+/**
+ * Forbid a face, or allow it again.
+ * @param {number} number
+ */
+export function toggleFace(number) {
+  const rest = state.avoid.filter((face) => face !== number);
+  change({ avoid: rest.length < state.avoid.length ? rest : [...rest, number].sort((a, b) => a - b) });
+}

@@ -1,0 +1,245 @@
+/**
+ * The fixtures: how many there are so far, filters, the list, and what is said when there are none.
+ */
+import { byId, make, show } from "./dom.js";
+import { FixtureList } from "./fixture-list.js";
+import { Rows } from "./rows.js";
+import { cancel, searching, start } from "./search.js";
+import { rowOfRank, select, selectFrom } from "./selection.js";
+import { tellTotal } from "./stage-panel.js";
+import { change, on, state } from "./state.js";
+import { forgetColours } from "./thumbnails.js";
+import { countText } from "./units.js";
+import { explain } from "./why-panel.js";
+
+/** Short names of figures where there is little room. */
+const SHORT = {
+  closure_margin: "margin", clamp_amplification: "clamp", wrench_radius: "wrench", location_error: "error",
+  end_distance: "to end", load_reaction: "load",
+};
+
+/** @type {FixtureList} */
+let list;
+/** @type {Rows|null} */
+let rows = null;
+/** What a restored link still wants to see. @type {{rank: number|null, pinned: number|null, view: string}|null} */
+let wanted = null;
+/** Whether a fixture was chosen by the user, and not just the first one. */
+let chosenByUser = false;
+
+/** @returns {HTMLSelectElement} */
+const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
+
+/** @param {any[]} figures */
+export function resultsPanel(figures) {
+  const known = figures.map((figure) => ({ ...figure, short: SHORT[figure.key] ?? figure.words }));
+  list = new FixtureList(byId("list"), (index, row) => {
+    chosenByUser = true;
+    select(row, index);
+  });
+  list.figures = known;
+  choice("sort").append(
+    make("option", { value: "rank" }, "rank"), ...known.map((figure) => make("option", { value: figure.key }, figure.words)),
+  );
+  byId("search").addEventListener("click", start);
+  byId("cancel").addEventListener("click", cancel);
+  choice("sort").addEventListener("change", () => {
+    const figure = known.find((each) => each.key === choice("sort").value);
+    setList({ sort: choice("sort").value, descending: figure?.more_is_better ?? false });
+  });
+  byId("descending").addEventListener("click", () => setList({ descending: !state.list.descending }));
+  choice("filter-type").addEventListener("change", () => setList({ type: choice("filter-type").value }));
+  choice("filter-face").addEventListener("change", () => setList({ face: choice("filter-face").value }));
+  byId("filter-angle").addEventListener("change", readAngle);
+  on(["job"], showJob);
+  on(["part"], writeFaces);
+  on(["list"], () => {
+    writeFilters();
+    openRows();
+  });
+  on(["index", "selected"], () => list.choose(state.index));
+  on(["unit"], () => {
+    list.clear();
+    list.paint();
+  });
+  on(["part", "job"], () => {
+    byId("search").toggleAttribute("disabled", state.part === null);
+    byId("search").textContent = state.job ? "Search again" : "Find every fixture";
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    forgetColours();
+    list.clear();
+    list.paint();
+  });
+}
+
+/** Open the results of a link: these ranks are shown once they are known. */
+export function want(rank, pinned, view) {
+  wanted = { rank, pinned, view };
+}
+
+/** Sort or filter otherwise. */
+function setList(patch) {
+  change({ list: { ...state.list, ...patch } });
+}
+
+/** Read the filter of angles: a range such as 0..90. */
+function readAngle() {
+  const input = /** @type {HTMLInputElement} */ (byId("filter-angle"));
+  const text = input.value.trim().replace(/\s*(\.\.|to|–)\s*/, "..");
+  const match = /^(-?\d+(?:\.\d+)?)\.\.(-?\d+(?:\.\d+)?)$/.exec(text);
+  input.setAttribute("aria-invalid", String(text !== "" && !match));
+  if (text === "" || match) setList({ angle: text });
+}
+
+/** Offer the faces of the part as a filter. */
+function writeFaces() {
+  const faces = state.part?.faces ?? [];
+  choice("filter-face").replaceChildren(
+    make("option", { value: "" }, "any"), ...faces.map(({ number }) => make("option", { value: number }, String(number))),
+  );
+  if (state.list.face && !faces.some(({ number }) => String(number) === state.list.face)) setList({ face: "" });
+  choice("filter-face").value = state.list.face;
+}
+
+/** Show how the list is sorted and filtered. */
+export function writeFilters() {
+  const { sort, descending, type, face, angle } = state.list;
+  choice("sort").value = sort;
+  choice("filter-type").value = type;
+  choice("filter-face").value = face;
+  /** @type {HTMLInputElement} */ (byId("filter-angle")).value = angle;
+  byId("descending").setAttribute("aria-pressed", String(descending));
+  byId("descending").textContent = descending ? "↓ largest first" : "↑ smallest first";
+}
+
+/** Open the list of the job there is. */
+function openRows() {
+  rows?.leave();
+  rows = null;
+  const job = state.job?.job;
+  if (job) {
+    rows = new Rows(job, state.list, () => {
+      tellTotal(opened.total);
+      list.update();
+      firstRow(opened);
+      tellMatches();
+    });
+    const opened = rows;
+    if (state.selected) change({ index: -1 });
+  }
+  selectFrom(rows);
+  tellTotal(0);
+  list.use(rows);
+}
+
+/** Show the first fixture as soon as there is one, or the one a link asks for. */
+async function firstRow(from) {
+  if (from !== rows) return;
+  const first = from.at(0);
+  if (state.job?.state !== "done" && wanted) return;
+  if (wanted && first) {
+    const { rank, pinned, view } = wanted;
+    wanted = null;
+    const job = state.job.job;
+    const [row, other] = await Promise.all([rank, pinned].map((each) => (each ? rowOfRank(job, each) : null)));
+    if (from !== rows) return;
+    const plain = state.list.sort === "rank" && !state.list.descending && !state.list.type && !state.list.face && !state.list.angle;
+    if (row) change({ selected: row, index: plain ? rank - 1 : -1 });
+    if (other) change({ pinned: other });
+    if (row && view === "fixture") change({ view });
+    return;
+  }
+  if (first && (!state.selected || (!chosenByUser && searchMoved(first)))) {
+    change({ selected: first, index: 0, ...(state.selected ? {} : { view: "fixture" }) });
+  } else if (state.selected && state.index < 0 && first && state.selected.rank === first.rank) {
+    change({ index: 0 });
+  }
+}
+
+/** Whether another fixture is the first one now. */
+function searchMoved(first) {
+  const key = (row) => `${row.holes}${row.faces}${row.theta_deg}`;
+  return state.index === 0 && key(first) !== key(state.selected);
+}
+
+/** The search has moved on. */
+let shownJob = null;
+let shownRevision = -1;
+function showJob() {
+  const { job } = state;
+  const id = job?.job ?? null;
+  if (id !== shownJob) {
+    shownJob = id;
+    shownRevision = -1;
+    chosenByUser = false;
+    show(byId("why"), false);
+    openRows();
+  }
+  writeSummary();
+  const any = Boolean(job && job.found > 0);
+  show(byId("list"), any);
+  show(byId("filters"), any);
+  if (id && rows && job.revision !== shownRevision && job.revision > 0) {
+    shownRevision = job.revision;
+    if (!chosenByUser || searching()) rows.refresh(list.first, list.last).then(() => list.paint());
+    else followChosen(id);
+  }
+  if (id && job.state === "done" && job.found === 0) explain(id);
+}
+
+/** After the list has changed under a chosen fixture: keep it if it still has its rank, else show the first. */
+async function followChosen(job) {
+  const { selected } = state;
+  await rows?.refresh(list.first, list.last);
+  list.paint();
+  const row = selected && (await rowOfRank(job, selected.rank));
+  if (state.selected !== selected || state.job?.job !== job) return;
+  if (row && String(row.holes) === String(selected.holes) && Math.abs(row.theta_deg - selected.theta_deg) < 1e-6) return;
+  const first = await rows?.whenAt(0);
+  if (first) change({ selected: first, index: 0 });
+}
+
+/** How many there are, in words; told to screen readers only now and then. */
+let announced = "";
+function writeSummary() {
+  const { job } = state;
+  const busy = searching();
+  show(byId("progress-row"), busy);
+  const bar = /** @type {HTMLProgressElement} */ (byId("progress"));
+  if (busy && job.fraction > 0) bar.value = job.fraction;
+  else if (busy) bar.removeAttribute("value");
+  const trouble = byId("search-trouble");
+  show(trouble, job?.state === "failed");
+  trouble.textContent = job?.error ?? "";
+  const [title, words] = summary(job, busy);
+  byId("count").textContent = title;
+  byId("count-words").textContent = words;
+  byId("tab-count").textContent = job && job.found ? countText(job.found) : "";
+  const announcement = busy ? "Searching." : job ? `${title}. ${words}` : "";
+  if (announcement !== announced) {
+    announced = announcement;
+    byId("announce").textContent = announcement;
+  }
+}
+
+/** The summary of a job: a title, and a sentence. */
+function summary(job, busy) {
+  if (!job) return ["No search yet", "Fixtures appear here, the best first."];
+  const many = job.found === 1 ? "1 fixture" : `${countText(job.found)} fixtures`;
+  if (busy) return [`${many} so far`, job.state === "queued" ? "Waiting for its turn." : `${Math.round(100 * job.fraction)} % searched`];
+  if (job.state === "failed") return ["The search failed", ""];
+  if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
+  if (job.found === 0) return ["There is no fixture", "Every place was searched; below is why."];
+  const types = job.counts ? `${countText(job.counts.I ?? 0)} of type I, ${countText(job.counts.II ?? 0)} of type II` : "";
+  const seconds = typeof job.seconds === "number" ? `, found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s` : "";
+  return [many, [`${types}${seconds}.`, ...(job.notes ?? [])].join(" ")];
+}
+
+/** How many match the filters. */
+function tellMatches() {
+  const filtered = state.list.type || state.list.face || state.list.angle;
+  if (!rows?.known || searching()) return;
+  if (!filtered) writeSummary();
+  else byId("count-words").textContent = `${countText(rows.total)} match the filters.`;
+}

@@ -1,0 +1,155 @@
+/**
+ * Step 3: what is ruled out: faces, zones, angles, margins, types.
+ */
+import { byId, make, quiet, show } from "./dom.js";
+import { toggleFace } from "./part-drawing.js";
+import { change, on, state } from "./state.js";
+import { fieldLength, length, number, readLength, readNumber } from "./units.js";
+import { circleLoop, ZoneTool } from "./zone-tool.js";
+
+/** @returns {HTMLInputElement} */
+const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
+
+/** @type {ZoneTool|null} */
+let tool = null;
+
+/**
+ * Set the panel up.
+ * @param {import("./part-drawing.js").PartDrawing} drawing
+ * @param {() => void} showPart
+ */
+export function rulesPanel(drawing, showPart) {
+  for (const kind of ["circle", "polygon"]) {
+    byId(`zone-${kind}`).addEventListener("click", () => startZone(drawing, kind, showPart));
+  }
+  byId("zone-add").addEventListener("click", addTyped);
+  for (const id of ["angle-low", "angle-high", "contact-margin"]) {
+    field(id).addEventListener("input", quiet(read, 250));
+    field(id).addEventListener("change", read);
+  }
+  for (const id of ["type-1", "type-2"]) {
+    field(id).addEventListener("change", (event) => {
+      const types = ["I", "II"].filter((_, k) => field(`type-${k + 1}`).checked);
+      if (types.length) change({ types });
+      else /** @type {HTMLInputElement} */ (event.target).checked = true;
+    });
+  }
+  on(["part"], () => writeFaces(drawing));
+  on(["avoid"], markFaces);
+  on(["zones", "unit"], writeZones);
+  on(["angles", "contactMargin", "types", "unit"], write);
+  on(["loads"], writeLoads);
+}
+
+/** A button for each face; pressed means forbidden. */
+function writeFaces(drawing) {
+  const faces = state.part?.faces ?? [];
+  byId("faces").replaceChildren(
+    ...faces.map((face) => {
+      const size = face.kind === "line" ? `line of ${length(face.size, 1)}` : `arc of radius ${length(face.size, 1)}`;
+      return make("button", {
+        type: "button", title: size, "aria-label": `Face ${face.number}, ${size}`, "data-face": face.number,
+        click: () => toggleFace(face.number),
+        pointerenter: () => drawing.point(face.number), pointerleave: () => drawing.point(null),
+        focus: () => drawing.point(face.number), blur: () => drawing.point(null),
+      }, String(face.number));
+    }),
+  );
+  markFaces();
+}
+
+/** Show which faces are forbidden. */
+function markFaces() {
+  for (const button of byId("faces").querySelectorAll("button")) {
+    button.setAttribute("aria-pressed", String(state.avoid.includes(Number(button.dataset.face))));
+  }
+}
+
+/** Begin to draw a zone, or leave it. */
+function startZone(drawing, kind, showPart) {
+  const same = tool?.kind === kind;
+  tool?.stop();
+  if (same || !state.part) return;
+  showPart();
+  byId(`zone-${kind}`).setAttribute("aria-pressed", "true");
+  tool = new ZoneTool(drawing, kind, () => {
+    tool = null;
+    for (const each of ["circle", "polygon"]) byId(`zone-${each}`).setAttribute("aria-pressed", "false");
+  });
+}
+
+/** Leave the zone that is being drawn. */
+export function stopZone() {
+  tool?.stop();
+}
+
+/** Add a circle from its typed numbers. */
+function addTyped() {
+  const values = ["zone-x", "zone-y", "zone-radius"].map((id) => {
+    const value = readLength(field(id).value);
+    const wrong = value === null || !Number.isFinite(value) || (id === "zone-radius" && value <= 0);
+    field(id).setAttribute("aria-invalid", String(wrong));
+    return wrong ? null : value;
+  });
+  if (values.includes(null)) return;
+  change({ zones: [...state.zones, circleLoop([values[0], values[1]], values[2])] });
+  for (const id of ["zone-x", "zone-y", "zone-radius"]) field(id).value = "";
+}
+
+/** A chip for each zone, which removes it. */
+function writeZones() {
+  byId("zones").replaceChildren(
+    ...state.zones.map((zone, k) => {
+      const circle = zone.length === 2 && zone.every(([, , bulge]) => bulge === 1);
+      const words = circle ? `circle r ${length((zone[1][0] - zone[0][0]) / 2, 1)}` : `polygon of ${zone.length}`;
+      return make("button", {
+        type: "button", "aria-label": `Remove the ${words}`,
+        click: () => change({ zones: state.zones.filter((_, other) => other !== k) }),
+      }, `${words} ×`);
+    }),
+  );
+}
+
+/** Read angles and margin into the state. */
+function read() {
+  const [low, high] = ["angle-low", "angle-high"].map((id) => readNumber(field(id).value));
+  const margin = readLength(field("contact-margin").value) ?? 0;
+  const badMargin = !(margin >= 0);
+  const one = (low === null) !== (high === null);
+  const badAngle = low !== null && high !== null && !(low <= high);
+  field("contact-margin").setAttribute("aria-invalid", String(badMargin));
+  for (const id of ["angle-low", "angle-high"]) field(id).setAttribute("aria-invalid", String(badAngle));
+  if (!badMargin && margin !== state.contactMargin) change({ contactMargin: margin });
+  if (badAngle || one) return;
+  const angles = low === null ? [] : [[low, high]];
+  if (JSON.stringify(angles) !== JSON.stringify(state.angles)) change({ angles });
+}
+
+/** Write angles, margin and types. */
+function write() {
+  const values = {
+    "angle-low": state.angles.length ? String(state.angles[0][0]) : "",
+    "angle-high": state.angles.length ? String(state.angles[0][1]) : "",
+    "contact-margin": state.contactMargin ? fieldLength(state.contactMargin) : "",
+  };
+  for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
+  ["I", "II"].forEach((type, k) => (field(`type-${k + 1}`).checked = state.types.includes(type)));
+}
+
+/** Tell which load the search ranks by, and offer to drop it. */
+function writeLoads() {
+  const words = byId("load-words");
+  show(words, state.loads.length > 0);
+  words.replaceChildren(
+    ...state.loads.map((load) => `Ranked by a load of ${number(load.force, 0)} N at (${load.points[0].map((v) => length(v, 1)).join(", ")}). `),
+    make("button", { type: "button", click: () => change({ loads: [], ranking: null }) }, "Drop the load"),
+  );
+}
+
+/** Write everything anew, after a state was restored. */
+export function writeRules(drawing) {
+  writeFaces(drawing);
+  writeZones();
+  write();
+  writeLoads();
+}

@@ -1,0 +1,93 @@
+/**
+ * The state of the page in one place, and who wants to know when it changes.
+ *
+ * Settings are what a search depends on; when one of them changes, what was found before is stale.
+ */
+
+/** Keys of the state that a search depends on. */
+export const SETTINGS = [
+  "part", "vise", "types", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking",
+];
+
+/**
+ * @typedef {Object} State
+ * @property {any} part the part as the server tells it, or null
+ * @property {string} viseName the preset chosen; "own" for own values
+ * @property {any} vise fields of the vise in mm
+ * @property {string} unit "mm" or "inch", for reading and typing only
+ * @property {string[]} types
+ * @property {number} contactMargin in mm
+ * @property {number[]} avoid faces not to touch
+ * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
+ * @property {number[][]} angles ranges in degrees
+ * @property {{peg: number, face: number}|null} tolerance in mm
+ * @property {any[]} loads that the search ranks by
+ * @property {string[]|null} ranking
+ * @property {any} job the search as the server tells it, or null
+ * @property {{sort: string, descending: boolean, type: string, face: string, angle: string}} list
+ * @property {any} selected the fixture shown
+ * @property {number} index its place in the list, -1 where it is not known
+ * @property {any} pinned the fixture it is compared with, or null
+ * @property {string} view "part", "fixture" or "draw"
+ * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null}|null} force
+ */
+
+/** @type {State} */
+export const state = {
+  part: null,
+  viseName: "",
+  vise: { pitch: [10, 10], columns: 2, peg_radius: 3 },
+  unit: "mm",
+  types: ["I", "II"],
+  contactMargin: 0,
+  avoid: [],
+  zones: [],
+  angles: [],
+  tolerance: null,
+  loads: [],
+  ranking: null,
+  job: null,
+  list: { sort: "rank", descending: false, type: "", face: "", angle: "" },
+  selected: null,
+  index: -1,
+  pinned: null,
+  view: "part",
+  force: null,
+};
+
+/** @type {{keys: string[], call: (changed: Set<string>) => void}[]} */
+const listeners = [];
+
+/**
+ * Be called whenever one of some keys has changed.
+ * @param {string[]} keys
+ * @param {(changed: Set<string>) => void} call
+ */
+export function on(keys, call) {
+  listeners.push({ keys, call });
+}
+
+/**
+ * Change the state and tell those who asked.
+ * @param {Partial<State>} patch
+ */
+export function change(patch) {
+  const changed = new Set(Object.keys(patch).filter((key) => patch[key] !== state[key]));
+  if (!changed.size) return;
+  Object.assign(state, patch);
+  for (const { keys, call } of listeners) if (keys.some((key) => changed.has(key))) call(changed);
+}
+
+/** What the server is asked to search. */
+export function request() {
+  return {
+    workpiece: { name: state.part.name, loops: state.part.loops },
+    vise: state.vise,
+    types: state.types,
+    contact_margin: state.contactMargin,
+    restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles },
+    ranking: state.ranking,
+    tolerance: state.tolerance,
+    loads: state.loads,
+  };
+}

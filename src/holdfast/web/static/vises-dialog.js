@@ -1,0 +1,85 @@
+/**
+ * Which vise suits the part: the sweep over the presets, as a table whose lines can be taken.
+ */
+import { ApiError, ask, send } from "./api.js";
+import { byId, make, show } from "./dom.js";
+import { request, state } from "./state.js";
+import { countText, figureText } from "./units.js";
+import { usePreset } from "./vise-panel.js";
+
+const POLL = 250;
+let latest = 0;
+/** @type {any[]} */
+let figures = [];
+
+/** @param {any[]} known the figures of quality */
+export function visesDialog(known) {
+  figures = known;
+  byId("sweep").addEventListener("click", openVises);
+  byId("vises").addEventListener("close", () => (latest += 1));
+}
+
+/** Open the dialog and let the server compare. */
+export async function openVises() {
+  if (!state.part) return;
+  const mine = ++latest;
+  const dialog = /** @type {HTMLDialogElement} */ (byId("vises"));
+  const bar = /** @type {HTMLProgressElement} */ (byId("vises-progress"));
+  byId("vises-table").replaceChildren();
+  bar.removeAttribute("value");
+  show(bar, true);
+  dialog.showModal();
+  let job = null;
+  try {
+    const { vise, ...rest } = request();
+    ({ job } = await send("explore", { ...rest, tolerance: null, vises: null }));
+    for (;;) {
+      const answer = await ask(`jobs/${encodeURIComponent(job)}`);
+      if (mine !== latest) break;
+      write(answer.table ?? []);
+      if (answer.fraction > 0) bar.value = answer.fraction;
+      if (answer.error) throw new ApiError(answer.error, 400);
+      if (["done", "failed", "cancelled"].includes(answer.state)) break;
+      await new Promise((resolve) => setTimeout(resolve, POLL));
+    }
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (mine === latest) byId("vises-table").replaceChildren(make("p.trouble-box", {}, error.message));
+  } finally {
+    if (mine === latest) show(bar, false);
+    if (job) ask(`jobs/${encodeURIComponent(job)}`, { method: "DELETE" }).catch(() => {});
+  }
+}
+
+/** The table as far as it is known. */
+function write(table) {
+  if (!table.length) return;
+  const shown = figures.filter((figure) => table.some((line) => figure.key in bestOf(line)));
+  const usual = ["location_error", "clamp_amplification", "closure_margin"];
+  const columns = usual.map((key) => shown.find((figure) => figure.key === key)).filter(Boolean);
+  const lines = table.map((line) => {
+    const name = line.name ?? line.title ?? line.vise?.name ?? line.vise?.title ?? "";
+    const counts = line.counts ?? {};
+    const total = (counts.I ?? 0) + (counts.II ?? 0);
+    const best = bestOf(line);
+    const take = () => {
+      /** @type {HTMLDialogElement} */ (byId("vises")).close();
+      usePreset(name);
+    };
+    return make("tr", {},
+      make("th", { scope: "row" }, name), make("td.number", {}, line.error ? "–" : countText(total)),
+      ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, best[figure.key]) : "–")),
+      make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
+  });
+  const heads = ["Vise", "Fixtures", ...columns.map((figure) => `best ${figure.words}`), ""];
+  byId("vises-table").replaceChildren(
+    make("table", {}, make("caption.unseen", {}, "The part in each vise"),
+      make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(k && words ? "th.number" : words ? "th" : "td", words ? { scope: "col" } : {}, words)))),
+      make("tbody", {}, ...lines)),
+  );
+}
+
+/** The best figures of a line, by key. */
+function bestOf(line) {
+  return line.quality ?? line["best quality"] ?? line.best ?? {};
+}
