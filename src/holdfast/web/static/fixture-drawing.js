@@ -134,8 +134,14 @@ export class FixtureDrawing {
     group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
     const cross = radius / 2;
     group.append(draw("path.peg-cross", { d: `M${x - cross} ${y}H${x + cross}M${x} ${y - cross}V${y + cross}` }));
-    const point = () => this.pointed(k, group.getBoundingClientRect());
-    const away = () => this.pointed(null, null);
+    const point = () => {
+      this.mark(k);
+      this.pointed(k, group.getBoundingClientRect());
+    };
+    const away = () => {
+      this.mark(-1);
+      this.pointed(null, null);
+    };
     group.addEventListener("pointerenter", point);
     group.addEventListener("pointerleave", away);
     group.addEventListener("focus", point);

@@ -56,7 +56,7 @@ export function partPanel({ drawing, onDraw }) {
     const mine = ++reading;
     try {
       const part = await ask(`parts/${encodeURIComponent(builtin.value)}`);
-      if (mine === reading) usePart(part);
+      if (mine === reading) usePart(part, builtin.value);
     } catch (error) {
       if (mine === reading) await trouble(error, new File([], builtin.value));
     }
@@ -87,9 +87,11 @@ function listenToDrops(readFile) {
 /**
  * Take a part: what was ruled out on another one is gone.
  * @param {any} part
+ * @param {string} [name] of the built-in part that it is
  */
-export function usePart(part) {
+export function usePart(part, name = "") {
   show(byId("part-trouble"), false);
+  /** @type {HTMLSelectElement} */ (byId("builtin")).value = name;
   change({ part, avoid: [], zones: [], force: null, loads: [], view: "part" });
 }
 

@@ -18,6 +18,8 @@ export let fixtureDrawing;
 let pinnedDrawing;
 /** @type {DrawingTool|null} */
 let tool = null;
+/** How many fixtures the list has. */
+let listTotal = 0;
 /** The nearest miss, when there is no fixture. @type {any} */
 let miss = null;
 
@@ -69,6 +71,7 @@ export function showView() {
   show(byId("drawing-fixture"), fixture);
   show(byId("board-pinned"), fixture && state.pinned !== null);
   show(byId("below"), fixture && state.selected !== null);
+  show(byId("board-title"), fixture && byId("board-title").textContent !== "");
   show(byId("draw-bar"), view === "draw");
   show(byId("draw-words"), view === "draw");
   if (view === "draw" && !tool) {
@@ -128,7 +131,7 @@ export function showMiss(row, words = "") {
 /** Write above the main drawing. */
 function showTitle(words) {
   byId("board-title").textContent = words;
-  show(byId("board-title"), words !== "");
+  show(byId("board-title"), words !== "" && state.view === "fixture");
 }
 
 /** Show the pinned fixture beside the other, or only the other. */
@@ -140,12 +143,12 @@ function showPinned() {
     pinnedDrawing.show(state.part, state.vise, row);
   } else {
     pinnedDrawing.clear();
+    if (state.selected) showTitle("");
   }
   showPinButton();
-  if (state.selected) showTitle(row ? `Shown: ${state.selected.rank}` : "");
 }
 
-/** Whether the fixture shown is the pinned one. */
+/** Whether two fixtures are compared. */
 function showPinButton() {
   byId("pin").setAttribute("aria-pressed", String(state.pinned !== null));
   if (state.pinned && state.selected) showTitle(`Shown: ${state.selected.rank}`);
@@ -164,13 +167,10 @@ export function closeVise() {
 /** Where in the list the fixture shown is. */
 function showPlace() {
   const { selected, index } = state;
-  const total = listTotal;
-  byId("place").textContent = !selected ? "–" : index < 0 ? `rank ${selected.rank}` : `${countText(index + 1)} of ${countText(total)}`;
+  byId("place").textContent = !selected ? "–" : index < 0 ? `rank ${selected.rank}` : `${countText(index + 1)} of ${countText(listTotal)}`;
   byId("previous").toggleAttribute("disabled", !selected || index <= 0);
-  byId("next").toggleAttribute("disabled", !selected || index >= total - 1);
+  byId("next").toggleAttribute("disabled", !selected || index >= listTotal - 1);
 }
-
-let listTotal = 0;
 
 /** Learn how many fixtures the list has. */
 export function tellTotal(total) {

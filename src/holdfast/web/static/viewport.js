@@ -27,10 +27,21 @@ export class Viewport {
     this.onview = () => {};
     /** @type {null|{down: Function, move?: Function, up?: Function, hover?: Function}} what takes the pointer first */
     this.tool = null;
+    this.printing = false;
     this.pointers = new Map();
     this.taken = null;
     this.listen();
     new ResizeObserver(() => (this.fitted ? this.fit() : this.apply())).observe(svg);
+    // On paper the drawing is scaled as it stands.
+    addEventListener("beforeprint", () => {
+      svg.setAttribute("viewBox", `0 0 ${svg.clientWidth || 1} ${svg.clientHeight || 1}`);
+      this.printing = true;
+    });
+    addEventListener("afterprint", () => {
+      svg.removeAttribute("viewBox");
+      this.printing = false;
+      this.apply();
+    });
   }
 
   /**
@@ -42,7 +53,7 @@ export class Viewport {
     this.bounds = bounds;
     this.margins = margins;
     const { clientWidth: width, clientHeight: height } = this.svg;
-    if (!width || !height) return;
+    if (!width || !height || this.printing) return;
     const [top, right, bottom, left] = margins;
     const across = Math.max(bounds[2] - bounds[0], 1e-6);
     const up = Math.max(bounds[3] - bounds[1], 1e-6);
