@@ -45,6 +45,12 @@ WRONG = {
         }
     },
 }
+# What the libraries below say, in the words of this server.
+SENTENCES = {
+    "Not Found": "There is nothing at this address.",
+    "Method Not Allowed": "This cannot be done at this address.",
+    "There was an error parsing the body": "The request is not valid JSON: send one object.",
+}
 STATUSES = ("400", "404", "408", "409", "413", "429", "500", "503")
 
 
@@ -73,6 +79,7 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None) -> Fast
         openapi_url="/api/openapi.json",
         docs_url=None,
         redoc_url=None,
+        redirect_slashes=False,
         separate_input_output_schemas=False,
     )
     app.include_router(part_routes.router)
@@ -132,14 +139,8 @@ def add_error_handlers(app: FastAPI) -> None:
 
     async def plain(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
-        sentences = {404: "There is nothing at this address.", 405: "This cannot be done at this address."}
-        detail = str(error.detail)
-        usual = detail in ("Not Found", "Method Not Allowed")
-        return wrong(
-            error.status_code,
-            sentences.get(error.status_code, detail) if usual else detail,
-            dict(error.headers or {}),
-        )
+        sentence = SENTENCES.get(str(error.detail), str(error.detail))
+        return wrong(error.status_code, sentence, dict(error.headers or {}))
 
     async def fault(request: Request, error: Exception) -> Response:
         traceback.print_exception(error, file=sys.stderr)

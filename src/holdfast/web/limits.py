@@ -44,7 +44,7 @@ class Limits:
     seconds: float = 120.0
     desk_seconds: float = 20.0
     memory_bytes: int = 4 << 30
-    desk_memory_bytes: int = 3 << 30
+    desk_memory_bytes: int = 2 << 30
     fixtures: int = 300_000
     kept_jobs: int = 1_000
     kept_bytes: int = 1 << 30

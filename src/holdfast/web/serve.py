@@ -16,7 +16,7 @@ from holdfast.web.app import create_app
 from holdfast.web.guard import Hosts
 from holdfast.web.limits import Limits
 
-__all__ = ["run_server"]
+__all__ = ["bound_socket", "make_server", "run_server"]
 
 LOCAL = ("localhost", "127.0.0.1", "::1")
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
@@ -98,9 +98,20 @@ def run_server(
     """
     listener = bound_socket(host, port)
     shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
-    app = create_app(limits, hosts_of(host, more_hosts))
+    server = make_server(limits, hosts_of(host, more_hosts), lambda: None if listening is None else listening(shown))
+    try:
+        server.run(sockets=[listener])
+    except KeyboardInterrupt:
+        # uvicorn raises it again after a clean stop.
+        pass
+    finally:
+        listener.close()
+
+
+def make_server(limits: Limits, hosts: Hosts, listening: Callable[[], None]) -> Server:
+    """A server that is not running yet; ``listening`` is called once it takes requests."""
     config = uvicorn.Config(
-        app,
+        create_app(limits, hosts),
         http=PatientProtocol,
         ws="none",
         lifespan="on",
@@ -111,14 +122,7 @@ def run_server(
         limit_concurrency=limits.connections,
         timeout_graceful_shutdown=STOP_SECONDS,
     )
-    server = Server(config, lambda: None if listening is None else listening(shown))
-    try:
-        server.run(sockets=[listener])
-    except KeyboardInterrupt:
-        # uvicorn raises it again after a clean stop.
-        pass
-    finally:
-        listener.close()
+    return Server(config, listening)
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
