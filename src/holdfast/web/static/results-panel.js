@@ -204,6 +204,7 @@ async function followChosen(job) {
 let announced = "";
 function writeSummary() {
   const { job } = state;
+  document.body.dataset.search = job?.state ?? "none";
   const busy = searching();
   show(byId("progress-row"), busy);
   const bar = /** @type {HTMLProgressElement} */ (byId("progress"));

@@ -1,0 +1,165 @@
+"""From a file to a setup sheet, as a visitor goes."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from running_server import LONG
+from walking import EXAMPLES, SEARCH_PATIENCE, Walk
+
+
+def test_from_a_dxf_to_a_setup_sheet(walk: Walk) -> None:
+    """Upload, forbid a face by a click, search, sort, step, take the files away; nothing touches the forbidden face."""
+    page = walk.page
+    page.set_input_files("#file", EXAMPLES / "bracket.dxf")
+    walk.seen("#faces button")
+    x, y = walk.point(60, 0)
+    page.mouse.click(x, y)
+    walk.seen('#faces button[data-face="0"][aria-pressed="true"]')
+    walk.search()
+    assert walk.count() > 1000
+    assert 0 not in walk.shown()["faces"]
+
+    page.select_option("#sort", "closure_margin")
+    walk.seen(".row-figure.sorted")
+    page.click("#list .row >> nth=0")
+    best = walk.shown()["quality"]["closure_margin"]
+    page.keyboard.press("ArrowRight")
+    page.wait_for_selector('#list [aria-posinset="2"][aria-selected="true"]')
+    walk.seen("#place:has-text('2 of')")
+    second = walk.shown()
+    assert second["quality"]["closure_margin"] <= best
+    assert walk.holes() == second["holes"]
+
+    assert walk.saved("#take-sheet").startswith(b"%PDF")
+    assert b"<svg" in walk.saved("#take-svg")
+    assert b"LWPOLYLINE" in walk.saved("#take-dxf") or b"LINE" in walk.saved("#take-dxf")
+    result = json.loads(walk.saved("#take-json"))
+    assert len(result["fixtures"]) == walk.count()
+    assert walk.saved("#take-csv").count(b"\n") >= walk.count()
+
+
+def test_a_reload_and_a_link_restore_everything(walk: Walk) -> None:
+    """Search, order, fixture and forbidden faces come back, also where the server has forgotten the search."""
+    page = walk.page
+    walk.take()
+    page.click('#faces button[data-face="3"]')
+    walk.search()
+    page.select_option("#sort", "wrench_radius")
+    page.wait_for_selector(".row-figure.sorted")
+    page.click("#list .row >> nth=2")
+    walk.seen("#place:has-text('3 of')")
+    holes, count, job = walk.holes(), walk.count(), walk.job()
+    page.wait_for_url(re.compile("#.{100,}"))
+    # The address follows the state after a moment of quiet.
+    page.evaluate("async () => (await import('/static/link.js')).keep()")
+
+    page.reload()
+    walk.ready()
+    walk.searched()
+    walk.seen("#drawing-fixture")
+    assert (walk.holes(), walk.count(), walk.job()) == (holes, count, job)
+    assert page.input_value("#sort") == "wrench_radius"
+
+    link = page.url
+    walk.server.client.delete(f"/api/jobs/{job}")
+    page.goto("about:blank")
+    walk.open(link)
+    walk.searched()
+    walk.seen("#drawing-fixture")
+    assert (walk.holes(), walk.count()) == (holes, count)
+    assert walk.job() != job
+    assert page.get_attribute('#faces button[data-face="3"]', "aria-pressed") == "true"
+    # The forgotten search was asked for once.
+    walk.troubles = [line for line in walk.troubles if "404" not in line]
+
+
+def test_new_settings_leave_nothing_of_the_old_search(walk: Walk) -> None:
+    """A change empties the list, searches anew and has the old job deleted."""
+    walk.take()
+    walk.search()
+    old, count = walk.job(), walk.count()
+    with walk.page.expect_request(lambda request: request.method == "DELETE"):
+        walk.page.click('#faces button[data-face="0"]')
+    assert walk.page.locator("#list .row").count() == 0 or walk.page.locator("#list").is_hidden()
+    walk.searched()
+    assert walk.job() != old
+    assert walk.count() < count
+    assert walk.server.client.get(f"/api/jobs/{old}").status_code == 404
+
+
+def test_a_search_can_be_cancelled(walk: Walk) -> None:
+    """While it runs there is a count and a button; after that the page says that it is not all."""
+    page = walk.page
+    walk.take("8Handle", None)
+    vise = LONG["vise"]
+    for name, value in (("#peg-radius", vise["peg_radius"]), ("#columns", vise["columns"]), ("#pitch-x", 3), ("#pitch-y", 3)):
+        page.fill(name, str(value))
+    page.press("#pitch-y", "Tab")
+    page.click("#search")
+    walk.seen("#progress-row")
+    walk.seen("#count:has-text('so far')")
+    page.click("#cancel")
+    page.wait_for_selector("#progress-row", state="hidden", timeout=SEARCH_PATIENCE)
+    assert re.search("not all|cancelled", page.inner_text("#count"))
+
+
+@pytest.mark.parametrize("unit", ["mm", "inch"])
+def test_lengths_are_told_in_the_unit_chosen(walk: Walk, unit: str) -> None:
+    """The jaw separation of the drawing and the fields of the vise follow the unit; the search does not."""
+    walk.take()
+    walk.search()
+    walk.page.select_option("#unit", unit)
+    size = walk.shown()["jaw_separation"] / (25.4 if unit == "inch" else 1)
+    words = f"{size:.4f} in" if unit == "inch" else f"{size:.3f} mm"
+    assert words in walk.page.inner_text("#pose-words")
+    assert float(walk.page.input_value("#pitch-x")) == pytest.approx(8 / (25.4 if unit == "inch" else 1))
+    assert walk.page.locator("#list .row").count() > 0
+
+
+def test_the_keys_are_enough(walk: Walk) -> None:
+    """Part, face, search, list and a peg without the mouse."""
+    page = walk.page
+    page.focus("#builtin")
+    page.keyboard.type("widget")
+    walk.seen("#faces button")
+    page.select_option("#preset", "gripper-one-column")
+    page.focus('#faces button[data-face="2"]')
+    page.keyboard.press("Space")
+    walk.seen('#faces button[data-face="2"][aria-pressed="true"]')
+    page.focus("#search")
+    page.keyboard.press("Enter")
+    walk.searched()
+    page.focus("#list")
+    page.keyboard.press("End")
+    page.wait_for_selector(f'#list [aria-posinset="{walk.count()}"][aria-selected="true"]')
+    page.keyboard.press("Home")
+    page.wait_for_selector('#list [aria-posinset="1"][aria-selected="true"]')
+    page.keyboard.press("ArrowDown")
+    walk.seen("#place:has-text('2 of')")
+    page.focus("#drawing-fixture .peg")
+    assert walk.holes()[0] in walk.seen("#peg-words").inner_text()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.classList.contains('peg')")
+
+
+def test_a_phone_shows_one_section_at_a_time(walk: Walk) -> None:
+    """The way from part to fixture at 390 pixels, and nothing sticks out."""
+    page = walk.page
+    page.set_viewport_size({"width": 390, "height": 800})
+    walk.take()
+    page.click("#search")
+    walk.searched(shown=False)
+    page.click("#list .row >> nth=1")
+    walk.seen("#drawing-fixture")
+    assert page.locator("#list").is_hidden()
+    for section in ("settings", "stage", "results"):
+        page.click(f".sections [data-to={section}]")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        wide = page.evaluate(
+            "[...document.querySelectorAll('button, a.button, input, select')].filter(e => e.offsetParent"
+            " && e.getBoundingClientRect().right > 391).map(e => e.id)"
+        )
+        assert wide == []
