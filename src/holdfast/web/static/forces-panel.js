@@ -157,10 +157,13 @@ function writeBars(row, { forces, needed, jaw, loose }) {
     }),
   );
   const enough = jaw >= needed * (1 - 1e-9);
-  byId("force-words").textContent = needed === 0
-    ? `No peg lets go, however little the jaw presses. Told for a jaw force of ${number(jaw, 0)} N, without friction.`
-    : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.` +
-      (enough ? ` Told for ${number(jaw, 0)} N, without friction.` : ` With ${number(jaw, 0)} N it lets go.`);
+  const told = state.force?.jaw === null && needed > 0 ? "that" : `a jaw force of ${number(jaw, 0)} N`;
+  byId("force-words").textContent = [
+    needed === 0
+      ? "No peg lets go, however little the jaw presses."
+      : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
+    enough ? `The forces are those for ${told}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
+  ].join(" ");
 }
 
 let asked = 0;

@@ -9,16 +9,19 @@ import { on, state } from "./state.js";
 /** @param {any} about what the server can do */
 export function takePanel(about) {
   show(byId("take-step"), Boolean(about.step));
-  on(["selected", "job", "unit", "force"], write);
+  on(["part", "selected", "job", "unit", "force"], write);
   byId("paper").addEventListener("change", write);
   byId("print").addEventListener("click", () => print());
   byId("copy-link").addEventListener("click", copyLink);
 }
 
-/** Point every link at what is shown. */
+/** Point every link at what is shown, and name the page after it. */
 function write() {
   const job = state.job?.job;
   const rank = state.selected?.rank;
+  const name = [state.part?.name, rank && `fixture ${rank}`].filter(Boolean).join(", ");
+  document.title = name ? `${name} – holdfast` : "holdfast: every way to hold a part in a fixture vise";
+  byId("print-title").textContent = name;
   if (!job || !rank) return;
   const date = new Date();
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");

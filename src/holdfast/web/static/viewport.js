@@ -8,6 +8,8 @@ import { draw } from "./dom.js";
 
 const CLOSEST = 400;
 const WHEEL = 0.0016;
+/** Pixels of a drawing on paper. */
+const SHEET = [720, 560];
 
 /** A drawing that can be panned and zoomed. */
 export class Viewport {
@@ -32,16 +34,21 @@ export class Viewport {
     this.taken = null;
     this.listen();
     new ResizeObserver(() => (this.fitted ? this.fit() : this.apply())).observe(svg);
-    // On paper the drawing is scaled as it stands.
-    addEventListener("beforeprint", () => {
-      svg.setAttribute("viewBox", `0 0 ${svg.clientWidth || 1} ${svg.clientHeight || 1}`);
-      this.printing = true;
-    });
-    addEventListener("afterprint", () => {
-      svg.removeAttribute("viewBox");
-      this.printing = false;
-      this.apply();
-    });
+    addEventListener("beforeprint", () => this.print(true));
+    addEventListener("afterprint", () => this.print(false));
+  }
+
+  /** Width and height in pixels; on paper those of a sheet, to which the browser scales them. */
+  get size() {
+    return this.printing ? SHEET : [this.svg.clientWidth, this.svg.clientHeight];
+  }
+
+  /** Fit the drawing to a sheet of paper, or to the screen again. */
+  print(printing) {
+    this.printing = printing;
+    if (printing) this.svg.setAttribute("viewBox", `0 0 ${SHEET[0]} ${SHEET[1]}`);
+    else this.svg.removeAttribute("viewBox");
+    this.fit();
   }
 
   /**
@@ -52,8 +59,8 @@ export class Viewport {
   fit(bounds = this.bounds, margins = this.margins) {
     this.bounds = bounds;
     this.margins = margins;
-    const { clientWidth: width, clientHeight: height } = this.svg;
-    if (!width || !height || this.printing) return;
+    const [width, height] = this.size;
+    if (!width || !height) return;
     const [top, right, bottom, left] = margins;
     const across = Math.max(bounds[2] - bounds[0], 1e-6);
     const up = Math.max(bounds[3] - bounds[1], 1e-6);
