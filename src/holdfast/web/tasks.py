@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from holdfast.statics.loads import LoadCase
     from holdfast.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
-__all__ = ["TASKS", "Compared", "Found", "Upload", "warm_up"]
+__all__ = ["TASKS", "Compared", "Found", "Upload", "plain", "warm_up"]
 
 # Seconds between reports of progress.
 PAUSE = 0.1
