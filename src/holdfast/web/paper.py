@@ -7,6 +7,7 @@ from datetime import date
 from hashlib import sha256
 from importlib import import_module
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
