@@ -8,6 +8,7 @@ from pathlib import Path
 from attrs import frozen
 
 from holdfast.model.result import Result
+from holdfast.verification.asked import broken_restriction, order_faults, wrong_figures
 from holdfast.verification.balls import PRECISIONS
 from holdfast.verification.fixture_proof import Judge, Verdict
 from holdfast.verification.listing import KINDS, Listing, listing_of, read_listing
@@ -105,9 +106,13 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     unproven = []
     tally: dict[Verdict, int] = {"proven": 0, "refuted": 0, "undecided": 0}
     bits = PRECISIONS[0]
+    wrong = wrong_figures(everything, listing.workpiece, listing.vise, listing.asked)
     for place, fixture in enumerate(everything):
         ruling = judge.rule_on(fixture)
         verdict, reason = ruling.verdict, ruling.reason
+        broken = broken_restriction(fixture, listing.workpiece, listing.vise, listing.asked.restrictions)
+        if verdict != "refuted" and (broken or place in wrong):
+            verdict, reason = "refuted", broken or wrong[place]
         bits = max(bits, ruling.bits)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
@@ -117,7 +122,8 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
             twin = place >= len(listing.fixtures)
             unproven.append(Unproven(place - twin * len(listing.fixtures), twin, verdict, reason))
         progress((place + 1) / len(everything), len(unproven))
-    faults = (*listing.faults, *count_faults(listing))
+    order = order_faults(listing.fixtures, listing.asked.ranking)
+    faults = (*listing.faults, *count_faults(listing), *order)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), faults, bits)
 
 
