@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from cmath import exp
-from math import pi, radians, tan
+from math import atan, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +26,14 @@ from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
-# A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise.
+# A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise; with a
+# notch of radius 6.25.
 LYING = [
-    [(3, -5, 0), (67, -5, 0), (67, 35, 0), (11, 32, tan(pi / 8)), (3, 24, 0)],
+    [(3, -5, 0), (20, -5, -0.5), (30, -5, 0), (67, -5, 0), (67, 35, 0), (11, 32, tan(pi / 8)), (3, 24, 0)],
     [(45, 15, -1), (35, 15, -1)],
 ]
-LYING_AREA = 64 * 40 - 8 * 11 - 56 * 3 / 2 + 16 * pi - 25 * pi
+NOTCH = 4 * atan(0.5)
+LYING_AREA = 64 * 40 - 8 * 11 - 56 * 3 / 2 + 16 * pi - 25 * pi - 6.25**2 / 2 * (NOTCH - sin(NOTCH))
 
 
 def part(pose: Pose, name: str = "part") -> Workpiece:

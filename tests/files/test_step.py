@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 from itertools import pairwise
-from math import pi, sqrt
+from math import pi, sqrt, tan
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +15,12 @@ import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
-from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert, BRepBuilderAPI_Transform
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_NurbsConvert, BRepBuilderAPI_Transform
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakeSphere, BRepPrimAPI_MakeTorus
 from OCP.collections import Array1_gp_Pnt
 from OCP.GC import GC_MakeSegment
 from OCP.Geom import Geom_BezierCurve
-from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from reading_helpers import area, perimeter
 from step_shapes import (
     at_height,
@@ -39,6 +39,7 @@ from step_shapes import (
 from holdfast.errors import InputError
 from holdfast.files.load import Loaded, read_workpiece
 from holdfast.files.step import refuse_missing_volume
+from holdfast.files.step_regions import edge_piece
 from holdfast.geometry.segment import Arc, Line
 from holdfast.model.workpiece import Workpiece
 
@@ -159,6 +160,33 @@ def test_the_silhouette_may_lie_where_no_layer_is(tmp_path: Path, solid: Any, ci
     assert lines_and_circles(read(tmp_path, solid()).workpiece) == (set(), circles)
 
 
+@pytest.mark.parametrize("upside_down", [False, True])
+def test_a_level_face_counts_on_the_side_of_its_material(tmp_path: Path, upside_down: bool) -> None:
+    """A cone that widens to radius 10, with a boss of radius 3 on its wide end: the rim of the boss is the widest."""
+    up = gp_Dir(0, 0, -1 if upside_down else 1)
+    cone = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(0, 0, 0), up), 5, 10, 5).Solid()
+    boss = cylinder(3, 4, (0, 0, -5 if upside_down else 5), (0, 0, up.Z()))
+    assert lines_and_circles(read(tmp_path, fused(cone, boss)).workpiece) == (set(), {(0, 0, 10, 1)})
+
+
+def test_a_rounded_rib_reaches_out_by_its_radius(tmp_path: Path) -> None:
+    """A cylinder of radius 3 lying in the side of a block, 4 mm up, adds 3 mm between layers that lack it."""
+    loaded = read(tmp_path, fused(box(60, 40, 10), cylinder(3, 40, (60, 0, 4), (0, 1, 0))))
+    assert loaded.workpiece.bounds == pytest.approx((0, 0, 63, 40), abs=1e-9)
+    assert area(loaded.workpiece) == pytest.approx(63 * 40, rel=1e-12)
+
+
+@pytest.mark.parametrize("up", [1, -1])
+def test_a_circle_may_look_either_way(up: int) -> None:
+    """A quarter circle about an axis that points down runs clockwise seen from above."""
+    circle = gp_Circ(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, up), gp_Dir(1, 0, 0)), 5)
+    piece, free_form = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge())
+    assert piece is not None
+    assert piece[1] == pytest.approx([up * tan(pi / 8)])
+    assert np.array(piece[0]) == pytest.approx(np.array([(5, 0), (0, 5 * up)]), abs=1e-12)
+    assert not free_form
+
+
 def test_a_lying_cylinder_is_a_rectangle_seen_from_above_and_a_circle_along_its_axis(tmp_path: Path) -> None:
     """The rectangle's long sides are folds; the hint names the axis along which the part is a prism."""
     rod = cylinder(5, 30, (0, 0, 0), (1, 0, 0))
@@ -258,19 +286,20 @@ def test_units_of_the_file_are_converted(tmp_path: Path) -> None:
         read_workpiece(path)
 
 
-def bezier_wall() -> Any:
-    """A plate one of whose sides is a free-form curve."""
+def bezier_wall(depth: float = 15.0) -> Any:
+    """A plate one of whose sides is a free-form curve, whose control points lie ``depth`` off a line."""
     poles = Array1_gp_Pnt(1, 4)
-    for k, point in enumerate([(60, 0), (75, 15), (50, 30), (60, 40)], start=1):
+    for k, point in enumerate([(60, 0), (60 + depth, 15), (60 - depth, 30), (60, 40)], start=1):
         poles.SetValue(k, gp_Pnt(*point, 0))
     corners = [gp_Pnt(60, 40, 0), gp_Pnt(0, 40, 0), gp_Pnt(0, 0, 0), gp_Pnt(60, 0, 0)]
     straight = [GC_MakeSegment(p, q).Value() for p, q in pairwise(corners)]
     return prism([Geom_BezierCurve(poles), *straight], 10)
 
 
-def test_free_form_walls_are_refused(tmp_path: Path) -> None:
-    """The message names where the curve begins and ends."""
-    said = refusal(tmp_path, bezier_wall())
+@pytest.mark.parametrize("depth", [15.0, 1e-4])
+def test_free_form_walls_are_refused(tmp_path: Path, depth: float) -> None:
+    """However flat; the message names where the curve begins and ends."""
+    said = refusal(tmp_path, bezier_wall(depth))
     assert "a free-form curve from (60, " in said and "neither a line nor a circle" in said
 
 
@@ -400,5 +429,5 @@ def test_the_command_line_reads_step_files(tmp_path: Path) -> None:
 
 def test_all_outlines_are_plain_numbers(tmp_path: Path) -> None:
     """No negative zeros, which would show in result files."""
-    loops = read(tmp_path, plate()).workpiece.loops
+    loops = read(tmp_path, box(60, 40, 20)).workpiece.loops
     assert not any(np.signbit(loop[loop == 0]).any() for loop in loops)

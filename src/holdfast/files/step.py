@@ -17,7 +17,7 @@ from holdfast.files.chain import Drawing
 from holdfast.files.step_departures import Outline, departure_remarks, refuse_overhang
 from holdfast.files.step_faces import SAME_HEIGHT, Layer, SolidFace, layers_of, solid_faces
 from holdfast.files.step_library import load_step_library
-from holdfast.files.step_regions import GAP, Borders, area_of, borders, dropped, section, union
+from holdfast.files.step_regions import GAP, Borders, area_of, borders, level_region, section, union
 from holdfast.files.step_solids import AXES, along, chosen_solid, lost_remarks, read_solids, solid_remarks, sub_shapes
 
 __all__ = ["read_step"]
@@ -58,7 +58,7 @@ def read_step(
     else:
         region = chosen_section(shape, faces, section_height)
     edges = borders(region)
-    outline = Outline.of(edges.chains, area_of(region), faces)
+    outline = Outline.of(edges, area_of(region), faces)
     if section_height is None:
         refuse_overhang(outline, faces, solid.shape, axis)
     remarks = [
@@ -86,7 +86,7 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
         refuse_missing_volume(swept, volume, FREE_VOLUME if free else SAME_VOLUME)
     for face in faces:
         if face.lie == "level" and not has_layer(layers, face.low, below=face.upward):
-            regions.append(dropped(face.shape, face.low))
+            regions.append(level_region(face.shape, face.low, face.upward))
     edges = {z for layer in layers for z in (layer.low, layer.high)}
     folds = {face.fold for face in faces if face.fold is not None and face.low <= face.fold <= face.high}
     widest = -inf
@@ -100,8 +100,9 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
             widest = z
             regions.append(section(shape, z))
     if not regions:
-        # Nothing is sure to be in the silhouette yet; the widest layer is, and tells how far the part departs from it.
-        regions = [max((section(shape, layer.middle) for layer in layers), key=area_of)]
+        # The widest piece of a section is in the silhouette too, and tells how far the part departs from it.
+        middles = (section(shape, layer.middle) for layer in layers)
+        regions = [max((face for middle in middles for face in sub_shapes(middle, "FACE")), key=area_of)]
     return union(regions)
 
 

@@ -17,11 +17,11 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from holdfast.errors import InputError
-from holdfast.files.chain import Chain, listed
-from holdfast.files.joining import Loop, closed_loop
-from holdfast.files.nesting import nest
+from holdfast.files.chain import listed
+from holdfast.files.joining import closed_loop
+from holdfast.files.nesting import Part, nest
 from holdfast.files.step_faces import SAME_HEIGHT, Layer, SolidFace, lie_of, surface_points
-from holdfast.files.step_regions import area_of, section
+from holdfast.files.step_regions import Borders, area_of, section
 from holdfast.files.step_solids import AXES, sub_shapes
 from holdfast.geometry.loop import loop_segments, reversed_vertices, signed_area
 from holdfast.geometry.segment import segment_rows
@@ -35,6 +35,8 @@ DEPARTS = 1e-4
 OVERHANG = 1e-3
 # Areas that differ by less than this share are the same.
 SAME_AREA = 1e-7
+# The library integrates regions with free-form borders only so well, as a share.
+FREE_AREA = 1e-3
 
 
 @frozen
@@ -55,9 +57,21 @@ class Outline:
     overhangs: tuple[float, ...]
 
     @classmethod
-    def of(cls, chains: Sequence[Chain], area: float, faces: Sequence[SolidFace]) -> Outline:
-        """Measure faces against the outline that closed chains make."""
-        rows = oriented_rows([closed_loop(chain) for chain in chains])
+    def of(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
+        """Measure faces against the outline that the borders of a region of some area make.
+
+        Raises
+        ------
+        InputError
+            When the borders do not enclose one region of that area, so that the library's work cannot be right.
+        """
+        parts = nest([closed_loop(chain) for chain in edges.chains])
+        tolerance = FREE_AREA if edges.recognised else 1e-6
+        if len(parts) != 1 or abs(parts[0].area - area) > tolerance * area:
+            raise InputError(
+                "the sections of the solid do not make one outline: repair it in the CAD program, or give --section."
+            )
+        rows = oriented_rows(parts[0])
         insets, overhangs = [], []
         for face in faces:
             points = surface_points(face)
@@ -69,15 +83,14 @@ class Outline:
         return cls(area, low, high, tuple(insets), tuple(overhangs))
 
 
-def oriented_rows(loops: Sequence[Loop]) -> NDArray[np.float64]:
-    """Kernel rows of all loops, material on the left of each."""
+def oriented_rows(part: Part) -> NDArray[np.float64]:
+    """Kernel rows of all loops of a part, material on the left of each."""
     rows = []
-    for part in nest(loops):
-        for k, loop in enumerate(part.loops):
-            segments = loop_segments(loop.vertices)
-            if (signed_area(segments) > 0) != (k == 0):
-                segments = loop_segments(reversed_vertices(loop.vertices))
-            rows.append(segment_rows(segments))
+    for k, loop in enumerate(part.loops):
+        segments = loop_segments(loop.vertices)
+        if (signed_area(segments) > 0) != (k == 0):
+            segments = loop_segments(reversed_vertices(loop.vertices))
+        rows.append(segment_rows(segments))
     return np.concatenate(rows)
 
 

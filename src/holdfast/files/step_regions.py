@@ -19,7 +19,7 @@ from holdfast.files.step_solids import bounding_box, sub_shapes
 from holdfast.geometry.loop import SHORTEST
 from holdfast.geometry.segment import Point
 
-__all__ = ["Borders", "area_of", "borders", "dropped", "section", "union"]
+__all__ = ["Borders", "area_of", "borders", "level_region", "section", "union"]
 
 # A free-form edge nearer than this to a line or a circle, in mm, is one that was saved as a spline.
 SAME_CURVE = 1e-6
@@ -55,7 +55,8 @@ def section(solid: Any, z: float) -> Any:
     """
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
 
     (x0, y0, _), (x1, y1, _) = bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
@@ -64,17 +65,26 @@ def section(solid: Any, z: float) -> Any:
     cut = BRepAlgoAPI_Common(sheet, solid).Shape()
     if not sub_shapes(cut, "FACE"):
         raise InputError("the solid cannot be cut by a plane: repair it in the CAD program and export it again.")
-    return dropped(cut, z)
-
-
-def dropped(shape: Any, z: float) -> Any:
-    """A flat shape at height z, moved to z = 0."""
-    from OCP.gp import gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0.0, 0.0, -z))
-    return shape.Moved(TopLoc_Location(move))
+    return cut.Moved(TopLoc_Location(move))
+
+
+def level_region(face: Any, z: float, upward: bool) -> Any:
+    """A level face at height z as a region: the section of the prism over it.
+
+    The face itself would not do. Faces that look different ways do not become one in a union.
+
+    Raises
+    ------
+    InputError
+        As :func:`section`.
+    """
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Vec
+
+    height = 1.0 if upward else -1.0
+    return section(BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
 
 
 def area_of(region: Any) -> float:
