@@ -398,7 +398,7 @@ def test_sections_that_do_not_fill_the_solid_are_refused() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"unit": "mm"}, "leave --unit out"),
+        ({"unit": "mm"}, "leave --drawing-unit out"),
         ({"layers": ["0"]}, "leave --layer out"),
         ({"axis": "w"}, "give x, y or z"),
     ],
