@@ -12,11 +12,13 @@ import typer
 
 from holdfast.cli.options import (
     JOIN_TOLERANCE,
+    AxisOption,
     DrawingUnitOption,
     JoinToleranceOption,
     LayerOption,
     PartArgument,
     PartNumberOption,
+    SectionOption,
     UnitOption,
     load_part,
 )
@@ -92,6 +94,8 @@ def explore(
     layer: LayerOption = None,
     part_number: PartNumberOption = None,
     drawing_unit: DrawingUnitOption = None,
+    axis: AxisOption = None,
+    section: SectionOption = None,
     join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
 ) -> None:
     """Try PART in many vises: how many fixtures there are in each, and the best of each figure of quality.
@@ -117,7 +121,7 @@ def explore(
 
     check_options(("I", "II"), margin)
     preference = preference_of(ranking, asked_tolerance(tolerance, shown, None), forces)
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
     refuse_unknown_faces(workpiece, restrictions)
     first_run = is_first_run()
     from holdfast.search.exploring import explore as try_all

@@ -89,8 +89,10 @@ def ranking_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[N
     for place, key in enumerate(ranking):
         number = figure_number(key)
         assert number is not None
-        values = quality[:, number]
-        values = np.round(values, FINE_DIGITS) if place == len(ranking) - 1 else coarse(values)
+        # Rounding must not tell fixtures apart that are equal, so what is coarse is rounded finely first.
+        values = np.round(quality[:, number], FINE_DIGITS)
+        if place < len(ranking) - 1:
+            values = coarse(values)
         keys.append(-values if FIGURES[number].more_is_better else values)
     return keys
 

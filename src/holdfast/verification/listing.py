@@ -265,7 +265,7 @@ def vise_from(jaws: Mapping[str, Any]) -> Vise:
         max_opening=optional(real, jaws, "max_opening"),
         row_offset=optional(real, jaws, "row_offset") or 0.0,
         body_radius=optional(real, jaws, "body_radius"),
-        blocked=[holes_named(str(name)) for name in jaws.get("blocked") or ()],
+        blocked=tuple(holes_named(str(name)) for name in jaws.get("blocked") or ()),
     )
 
 
