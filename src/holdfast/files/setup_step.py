@@ -8,19 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from io import BytesIO
-from math import ceil, cos, floor, inf, isfinite, pi, radians, sin
+from math import cos, isfinite, pi, sin
 from pathlib import Path
 from typing import Any
 
-from attrs import frozen
-
 from holdfast.errors import InputError
 from holdfast.files.atomic import write_bytes
+from holdfast.files.setup_plates import Plate, plate_of, posed_workpiece
 from holdfast.files.step_library import load_step_library
-from holdfast.geometry.intersect import bounding_box
 from holdfast.geometry.segment import Arc, Line, Point, Segment
-from holdfast.model.fixture import Fixture, Jaw, Pose
-from holdfast.model.result import LEFT, RIGHT, hole_position
+from holdfast.model.fixture import Fixture, Jaw
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -28,10 +25,6 @@ __all__ = ["setup_step", "write_setup_step"]
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
-# Of the jaw separation, how much the two plates may cover from either side: they do not touch.
-SHARE_OF_GAP = 0.48
-# With more holes than this a plate shows only those between its pegs and the opening.
-MOST_HOLES = 2_000
 
 
 def write_setup_step(
@@ -77,86 +70,20 @@ def setup_step(
         if not (isfinite(value) and value > 0):
             raise InputError(f"{name} {value} is not a positive length: give it in mm.")
     load_step_library()
-    named = [(workpiece.name, posed_part(workpiece, fixture.pose, thickness))]
+    part = posed_workpiece(workpiece, fixture.pose)
+    named = [(workpiece.name, part_body(part, thickness))]
     for peg in fixture.pegs:
         named.append((f"peg {peg.hole}", peg_body((peg.x, peg.y), vise.peg_radius, -plate_thickness, thickness)))
-    for jaw in ("left", "right"):
-        plate = plate_of(jaw, fixture, workpiece, vise)
+    jaws: tuple[Jaw, Jaw] = ("left", "right")
+    for jaw in jaws:
+        plate = plate_of(jaw, fixture, part, vise)
         named.append((f"{jaw} jaw", plate_body(plate, vise.peg_radius, plate_thickness)))
     return assembly(f"{workpiece.name} set-up", named)
 
 
-@frozen
-class Plate:
-    """A jaw's plate: its corners and the centres of its holes, in mm in the vise frame."""
-
-    low: Point
-    high: Point
-    holes: tuple[Point, ...]
-
-
-def plate_of(jaw: Jaw, fixture: Fixture, workpiece: Workpiece, vise: Vise) -> Plate:
-    """The plate of one jaw, with the holes that the pegs and the part reach over."""
-    index = LEFT if jaw == "left" else RIGHT
-    origin = hole_position(vise, index, 0, 0, fixture.jaw_separation)
-    pegs = [peg for peg in fixture.pegs if peg.jaw == jaw]
-    columns, rows = [peg.column for peg in pegs], [peg.row for peg in pegs]
-    # The column next to the opening belongs to it: the jaw separation is measured from there.
-    columns.append(vise.columns - 1 if jaw == "left" else 0)
-    x0, y0, x1, y1 = posed_bounds(workpiece, fixture.pose)
-    wide = columns + reached(x0 - origin[0], x1 - origin[0], vise.pitch[0], vise.columns)
-    high = rows + reached(y0 - origin[1], y1 - origin[1], vise.pitch[1], vise.rows)
-    if count(wide) * count(high) > MOST_HOLES:
-        wide, high = columns, rows
-    holes = tuple(
-        hole_position(vise, index, column, row, fixture.jaw_separation)
-        for column in range(min(wide), max(wide) + 1)
-        for row in range(min(high), max(high) + 1)
-    )
-    half_x, half_y = vise.pitch[0] / 2, vise.pitch[1] / 2
-    inner = min(half_x, SHARE_OF_GAP * fixture.jaw_separation)
-    left, right = (half_x, inner) if jaw == "left" else (inner, half_x)
-    return Plate((holes[0][0] - left, holes[0][1] - half_y), (holes[-1][0] + right, holes[-1][1] + half_y), holes)
-
-
-def reached(low: float, high: float, pitch: float, limit: int | None) -> list[int]:
-    """First and last column or row between two distances in mm from the first one; none when they lie off the jaw."""
-    last = (inf if limit is None else limit) - 1
-    first_reached, last_reached = max(ceil(low / pitch), 0), min(floor(high / pitch), last)
-    return [first_reached, int(last_reached)] if first_reached <= last_reached else []
-
-
-def count(numbers: Sequence[int]) -> int:
-    """How many columns or rows there are from the smallest to the largest."""
-    return max(numbers) - min(numbers) + 1
-
-
-def posed(point: Point, pose: Pose) -> Point:
-    """A workpiece point in the vise frame."""
-    c, s = cos(radians(pose.theta_deg)), sin(radians(pose.theta_deg))
-    return c * point[0] - s * point[1] + pose.x, s * point[0] + c * point[1] + pose.y
-
-
-def posed_segment(segment: Segment, pose: Pose) -> Segment:
-    """A segment of the workpiece in the vise frame."""
-    if isinstance(segment, Line):
-        return Line(posed(segment.start, pose), posed(segment.end, pose))
-    mid_angle = segment.mid_angle + radians(pose.theta_deg)
-    return Arc(posed(segment.center, pose), segment.radius, mid_angle, segment.half_sweep, segment.sign)
-
-
-def posed_bounds(workpiece: Workpiece, pose: Pose) -> tuple[float, float, float, float]:
-    """The part's bounding box in mm in the vise frame: smallest x, y, largest x, y."""
-    boxes = [bounding_box(posed_segment(segment, pose)) for segment in workpiece.loop_segments[0]]
-    low_x, low_y, high_x, high_y = zip(*boxes, strict=True)
-    return min(low_x), min(low_y), max(high_x), max(high_y)
-
-
-def posed_part(workpiece: Workpiece, pose: Pose, thickness: float) -> Any:
-    """The part as a solid from z = 0 up, in its pose."""
-    outer, *holes = (
-        wire([posed_segment(segment, pose) for segment in segments]) for segments in workpiece.loop_segments
-    )
+def part_body(part: Workpiece, thickness: float) -> Any:
+    """The part, in its pose, as a solid from z = 0 up."""
+    outer, *holes = (wire(segments) for segments in part.loop_segments)
     return extruded(outer, holes, 0.0, thickness)
 
 
@@ -179,10 +106,11 @@ def plate_body(plate: Plate, radius: float, thickness: float) -> Any:
     def whole(hole: Point) -> bool:
         return x0 < hole[0] - radius and hole[0] + radius < x1 and y0 < hole[1] - radius and hole[1] + radius < y1
 
-    holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in plate.holes if whole(hole)]
+    centers = [center for _, center in plate.holes]
+    holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in centers if whole(hole)]
     body = extruded(border, holes, -thickness, 0.0)
     # Jaws that nearly close leave no material around the holes of their last columns.
-    for hole in plate.holes:
+    for hole in centers:
         if not whole(hole):
             body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()
     return body
