@@ -24,7 +24,7 @@ def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> No
     assert restrictions.avoid == (1, 3, 7)
     assert restrictions.angles == ((-10.0, 20.0), (90.0, 90.0))
     circle, polygon = (zone.loop for zone in restrictions.zones)
-    assert circle[:, :2].tolist() == [pytest.approx([-25.4, 50.8]), pytest.approx([101.6, 50.8])]
+    assert circle[:, :2].tolist() == [pytest.approx([-50.8, 50.8]), pytest.approx([101.6, 50.8])]
     assert polygon[2, :2].tolist() == pytest.approx([101.6, 25.4])
     assert asked["vise"].blocked == (Holes("left", 1, 2), Holes("right", 0, None))
     assert asked["vise"].body_radius == pytest.approx(3.81)
