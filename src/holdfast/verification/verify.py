@@ -103,25 +103,33 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     judge = Judge(listing.workpiece, listing.vise, listing.contact_margin)
     everything = [*listing.fixtures, *listing.twins]
     seen = Seen()
-    unproven = []
-    tally: dict[Verdict, int] = {"proven": 0, "refuted": 0, "undecided": 0}
-    bits = PRECISIONS[0]
-    wrong = wrong_figures(everything, listing.workpiece, listing.vise, listing.asked)
+    rulings: list[tuple[Verdict, str]] = []
+    bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
         ruling = judge.rule_on(fixture)
         verdict, reason = ruling.verdict, ruling.reason
-        broken = broken_restriction(fixture, listing.workpiece, listing.vise, listing.asked.restrictions)
-        if verdict != "refuted" and (broken or place in wrong):
-            verdict, reason = "refuted", broken or wrong[place]
         bits = max(bits, ruling.bits)
+        if verdict != "refuted":
+            broken = broken_restriction(fixture, listing.workpiece, listing.vise, listing.asked.restrictions)
+            verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
             verdict, reason = "refuted", f"it is the same as {title(first, listing)}"
-        tally[verdict] += 1
-        if verdict != "proven":
-            twin = place >= len(listing.fixtures)
-            unproven.append(Unproven(place - twin * len(listing.fixtures), twin, verdict, reason))
-        progress((place + 1) / len(everything), len(unproven))
+        rulings.append((verdict, reason))
+        doubtful += verdict != "proven"
+        progress((place + 1) / len(everything), doubtful)
+    # Figures of quality are derived of what may be a fixture only: anything else may name faces that do not exist.
+    sound = [place for place, (verdict, _) in enumerate(rulings) if verdict != "refuted"]
+    wrong = wrong_figures([everything[place] for place in sound], listing.workpiece, listing.vise, listing.asked)
+    for number, words in wrong.items():
+        rulings[sound[number]] = ("refuted", words)
+    unproven = [
+        Unproven(place - twin * len(listing.fixtures), twin, verdict, reason)
+        for place, (verdict, reason) in enumerate(rulings)
+        if verdict != "proven"
+        for twin in [place >= len(listing.fixtures)]
+    ]
+    tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
     order = order_faults(listing.fixtures, listing.asked.ranking)
     faults = (*listing.faults, *count_faults(listing), *order)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), faults, bits)
