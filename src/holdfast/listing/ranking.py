@@ -49,9 +49,11 @@ class Preference:
         """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
         return self.ranking == (FIGURES[CLOSURE_MARGIN].key,)
 
-    def measured(self, table: FixtureTable, problem: Problem) -> FixtureTable:
-        """A table with all its figures of quality."""
-        return evolve(table, quality=quality_of(table, problem.workpiece, problem.vise, self.tolerance, self.loads))
+    def measured(self, table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
+        """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
+        quality = quality_of(table, problem.workpiece, problem.vise, self.tolerance, self.loads, threads)
+        quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
+        return evolve(table, quality=quality)
 
 
 def preference_of(
