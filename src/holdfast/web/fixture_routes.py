@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from holdfast.model.result import Result
 from holdfast.model.workpiece import Workpiece
-from holdfast.web.answers import contact_answer, load_case_answer, rows_answer
+from holdfast.web.answers import contact_answer, rows_answer
 from holdfast.web.forms import LoadsForm
 from holdfast.web.job_routes import attachment, found_job, result_of_job
 from holdfast.web.paper import KINDS, PaperOrder
@@ -55,7 +55,7 @@ async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revisi
     chosen = result[ranked(result, rank)]
     bare = Workpiece(result.workpiece.name, result.workpiece.loops)
     cases = await state_of(request).at_desk("loads", (chosen, bare, result.vise, form))
-    return {"rank": rank, "cases": [load_case_answer(case) for case in cases]}
+    return {"rank": rank, "cases": cases}
 
 
 @router.get("/{kind}", summary="A setup sheet, a drawing or a picture", response_class=Response)
