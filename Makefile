@@ -4,7 +4,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
-INSTALLED_DEV := $(VENV)/.installed-dev
+# make check EXTRAS=dev,step runs the tests of STEP files too; it installs 400 MB more.
+EXTRAS ?= dev
+INSTALLED_DEV := $(VENV)/.installed-$(EXTRAS)
 INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt
 
 .PHONY: demo test check bench prove clean
@@ -53,5 +55,5 @@ $(INSTALLED): pyproject.toml constraints.txt | $(BIN)/python
 
 $(INSTALLED_DEV): pyproject.toml constraints.txt | $(BIN)/python
 	@echo 'Installing holdfast and its tools into $(VENV) ...'
-	$(INSTALL) -e '.[dev]'
+	$(INSTALL) -e '.[$(EXTRAS)]'
 	@touch $@ $(INSTALLED)

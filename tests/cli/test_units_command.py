@@ -134,9 +134,12 @@ def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
     assert "try plate-one-inch" in refused.stderr
 
 
-def test_the_worked_example_of_the_manual(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The commands of docs/hardware.md print the lines quoted there, spaces aside."""
-    page = (ROOT / "docs" / "hardware.md").read_text()
+@pytest.mark.parametrize("name", ["hardware.md", "no-fixture.md"])
+def test_the_worked_examples_of_the_manual(
+    name: str, run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The commands of these pages print the lines quoted there, spaces aside."""
+    page = (ROOT / "docs" / name).read_text()
     blocks = re.findall(r"```console\n(.*?)```", page, flags=re.S)
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)

@@ -170,12 +170,15 @@ def test_help(run: Any) -> None:
 
 
 def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, process: Any) -> None:
-    """The proof shares no solver with the search, and the command loads none of it."""
+    """The proof shares no solver with the search, and the command loads none of it: only what figures of quality need."""
     code = (
         "import sys; from holdfast.verification import verify_file; v = verify_file('r.json'); assert v.proven; "
         "print([m for m in sys.modules if m.startswith(('holdfast.search', 'holdfast.kernels', 'holdfast.contact'))])"
     )
     outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
     loaded = set(re.findall(r"'([^']+)'", outcome.stdout))
-    assert loaded <= {"holdfast.kernels", "holdfast.kernels.compiling", "holdfast.kernels.distance"}
+    kernels = {
+        f"holdfast.kernels{name}" for name in ("", ".compiling", ".distance", ".stances", ".quality", ".reactions")
+    }
+    assert loaded <= kernels | {"holdfast.contact", "holdfast.contact.features"}
     assert process("verify", "r.json").returncode == 0

@@ -158,8 +158,8 @@ def test_files_without_an_ending_are_told_apart_by_their_bytes(tmp_path: Path) -
     assert load(write(tmp_path, PLATE, "plate")).name == "plate"
     svg = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"><rect width="3" height="4"/></svg>'
     assert area(load(write(tmp_path, svg, "drawing"), unit="mm")) == pytest.approx(12)
-    with pytest.raises(InputError, match="neither a JSON, a DXF nor an SVG"):
-        load(write(tmp_path, "STEP;ISO-10303-21;", "part.step"))
+    with pytest.raises(InputError, match="neither a JSON, a DXF, an SVG nor a STEP"):
+        load(write(tmp_path, "solid part", "part.stl"))
 
 
 def test_loading_json_imports_no_drawing_library() -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from threading import Event
+from time import sleep
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from holdfast import Vise, load
-from holdfast.listing import deciding
+from holdfast.listing import deciding, settling
+from holdfast.listing import finish as finish_module
 from holdfast.listing.deciding import Course, decided, merged
 from holdfast.listing.listed import Work, listed_result
 from holdfast.listing.problem import TYPES, Problem
@@ -121,3 +123,28 @@ def test_overlapping_boxes_of_the_same_pegs_are_one(found: tuple[Problem, list[N
     together = rows[(rows[:, 1] == first[1]) & (rows[:, 14] < first[14] + 0.5)][0]
     assert together[14] - together[18] <= first[14] - 1e-6
     assert together[14] + together[18] >= near[14] + 1e-6
+
+
+def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The precision of ball arithmetic belongs to the whole process: with every open record sent there, from small blocks
+    on many threads, no two boxes are settled at the same time, and the outcome is the same as on one thread."""
+    inside, most = [0], [0]
+    settle = settling.settle
+
+    def watched(*arguments: object) -> object:
+        inside[0] += 1
+        most[0] = max(most[0], inside[0])
+        sleep(1e-3)
+        try:
+            return settle(*arguments)  # type: ignore[arg-type]
+        finally:
+            inside[0] -= 1
+
+    monkeypatch.setattr(settling, "settle", watched)
+    monkeypatch.setattr(deciding, "narrower", lambda block, *_: (block[:0], block))
+    monkeypatch.setattr(finish_module, "BLOCK", 8)
+    part, vise = load("oblongPart"), Vise(pitch=8, columns=2, peg_radius=3)
+    one, many = (design_module.design(part, vise, threads=threads) for threads in (1, 8))
+    assert most == [1]
+    assert one.proof is not None and one.proof.escalated > 0 and one.proof == many.proof
+    assert np.array_equal(one.table.theta, many.table.theta)

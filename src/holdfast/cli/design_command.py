@@ -13,11 +13,13 @@ import typer
 from holdfast.cli.explanations import explain_none
 from holdfast.cli.options import (
     JOIN_TOLERANCE,
+    AxisOption,
     DrawingUnitOption,
     JoinToleranceOption,
     LayerOption,
     PartArgument,
     PartNumberOption,
+    SectionOption,
     UnitOption,
     load_part,
 )
@@ -151,6 +153,8 @@ def design(
     layer: LayerOption = None,
     part_number: PartNumberOption = None,
     drawing_unit: DrawingUnitOption = None,
+    axis: AxisOption = None,
+    section: SectionOption = None,
     join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
 ) -> None:
     """Find every way to hold PART in a vise.
@@ -185,7 +189,7 @@ def design(
     from holdfast.listing.ranking import preference_of
 
     preference_of(ranking, off, forces)
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
     first_run = is_first_run()
     start = perf_counter()
     with ask_to_stop() as cancel, search_progress(first_run) as progress:

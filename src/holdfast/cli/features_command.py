@@ -9,11 +9,13 @@ import typer
 
 from holdfast.cli.options import (
     JOIN_TOLERANCE,
+    AxisOption,
     DrawingUnitOption,
     JoinToleranceOption,
     LayerOption,
     PartArgument,
     PartNumberOption,
+    SectionOption,
     UnitOption,
     load_part,
 )
@@ -36,6 +38,8 @@ def features(
     part_number: PartNumberOption = None,
     drawing_unit: DrawingUnitOption = None,
     join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
+    axis: AxisOption = None,
+    section: SectionOption = None,
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
@@ -52,7 +56,8 @@ def features(
     if picture is not None:
         ending = picture_ending(picture)
         refuse_unwritable(picture)
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit).workpiece
+    loaded = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section)
+    workpiece = loaded.workpiece
 
     from holdfast.cli.tables import face_table, plural, print_tables
 

@@ -20,6 +20,7 @@ import typer
 from holdfast import __version__
 from holdfast.cli.commands import PlainCommand, PlainGroup
 from holdfast.cli.design_command import design
+from holdfast.cli.explore_command import explore
 from holdfast.cli.features_command import features
 from holdfast.cli.parts_command import parts
 from holdfast.cli.serve_command import serve
@@ -96,6 +97,7 @@ app = typer.Typer(
 app.command(cls=PlainCommand)(design)
 app.command(cls=PlainCommand)(show)
 app.command(cls=PlainCommand)(sheet)
+app.command(cls=PlainCommand)(explore)
 app.command(cls=PlainCommand)(features)
 app.command(cls=PlainCommand)(parts)
 app.command(cls=PlainCommand)(vises)

@@ -6,18 +6,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from holdfast.cli.values import counting_number, length, length_unit
+from holdfast.cli.values import choice, counting_number, length, length_unit, optional_length
 
 if TYPE_CHECKING:
     from holdfast.files.load import Loaded
 
 __all__ = [
     "JOIN_TOLERANCE",
+    "AxisOption",
     "DrawingUnitOption",
     "JoinToleranceOption",
     "LayerOption",
     "PartArgument",
     "PartNumberOption",
+    "SectionOption",
     "ShownUnitOption",
     "UnitOption",
     "load_part",
@@ -30,7 +32,7 @@ JOIN_TOLERANCE = "0.001mm"
 PartArgument = Annotated[
     str,
     typer.Argument(
-        metavar="PART", help="The part's outline: a DXF, SVG or JSON file, or a built-in name (see holdfast parts)."
+        metavar="PART", help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see holdfast parts)."
     ),
 ]
 UnitOption = Annotated[
@@ -70,6 +72,22 @@ JoinToleranceOption = Annotated[
     str,
     typer.Option(metavar="LENGTH", help="Largest gap between ends of lines that is closed.", rich_help_panel=READING),
 ]
+AxisOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="x|y|z",
+        help="STEP files: the direction that the pegs are parallel to; z if not given.",
+        rich_help_panel=READING,
+    ),
+]
+SectionOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="HEIGHT",
+        help="STEP files: take the section at this height above the part's lowest point, not the silhouette.",
+        rich_help_panel=READING,
+    ),
+]
 
 
 def load_part(
@@ -79,6 +97,8 @@ def load_part(
     number: str | None,
     tolerance: str,
     drawing_unit: str | None = None,
+    axis: str | None = None,
+    section: str | None = None,
 ) -> Loaded:
     """Read the part and tell on stderr what a user should know about the drawing.
 
@@ -94,6 +114,8 @@ def load_part(
     """
     join_tolerance = length("--join-tolerance", tolerance, length_unit(unit))
     part_number = counting_number("--part", number, "a part")
+    direction = None if axis is None else choice("--axis", axis, ("x", "y", "z"))
+    height = optional_length("--section", section, length_unit(unit))
     from holdfast.files.load import read_workpiece
 
     loaded = read_workpiece(
@@ -103,6 +125,8 @@ def load_part(
         layers=layer or None,
         part_number=part_number,
         join_tolerance=join_tolerance,
+        axis=direction,
+        section=height,
     )
     for remark in loaded.remarks:
         typer.echo(f"holdfast: {remark}", err=True)

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from datetime import date
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from holdfast.cli.load_option import LOAD_HELP
 from holdfast.cli.options import ShownUnitOption
-from holdfast.cli.values import choice, length_unit, whole_number
+from holdfast.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
+from holdfast.cli.values import choice, length_unit, positive_number, whole_number
 from holdfast.errors import InputError
 
 if TYPE_CHECKING:
     from holdfast.model.fixture import Fixture
     from holdfast.model.load import Load
     from holdfast.model.result import Result
-    from holdfast.model.units import Unit
 
 __all__ = ["sheet"]
 
@@ -28,7 +26,6 @@ MODEL_ENDINGS = (".dxf", ".step", ".stp")
 PNG_WIDTH = 2400
 
 ON_PAPER = "On the paper"
-CLAMPING = "Clamping and loads"
 
 
 def sheet(
@@ -56,33 +53,15 @@ def sheet(
             "--date", metavar="YYYY-MM-DD", help="The date of the sheet; today if not given.", rich_help_panel=ON_PAPER
         ),
     ] = None,
-    jaw_force: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N", help="Force on the right jaw, to write what each peg takes.", rich_help_panel=CLAMPING
-        ),
-    ] = None,
-    load: Annotated[
-        list[str] | None, typer.Option("--load", metavar="LOAD", help=LOAD_HELP, rich_help_panel=CLAMPING)
-    ] = None,
-    loads: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE",
-            help="A file of loads. Loads given here stand instead of those in the result.",
-            rich_help_panel=CLAMPING,
-        ),
-    ] = None,
-    friction: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MU", help="Coefficient of friction, to tell what it could add.", rich_help_panel=CLAMPING
-        ),
-    ] = None,
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    jaw_force: JawForceOption = None,
+    friction: FrictionOption = None,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
 
-    The paper sizes are A4 and Letter. A .dxf or .step file holds the set-up itself, in mm, for a CAM system.
+    Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. A .dxf or .step file holds
+    the set-up itself, in mm, for a CAM system.
 
     Example: holdfast sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
@@ -103,10 +82,10 @@ def sheet(
         "unit": shown_unit,
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
-        "jaw_force": positive("--jaw-force", jaw_force, "a force in N, such as 3000"),
-        "friction": positive("--friction", friction, "a coefficient such as 0.15"),
+        "jaw_force": positive_number("--jaw-force", jaw_force),
+        "friction": positive_number("--friction", friction),
     }
-    given = given_loads(load or [], loads, shown_unit)
+    given = asked_loads(load, loads, shown_unit)
     refuse_unwritable(path)
     from holdfast.files.result_reader import read_result
 
@@ -134,36 +113,6 @@ def day_of(text: str) -> date:
         raise InputError(f"--date {text!r} is not a date: give it as YYYY-MM-DD, such as 2026-03-31.") from None
 
 
-def positive(option: str, text: str | None, what: str) -> float | None:
-    """A positive number, or None where the option is not given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    if text is None:
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not (isfinite(value) and value > 0):
-        raise InputError(f"{option} {text!r} is not a positive number: give {what}.")
-    return value
-
-
-def given_loads(words: list[str], path: str | None, unit: Unit) -> tuple[Load, ...]:
-    """The loads of the command line, then those of the file."""
-    if not words and path is None:
-        return ()
-    from holdfast.cli.load_option import parse_load
-    from holdfast.files.loads_file import read_loads
-
-    scale = unit.millimetres
-    return (*(parse_load(word, scale) for word in words), *(read_loads(path, scale) if path is not None else ()))
-
-
 def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
     """Write the set-up for a CAM system."""
     setup = (result[rank - 1], result.workpiece, result.vise, path)
@@ -172,13 +121,9 @@ def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
 
         write_setup_dxf(*setup)
         return
-    from importlib import import_module
+    from holdfast.files.setup_step import write_setup_step
 
-    try:
-        writer = import_module("holdfast.files.setup_step")
-    except ImportError as error:
-        raise InputError("this holdfast writes no STEP files: let the name end in .dxf.") from error
-    writer.write_setup_step(*setup)
+    write_setup_step(*setup)
 
 
 def write_paper(

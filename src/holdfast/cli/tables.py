@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 __all__ = [
     "counts_sentence",
     "face_table",
+    "figure_number",
     "fixture_tables",
+    "heading",
     "Table",
     "plural",
     "print_tables",

@@ -151,7 +151,7 @@ def counting_number(option: str, text: str | None, what: str) -> int | None:
 
 
 def positive_number(option: str, text: str | None) -> float | None:
-    """A finite number, zero or more, or None where the option is not given.
+    """A finite number above zero, or None where the option is not given.
 
     Raises
     ------
@@ -161,8 +161,8 @@ def positive_number(option: str, text: str | None) -> float | None:
     if text is None:
         return None
     value = number(text.strip())
-    if not (isfinite(value) and value >= 0):
-        raise InputError(f"{option} {text!r} cannot be used: give a number, 0 or more.")
+    if not (isfinite(value) and value > 0):
+        raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
     return value
 
 

@@ -18,7 +18,7 @@ from holdfast.geometry.segment import Segment, segment_rows
 from holdfast.model.restrictions import Restrictions, Zone
 from holdfast.model.workpiece import Workpiece
 
-__all__ = ["ContactFeature", "allowed_features", "contact_features", "end_slacks", "feature_rows"]
+__all__ = ["ContactFeature", "allowed_features", "contact_features", "end_slacks", "face_of_segment", "feature_rows"]
 
 # A contact this near to the end of its feature, in mm, is at the end.
 ROUNDING = 1e-9

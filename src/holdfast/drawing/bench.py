@@ -81,10 +81,14 @@ def peg_radius(vise: Vise, scale: float) -> float:
 
 
 def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
-    """Tail (the contact) and tip on the page of a contact force; the largest force is ``longest`` page units long."""
+    """Tail (the contact) and tip on the page of a contact force; the largest force is ``longest`` page units long.
+
+    A force that would have to pull points away from the part.
+    """
     contact, (nx, ny) = bench.contacts[index]
     forces = [abs(peg.force) for peg in bench.fixture.pegs]
     length = max(0.36, forces[index] / max([*forces, 1e-300])) * longest
+    length = -length if bench.fixture.pegs[index].force < 0 else length
     x, y = view(contact)
     return (x, y), (x - length * nx, y + length * ny)
 

@@ -1,4 +1,4 @@
-"""Reading a part: a file (JSON, DXF, SVG) or a built-in name becomes a workpiece in millimetres."""
+"""Reading a part: a file (JSON, DXF, SVG, STEP) or a built-in name becomes a workpiece in millimetres."""
 
 from __future__ import annotations
 
@@ -50,16 +50,20 @@ def load(
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
     join_tolerance: float = 1e-3,
+    axis: str | None = None,
+    section: float | None = None,
 ) -> Workpiece:
     """Load a part from a file or by the name of a built-in model.
 
     Parameters
     ----------
-    part : path of a .json, .dxf or .svg file, or a built-in name such as ``widget``; a file wins.
+    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins.
     unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when None.
     join_tolerance : largest gap between loose ends to close, in mm.
+    axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None.
+    section : take the section of a STEP file's solid at this height in mm above its lowest point, not its silhouette.
 
     Raises
     ------
@@ -74,7 +78,13 @@ def load(
     16
     """
     return read_workpiece(
-        part, unit=unit, layers=layers, part_number=part_number, join_tolerance=join_tolerance
+        part,
+        unit=unit,
+        layers=layers,
+        part_number=part_number,
+        join_tolerance=join_tolerance,
+        axis=axis,
+        section=section,
     ).workpiece
 
 
@@ -86,6 +96,8 @@ def read_workpiece(
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
     join_tolerance: float = 1e-3,
+    axis: str | None = None,
+    section: float | None = None,
 ) -> Loaded:
     """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
 
@@ -108,6 +120,9 @@ def read_workpiece(
     try:
         content = read_bytes(path)
         kind = kind_of(path, content)
+        if kind == "step":
+            return from_step(path, content, unit, layers, part_number, axis, section)
+        refuse_axis(axis, section)
         if kind == "json":
             own = path == builtin_path(path.stem)
             return from_json(path, content, unit, layers, part_number, own)
@@ -158,9 +173,9 @@ def read_bytes(path: Path) -> bytes:
     """
     try:
         if path.is_dir():
-            raise InputError("this is a folder: give a .json, .dxf or .svg file in it.")
+            raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
         if not path.is_file():
-            raise InputError("this is not a regular file: give a .json, .dxf or .svg file.")
+            raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
         if path.stat().st_size > LARGEST_FILE:
             raise InputError(
                 f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's outline only."
@@ -169,12 +184,12 @@ def read_bytes(path: Path) -> bytes:
     except OSError as error:
         raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
     if not content.strip():
-        raise InputError("the file is empty: give a .json, .dxf or .svg file of the part.")
+        raise InputError("the file is empty: give a .json, .dxf, .svg or .step file of the part.")
     return content
 
 
 def kind_of(path: Path, content: bytes) -> str:
-    """ "json", "dxf" or "svg", by the file's ending or else by its first bytes.
+    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
 
     Raises
     ------
@@ -182,8 +197,10 @@ def kind_of(path: Path, content: bytes) -> str:
         For anything else.
     """
     ending = path.suffix.lower().lstrip(".")
-    if ending in ("json", "dxf", "svg"):
+    if ending in ("json", "dxf", "svg", "step"):
         return ending
+    if ending == "stp":
+        return "step"
     start = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if start.startswith(b"{"):
         return "json"
@@ -191,7 +208,11 @@ def kind_of(path: Path, content: bytes) -> str:
         return "svg"
     if start.startswith(b"AutoCAD Binary DXF") or (start.startswith((b"0", b"999")) and b"SECTION" in content[:65536]):
         return "dxf"
-    raise InputError("this is neither a JSON, a DXF nor an SVG file: export the part's outline as one of these.")
+    if start.startswith(b"ISO-10303-21"):
+        return "step"
+    raise InputError(
+        "this is neither a JSON, a DXF, an SVG nor a STEP file: export the part's outline as one of these."
+    )
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:
@@ -204,6 +225,19 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
     """
     if layers is not None:
         raise InputError("layers can be chosen in DXF files only: leave --layer out.")
+
+
+def refuse_axis(axis: str | None, section: float | None) -> None:
+    """Refuse a view of a solid for a file that holds a flat drawing.
+
+    Raises
+    ------
+    InputError
+        When an axis or a section was chosen.
+    """
+    if axis is not None or section is not None:
+        option = "--axis" if axis is not None else "--section"
+        raise InputError(f"only a STEP file can be looked at along an axis: leave {option} out.")
 
 
 def from_json(
@@ -235,6 +269,31 @@ def from_json(
     part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
     chosen_part(part, part_number)
     return Loaded(workpiece, (), part)
+
+
+def from_step(
+    path: Path,
+    content: bytes,
+    unit: str | None,
+    layers: Sequence[str] | None,
+    part_number: int | None,
+    axis: str | None,
+    section: float | None,
+) -> Loaded:
+    """A workpiece from the bytes of a STEP file.
+
+    Raises
+    ------
+    InputError
+        For wrong content, or choices that do not apply to STEP.
+    """
+    from holdfast.files.step import read_step
+
+    refuse_layers(layers)
+    if unit is not None:
+        raise InputError("the STEP file gives its own unit: leave --drawing-unit out.")
+    drawing = read_step(content, axis=axis, section_height=section, part_number=part_number)
+    return from_drawing(path, drawing, None, 0.0)
 
 
 def from_drawing(path: Path, drawing: Drawing, part_number: int | None, tolerance: float) -> Loaded:

@@ -96,7 +96,7 @@ def is_fixture(
     Returns
     -------
     (2 when it may be a fixture, 1 when the four contacts may be inside their features, 0 when they are not;
-     x distance from the first left to the first right peg)
+     x distance from the first left to the first right peg, but 0 for verdict 0)
     """
     cx, cy = cos(psi), sin(psi)
     leftmost_right, rightmost_left = np.inf, -np.inf
@@ -122,9 +122,9 @@ def is_fixture(
             leftmost_right = min(leftmost_right, along)
             if k == int(lefts):
                 first_right = along
-    length = limits[WRENCH_LENGTH]
+    length, apart = limits[WRENCH_LENGTH], first_right - first_left
     if leftmost_right - rightmost_left < limits[MIN_GAP] - GAP_SLACK - 2.0 * (radius + length * reach):
-        return (1, 0.0)
+        return (1, apart)
     size = minors(points, normals, length, null)
     # Normals are off by at most the swing, moments by radius / L + 2 swing, products of two normals by 2 swing.
     band = 20.0 * swing + 4.0 * radius / length + ROUNDING
@@ -133,18 +133,18 @@ def is_fixture(
     smallest = low if sign > 0.0 else -high
     least = max(LEAST_CLOSURE, limits[LEAST_MARGIN])
     if smallest + band <= least * (size - 4.0 * band) or size + 4.0 * band <= LEAST_SPAN:
-        return (1, 0.0)
+        return (1, apart)
     clamp = 0.0
     for k in range(int(lefts)):
         clamp -= sign * null[k] * (normals[k, 0] * cx + normals[k, 1] * cy)
     if clamp + 3.0 * band + size * (swing + reach) <= LEAST_CLAMPING * (size - 4.0 * band):
-        return (1, 0.0)
+        return (1, apart)
     if lefts == 3.0:
         # What the single right peg takes up is the product of two numbers, and small when either is.
         push = abs(normals[3, 0] * cx + normals[3, 1] * cy) + swing + reach
         if (abs(null[3]) + band) * push <= LEAST_CLAMPING * (size - 4.0 * band):
-            return (1, 0.0)
-    return (2, first_right - first_left)
+            return (1, apart)
+    return (2, apart)
 
 
 @inner

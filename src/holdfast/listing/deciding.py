@@ -35,6 +35,8 @@ __all__ = ["Account", "Course", "decided", "is_left", "merged", "peg_integers", 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# The precision of balls is one for the whole process, so one thread at a time works with them.
+BALLS = Lock()
 # Records looked at between two looks at the flag that stops the work.
 OPEN_BLOCK = 64
 GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"
@@ -277,7 +279,8 @@ def settled_record(row: Array, problem: Problem, course: Course) -> Settled | No
         reach=(turn / length, right, up, slide),
     )
     limits = Limits(problem.contact_margin, problem.vise.min_gap, length)
-    return settle(box, limits, lambda: course.is_stopped)
+    with BALLS:
+        return settle(box, limits, lambda: course.is_stopped)
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.geometry.symmetry import rotations_onto_itself
+from holdfast.geometry.symmetry import Rotation, rotations_onto_itself
 from holdfast.kernels.standing import stand
 from holdfast.listing.candidates import SAME_POSE, Candidates, changes, packed
 from holdfast.model.workpiece import Workpiece
@@ -42,13 +44,14 @@ def precedes(a: list[IntArray], a_pose: Array, b: list[IntArray], b_pose: Array)
     return before
 
 
-def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece) -> dict[str, int]:
+def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece, threads: int = 1) -> dict[str, int]:
     """How many sets of each type the fixtures form when those equivalent under the part's rotations count once.
 
     Parameters
     ----------
     c : the fixtures, each listed once.
     face : (N, 4) numbers of the faces their pegs touch.
+    threads : how many threads share the work.
     """
     if len(face) == 0:
         return {"I": 0, "II": 0}
@@ -60,17 +63,20 @@ def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece) -> dict[
         return {"I": int(counts[1]), "II": int(counts[2])}
     numbers = np.array([f.number for f in faces])
     x0, y0, x1, y1 = workpiece.bounds
-    best: tuple[list[IntArray], Array] | None = None
-    for rotation in rotations:
+
+    def turned(rotation: Rotation) -> tuple[list[IntArray], Array]:
         image = np.zeros(int(numbers.max()) + 1, np.int64)
         image[numbers] = numbers[rotation.image]
-        key, pose = keys_and_pose(c, image[face], len(image), rotation.angle, x1 - x0 + y1 - y0)
-        if best is not None:
-            better = precedes(key, pose, *best)
-            key = [np.where(better, new, old) for new, old in zip(key, best[0], strict=True)]
-            pose = np.where(better, pose, best[1])
-        best = key, pose
-    assert best is not None
+        return keys_and_pose(c, image[face], len(image), rotation.angle, x1 - x0 + y1 - y0)
+
+    best = turned(rotations[0])
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        # A few at a time: each is as large as all the fixtures' holes.
+        for first in range(1, len(rotations), threads):
+            for key, pose in pool.map(turned, rotations[first : first + threads]):
+                better = precedes(key, pose, *best)
+                smallest = [np.where(better, new, old) for new, old in zip(key, best[0], strict=True)]
+                best = smallest, np.where(better, pose, best[1])
     key, pose = best
     order = np.lexsort([pose, *reversed(key)])
     fresh = changes([word[order] for word in key])

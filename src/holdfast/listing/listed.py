@@ -65,7 +65,7 @@ def listed_result(
     threads : how many threads share the deciding.
     """
     candidates, account = finish(records, problem, progress, cancel, threads)
-    result = result_of(problem, preference, candidates, account, work)
+    result = result_of(problem, preference, candidates, account, work, threads)
     return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
 
 
@@ -82,11 +82,13 @@ def best_result(kept: BestFixtures, work: Work) -> Result:
     return evolve(result, notes=(note, *result.notes))
 
 
-def result_of(problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work) -> Result:
+def result_of(
+    problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work, threads: int = 1
+) -> Result:
     """The result of fixtures that are listed once."""
     sets = twins(candidates, problem.faces[candidates.feature])
     listed = candidates.take(sets.first)
-    everything = preference.measured(placed(listed, problem), problem)
+    everything = preference.measured(placed(listed, problem), problem, threads)
     kept_apart = FixtureTable.empty()
     if len(sets.others):
         kept_apart = preference.measured(placed(candidates.take(sets.others), problem), problem)
@@ -96,7 +98,7 @@ def result_of(problem: Problem, preference: Preference, candidates: Candidates, 
         vise=problem.vise,
         table=ranked,
         found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
-        distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece),
+        distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece, threads),
         complete=work.complete and account.left == 0,
         contact_margin=problem.contact_margin,
         notes=notes(len(kept_apart), len(account.undecided)),

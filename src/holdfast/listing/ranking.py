@@ -49,9 +49,11 @@ class Preference:
         """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
         return self.ranking == (FIGURES[CLOSURE_MARGIN].key,)
 
-    def measured(self, table: FixtureTable, problem: Problem) -> FixtureTable:
-        """A table with all its figures of quality."""
-        return evolve(table, quality=quality_of(table, problem.workpiece, problem.vise, self.tolerance, self.loads))
+    def measured(self, table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
+        """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
+        quality = quality_of(table, problem.workpiece, problem.vise, self.tolerance, self.loads, threads)
+        quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
+        return evolve(table, quality=quality)
 
 
 def preference_of(
@@ -89,8 +91,10 @@ def ranking_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[N
     for place, key in enumerate(ranking):
         number = figure_number(key)
         assert number is not None
-        values = quality[:, number]
-        values = np.round(values, FINE_DIGITS) if place == len(ranking) - 1 else coarse(values)
+        # Rounding must not tell fixtures apart that are equal, so what is coarse is rounded finely first.
+        values = np.round(quality[:, number], FINE_DIGITS)
+        if place < len(ranking) - 1:
+            values = coarse(values)
         keys.append(-values if FIGURES[number].more_is_better else values)
     return keys
 

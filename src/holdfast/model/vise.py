@@ -33,6 +33,11 @@ def optional_length(value: float | None) -> float:
     return nan if value is None else float(value) if not isnan(float(value)) else inf
 
 
+def all_holes(holes: Iterable[Holes]) -> tuple[Holes, ...]:
+    """Holes as a tuple."""
+    return tuple(holes)
+
+
 @frozen
 class Vise:
     """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
@@ -71,7 +76,7 @@ class Vise:
     max_opening: float | None = field(default=None, converter=optional(float))
     row_offset: float = field(default=0.0, converter=float)
     body_radius: float = field(default=None, converter=optional_length)
-    blocked: tuple[Holes, ...] = field(default=(), converter=tuple)
+    blocked: tuple[Holes, ...] = field(default=(), converter=all_holes)
 
     def __attrs_post_init__(self) -> None:
         if isnan(self.min_gap):

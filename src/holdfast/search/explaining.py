@@ -151,14 +151,15 @@ def restriction_removals(
     left : contacts that keep all restrictions.
     """
     vise, asked = problem.vise, problem.restrictions
-    free_vise = evolve(vise, blocked=(), body_radius=vise.peg_radius)
+    free_vise = evolve(vise, rows=None, blocked=(), body_radius=vise.peg_radius)
     steps: list[tuple[str, Restrictions, Vise]] = []
     if asked.avoid:
         steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free_vise))
     if asked.zones:
-        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), evolve(vise, blocked=())))
-    if vise.body_radius > vise.peg_radius or vise.blocked:
-        steps.append(("thick bodies and blocked holes", evolve(asked, angles=()), vise))
+        thick = evolve(free_vise, body_radius=vise.body_radius)
+        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), thick))
+    if vise.body_radius > vise.peg_radius or vise.blocked or vise.rows is not None:
+        steps.append(("holes that the jaws do not have, or too near for the bodies", evolve(asked, angles=()), vise))
     if asked.angles:
         steps.append(("angles of the part", asked, vise))
 

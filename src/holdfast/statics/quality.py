@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from math import cos, pi
 
 import numpy as np
@@ -33,6 +34,7 @@ def quality_of(
     vise: Vise,
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
+    threads: int = 1,
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -42,6 +44,7 @@ def quality_of(
     workpiece, vise : what they hold and in what.
     tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
     loads : for the load reaction, the worst of them; each acts by itself.
+    threads : how many threads share the work; the outcome does not depend on it.
 
     Returns
     -------
@@ -54,7 +57,8 @@ def quality_of(
     rows = load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
     out = np.empty((len(table), len(FIGURES)))
-    for start in range(0, len(table), BLOCK):
+
+    def fill(start: int) -> None:
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.segment.astype(np.int64)
@@ -73,6 +77,14 @@ def quality_of(
             rows,
             out[start : start + BLOCK],
         )
+
+    starts = range(0, len(table), BLOCK)
+    if threads > 1 and len(starts) > 1:
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            list(pool.map(fill, starts))
+    else:
+        for start in starts:
+            fill(start)
     return out
 
 

@@ -13,13 +13,16 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
-from attrs import frozen
+from attrs import field, frozen
 
 from holdfast.errors import InputError
 from holdfast.model.fixture import Fixture, Peg, Pose
+from holdfast.model.holes import holes_named
+from holdfast.model.quality import FIGURES
 from holdfast.model.result import Result, fixture_at
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
+from holdfast.verification.asked import Asked, asked_in, asked_of
 
 __all__ = ["Listing", "listing_of", "read_listing"]
 
@@ -37,6 +40,7 @@ class Listing:
     fixtures, twins : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
     faults : contradictions in the head of the file, one sentence each.
+    asked : what was asked for beyond fixtures.
     """
 
     workpiece: Workpiece
@@ -48,6 +52,7 @@ class Listing:
     found: Mapping[str, int]
     distinct: Mapping[str, int]
     faults: tuple[str, ...] = ()
+    asked: Asked = field(factory=Asked)
 
 
 class UnusableError(Exception):
@@ -73,6 +78,7 @@ def listing_of(result: Result) -> Listing:
         result.counts,
         result.found,
         result.distinct,
+        asked=asked_of(result),
     )
 
 
@@ -144,8 +150,8 @@ def fixture_from(item: dict[str, Any]) -> Fixture:
     quality = item.get("quality", {})
     if not isinstance(quality, dict):
         raise UnusableError("its quality is no object")
-    margin = {"closure_margin": real(quality, "closure_margin")} if "closure_margin" in quality else {}
-    return Fixture(kind, (pegs[0], pegs[1], pegs[2], pegs[3]), pose, real(item, "jaw_separation"), margin)
+    figures = {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality}
+    return Fixture(kind, (pegs[0], pegs[1], pegs[2], pegs[3]), pose, real(item, "jaw_separation"), figures)
 
 
 def real(item: Mapping[str, Any], key: str) -> float:
@@ -225,6 +231,7 @@ def checked(data: Any) -> Listing:
         counts_from(data, "found", counts),
         counts_from(data, "distinct", counts),
         turned_loops(loops, workpiece),
+        asked_in(data),
     )
 
 
@@ -257,6 +264,8 @@ def vise_from(jaws: Mapping[str, Any]) -> Vise:
         min_gap=optional(real, jaws, "min_gap"),
         max_opening=optional(real, jaws, "max_opening"),
         row_offset=optional(real, jaws, "row_offset") or 0.0,
+        body_radius=optional(real, jaws, "body_radius"),
+        blocked=tuple(holes_named(str(name)) for name in jaws.get("blocked") or ()),
     )
 
 

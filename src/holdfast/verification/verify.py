@@ -8,6 +8,7 @@ from pathlib import Path
 from attrs import frozen
 
 from holdfast.model.result import Result
+from holdfast.verification.asked import broken_restriction, order_faults, wrong_figures
 from holdfast.verification.balls import PRECISIONS
 from holdfast.verification.fixture_proof import Judge, Verdict
 from holdfast.verification.listing import KINDS, Listing, listing_of, read_listing
@@ -102,22 +103,35 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     judge = Judge(listing.workpiece, listing.vise, listing.contact_margin)
     everything = [*listing.fixtures, *listing.twins]
     seen = Seen()
-    unproven = []
-    tally: dict[Verdict, int] = {"proven": 0, "refuted": 0, "undecided": 0}
-    bits = PRECISIONS[0]
+    rulings: list[tuple[Verdict, str]] = []
+    bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
         ruling = judge.rule_on(fixture)
         verdict, reason = ruling.verdict, ruling.reason
         bits = max(bits, ruling.bits)
+        if verdict != "refuted":
+            broken = broken_restriction(fixture, listing.workpiece, listing.vise, listing.asked.restrictions)
+            verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
             verdict, reason = "refuted", f"it is the same as {title(first, listing)}"
-        tally[verdict] += 1
-        if verdict != "proven":
-            twin = place >= len(listing.fixtures)
-            unproven.append(Unproven(place - twin * len(listing.fixtures), twin, verdict, reason))
-        progress((place + 1) / len(everything), len(unproven))
-    faults = (*listing.faults, *count_faults(listing))
+        rulings.append((verdict, reason))
+        doubtful += verdict != "proven"
+        progress((place + 1) / len(everything), doubtful)
+    # Figures of quality are derived of what may be a fixture only: anything else may name faces that do not exist.
+    sound = [place for place, (verdict, _) in enumerate(rulings) if verdict != "refuted"]
+    wrong = wrong_figures([everything[place] for place in sound], listing.workpiece, listing.vise, listing.asked)
+    for number, words in wrong.items():
+        rulings[sound[number]] = ("refuted", words)
+    unproven = [
+        Unproven(place - twin * len(listing.fixtures), twin, verdict, reason)
+        for place, (verdict, reason) in enumerate(rulings)
+        if verdict != "proven"
+        for twin in [place >= len(listing.fixtures)]
+    ]
+    tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
+    order = order_faults(listing.fixtures, listing.asked.ranking)
+    faults = (*listing.faults, *count_faults(listing), *order)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), faults, bits)
 
 

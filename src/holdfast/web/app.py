@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import traceback
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -12,6 +10,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.openapi.utils import get_openapi
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response
 
 from holdfast import __version__
@@ -142,12 +141,16 @@ def add_error_handlers(app: FastAPI) -> None:
         sentence = SENTENCES.get(str(error.detail), str(error.detail))
         return wrong(error.status_code, sentence, dict(error.headers or {}))
 
+    async def left(request: Request, error: Exception) -> Response:
+        return wrong(400, "The request ended before it was complete.")
+
     async def fault(request: Request, error: Exception) -> Response:
-        traceback.print_exception(error, file=sys.stderr)
         return wrong(500, "This is a mistake of the program, not yours; please report it.")
 
     app.add_exception_handler(RequestValidationError, refused)
     app.add_exception_handler(HTTPException, plain)
+    app.add_exception_handler(ClientDisconnect, left)
+    # The server's log tells what it was.
     app.add_exception_handler(Exception, fault)
 
 

@@ -6,13 +6,13 @@ from datetime import date
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from holdfast.model.result import Result
-from holdfast.web.answers import contact_answer, load_case_answer, rows_answer
+from holdfast.model.workpiece import Workpiece
+from holdfast.web.answers import contact_answer, rows_answer
 from holdfast.web.forms import LoadsForm
 from holdfast.web.job_routes import attachment, found_job, result_of_job
 from holdfast.web.paper import KINDS, PaperOrder
@@ -53,9 +53,9 @@ async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revisi
     """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
     result = result_of_job(found_job(request, name), revision)
     chosen = result[ranked(result, rank)]
-    bare = result.workpiece.__class__(result.workpiece.name, result.workpiece.loops)
+    bare = Workpiece(result.workpiece.name, result.workpiece.loops)
     cases = await state_of(request).at_desk("loads", (chosen, bare, result.vise, form))
-    return {"rank": rank, "cases": [load_case_answer(case) for case in cases]}
+    return {"rank": rank, "cases": cases}
 
 
 @router.get("/{kind}", summary="A setup sheet, a drawing or a picture", response_class=Response)
@@ -75,18 +75,7 @@ async def paper(
     job = found_job(request, name)
     result = result_of_job(job, revision, when_over=kind != "picture.svg")
     ranked(result, rank)
-    bare = result.workpiece.__class__(result.workpiece.name, result.workpiece.loops)
-    order = PaperOrder(
-        kind,
-        evolve(result, workpiece=bare),
-        rank,
-        paper,
-        unit,
-        day or date.today(),
-        jaw_force,
-        friction,
-        job.result_hash,
-    )
+    order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), jaw_force, friction, job.result_hash)
     content, result_hash = await state_of(request).at_desk("paper", order)
     if result_hash is not None and job.result is result:
         job.result_hash = result_hash

@@ -17,6 +17,7 @@ from holdfast.web.forms import ExploreForm, JobForm, LoadsForm
 from holdfast.web.jobs import Job
 from holdfast.web.selection import Selection, angle_range
 from holdfast.web.state import ServerState, address_of, state_of
+from holdfast.web.tasks import plain
 
 __all__ = ["attachment", "found_job", "result_of_job", "router"]
 
@@ -191,7 +192,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
     """The ten with the least load reaction, in N."""
     job = found_job(request, name)
     result, revision = result_of_job(job), job.revision
-    best = await state_of(request).at_desk("resist", (result, form))
+    best = await state_of(request).at_desk("resist", (plain(result), form))
     rows = [{"rank": rank, "load_reaction": reaction} for rank, reaction in best]
     return {"revision": revision, "best": rows}
 

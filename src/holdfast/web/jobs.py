@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from holdfast.errors import InputError
 from holdfast.model.explanation import Explanation
 from holdfast.model.result import Result
-from holdfast.web.answers import proof_answer, vise_fields
+from holdfast.web.answers import proof_answer
 from holdfast.web.asked import Asked
 from holdfast.web.limits import Limits
 from holdfast.web.pool import BusyError, FailedError, Pool, StoppedError, Task
 from holdfast.web.selection import Selection
-from holdfast.web.tasks import Compared, Found
+from holdfast.web.tasks import Found
 
 __all__ = ["OVER", "Job", "Jobs", "TooManyError"]
 
@@ -254,18 +254,8 @@ class Jobs:
                 job.result = evolve(result, workpiece=job.asked[0].workpiece)
                 job.revision += 1
                 job.orders.clear()
-            case ("row", Compared() as row):
-                asked = job.asked[row.number]
-                job.table.append(
-                    {
-                        "title": asked.title,
-                        "vise": vise_fields(asked.vise),
-                        "counts": dict(row.counts),
-                        "complete": row.complete,
-                        "best": dict(row.best),
-                        "note": row.note,
-                    }
-                )
+            case ("row", row):
+                job.table.append(row)
                 job.revision += 1
         job.changed()
 

@@ -7,13 +7,15 @@ from datetime import date
 from hashlib import sha256
 from importlib import import_module
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 
 from holdfast.errors import InputError
 from holdfast.model.fixture import Fixture
-from holdfast.model.result import Result
+from holdfast.model.result import FixtureTable, Result
+from holdfast.model.workpiece import Workpiece
 from holdfast.web.worker import Order
 
 __all__ = ["KINDS", "PaperOrder", "has_step", "make_paper"]
@@ -35,7 +37,8 @@ class PaperOrder:
     Parameters
     ----------
     kind : one of :data:`KINDS`.
-    result : the fixtures; the one is at ``rank``, from 1.
+    result : all fixtures for a sheet, which tells of the others; else one of no other.
+    rank, count : of the fixture, from 1, and how many there are.
     paper : "a4" or "letter".
     unit : "mm" or "inch".
     day : written on the sheet.
@@ -47,12 +50,26 @@ class PaperOrder:
     kind: str
     result: Result
     rank: int
+    count: int
     paper: str
     unit: str
     day: date
     jaw_force: float | None
     friction: float | None
     result_hash: str | None
+
+    @classmethod
+    def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
+        """An order that carries no more of a result than is needed."""
+        small = evolve(result, workpiece=Workpiece(result.workpiece.name, result.workpiece.loops))
+        if not kind.startswith("sheet"):
+            small = evolve(small, table=result.table.take(slice(rank - 1, rank)), twins=FixtureTable.empty())
+        return cls(kind, small, rank, len(result), *options)
+
+    @property
+    def fixture(self) -> Fixture:
+        """The fixture."""
+        return self.result[self.rank - 1 if len(self.result) == self.count else 0]
 
 
 def has_step() -> bool:
@@ -80,7 +97,7 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     workpiece, vise = result.workpiece, result.vise
     details = SheetDetails(
         number=order.rank,
-        count=len(result),
+        count=order.count,
         day=order.day,
         result_hash=order.result_hash or hash_of(result),
         version=__version__,
@@ -126,7 +143,7 @@ def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
     from holdfast.files.setup_dxf import setup_dxf
 
     result = order.result
-    return setup_dxf(result[order.rank - 1], result.workpiece, result.vise), None
+    return setup_dxf(order.fixture, result.workpiece, result.vise), None
 
 
 def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -135,7 +152,7 @@ def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
         raise InputError("this server writes no STEP files: take the DXF, or install holdfast with the extra step.")
     module = import_module("holdfast.files.setup_step")
     result = order.result
-    content: bytes = module.setup_step(result[order.rank - 1], result.workpiece, result.vise)
+    content: bytes = module.setup_step(order.fixture, result.workpiece, result.vise)
     return content, None
 
 
@@ -144,8 +161,8 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     from holdfast.drawing.fixture_picture import draw_fixture
 
     result = order.result
-    title = f"Fixture {order.rank} of {len(result)}"
-    return draw_fixture(result[order.rank - 1], result.workpiece, result.vise, title=title).encode("utf-8"), None
+    title = f"Fixture {order.rank} of {order.count}"
+    return draw_fixture(order.fixture, result.workpiece, result.vise, title=title).encode("utf-8"), None
 
 
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {

@@ -1,7 +1,7 @@
 """What workers do. Every task takes its payload and an :class:`holdfast.web.worker.Order`, and returns plain data or
 objects of the model.
 
-Heavy modules are imported by the tasks that need them, or by :func:`warm_up`.
+Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; what is returned needs none of them.
 """
 
 from __future__ import annotations
@@ -25,10 +25,9 @@ from holdfast.web.worker import Order
 if TYPE_CHECKING:
     from holdfast.model.fixture import Fixture
     from holdfast.model.vise import Vise
-    from holdfast.statics.loads import LoadCase
     from holdfast.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
-__all__ = ["TASKS", "Compared", "Found", "Upload", "warm_up"]
+__all__ = ["TASKS", "Found", "Upload", "plain", "warm_up"]
 
 # Seconds between reports of progress.
 PAUSE = 0.1
@@ -63,24 +62,11 @@ class Found:
     left_out: int
 
 
-@frozen
-class Compared:
-    """One vise of a comparison: what it is called, how many fixtures of each type, the best value of each figure of quality,
-    and what is to be said about it."""
-
-    number: int
-    counts: Mapping[str, int]
-    complete: bool
-    best: Mapping[str, float]
-    note: str
-
-
 def warm_up(kind: str) -> None:
     """Load, and on a first run compile, what workers of a kind need: "search" or "desk"."""
     from holdfast.search.design import design
 
     if kind == "search":
-        from holdfast.geometry.segment import Arc  # noqa: F401
         from holdfast.model.vise import Vise
 
         corners = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.2], [34.0, 25.0, 0.0], [0.0, 20.0, 0.0]]
@@ -132,38 +118,39 @@ def plain(result: Result) -> Result:
 
 
 def explore(payload: tuple[Asked, ...], order: Order) -> None:
-    """Search in one vise after the other; reports are ("progress", fraction, found) and ("row", Compared)."""
-    from holdfast.model.quality import FIGURES
-    from holdfast.search.design import design
+    """Search in one vise after the other; reports are ("row", row) and ("progress", fraction, found)."""
+    from attrs import asdict
 
-    began, total = perf_counter(), 0
+    from holdfast.search.exploring import explore
+    from holdfast.web.answers import vise_fields
+
+    total = 0
     for number, asked in enumerate(payload):
-        if order.cancel.is_set() or perf_counter() - began > order.seconds:
-            return
-        try:
-            result = design(
-                asked.workpiece,
-                asked.vise,
-                types=asked.types,
-                contact_margin=asked.contact_margin,
-                restrictions=asked.restrictions,
-                tolerance=asked.tolerance,
-                loads=asked.loads,
-                cancel=order.cancel,
+        rows = explore(
+            asked.workpiece,
+            [(asked.title, asdict(asked.vise, recurse=False))],
+            cancel=order.cancel,
+            types=asked.types,
+            contact_margin=asked.contact_margin,
+            restrictions=asked.restrictions,
+            tolerance=asked.tolerance,
+            loads=asked.loads,
+        )
+        for row in rows:
+            total += row.fixtures
+            order.report(
+                (
+                    "row",
+                    {
+                        "title": row.name,
+                        "vise": vise_fields(asked.vise),
+                        "counts": dict(row.found),
+                        "best": dict(row.best),
+                        "note": row.reason,
+                    },
+                )
             )
-        except InputError as error:
-            row = Compared(number, {"I": 0, "II": 0}, True, {}, str(error))
-        else:
-            best = {}
-            for column, figure in enumerate(FIGURES):
-                values = result.table.quality[:, column]
-                known = values[values == values]
-                if len(known):
-                    best[figure.key] = float(known.max() if figure.more_is_better else known.min())
-            row = Compared(number, dict(result.found), result.complete, best, " ".join(result.notes))
-            total += len(result)
-        order.report(("row", row))
-        order.report(("progress", (number + 1) / len(payload), total))
+            order.report(("progress", (number + 1) / len(payload), total))
 
 
 def explanation(asked: Asked, order: Order) -> Explanation:
@@ -230,13 +217,15 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
 
 
-def loads(payload: tuple[Fixture, Workpiece, Vise, LoadsForm], order: Order) -> tuple[LoadCase, ...]:
+def loads(payload: tuple[Fixture, Workpiece, Vise, LoadsForm], order: Order) -> list[dict[str, Any]]:
     """What loads do to a fixture."""
     from holdfast.statics.loads import load_cases
+    from holdfast.web.answers import load_case_answer
 
     fixture, workpiece, vise, form = payload
     asked = [load.load() for load in form.loads]
-    return load_cases(fixture, workpiece, vise, asked, form.jaw_force, form.friction)
+    cases = load_cases(fixture, workpiece, vise, asked, form.jaw_force, form.friction)
+    return [load_case_answer(case) for case in cases]
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:

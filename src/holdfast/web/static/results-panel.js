@@ -185,7 +185,7 @@ function showJob() {
     if (!chosenByUser || searching()) rows.refresh(list.first, list.last).then(() => list.paint());
     else followChosen(id);
   }
-  if (id && job.state === "done" && job.found === 0) explain(id);
+  if (id && job.state === "done" && job.found === 0 && job.complete) explain(id);
 }
 
 /** After the list has changed under a chosen fixture: keep it if it still has its rank, else show the first. */
@@ -231,7 +231,8 @@ function summary(job, busy) {
   if (busy) return [`${many} so far`, job.state === "queued" ? "Waiting for its turn." : `${Math.round(100 * job.fraction)} % searched`];
   if (job.state === "failed") return ["The search failed", ""];
   if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
-  if (job.found === 0) return ["There is no fixture", "Every place was searched; below is why."];
+  if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; below is why."];
+  if (job.found === 0) return ["None found so far", ["The search was not complete.", ...(job.notes ?? [])].join(" ")];
   const types = job.counts ? `${countText(job.counts.I ?? 0)} of type I, ${countText(job.counts.II ?? 0)} of type II` : "";
   const seconds = typeof job.seconds === "number" ? `, found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s` : "";
   return [many, [`${types}${seconds}.`, ...(job.notes ?? [])].join(" ")];

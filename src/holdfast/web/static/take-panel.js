@@ -4,6 +4,7 @@
 import { downloadPath } from "./api.js";
 import { byId, show } from "./dom.js";
 import { keep } from "./link.js";
+import { searching } from "./search.js";
 import { on, state } from "./state.js";
 
 /** @param {any} about what the server can do */
@@ -27,7 +28,15 @@ function write() {
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
   const sheet = { paper: /** @type {HTMLSelectElement} */ (byId("paper")).value, unit: state.unit, date: day };
   if (state.force?.jaw) sheet.jaw_force = String(state.force.jaw);
-  const point = (id, path) => byId(id).setAttribute("href", path);
+  // Files are made of a whole search only; until then a link leads nowhere.
+  const over = !searching();
+  const point = (id, path) => {
+    const link = byId(id);
+    if (over || id === "take-picture") link.setAttribute("href", path);
+    else link.removeAttribute("href");
+    link.setAttribute("aria-disabled", String(!link.hasAttribute("href")));
+    link.title = link.hasAttribute("href") ? "" : "When the search is over";
+  };
   point("take-sheet", downloadPath(job, rank, "sheet.pdf", sheet));
   point("take-svg", downloadPath(job, rank, "sheet.svg", sheet));
   point("take-dxf", downloadPath(job, rank, "setup.dxf"));

@@ -1,0 +1,137 @@
+"""What is ruled out, what loads act and how fixtures are ranked reaches the search as it was typed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from holdfast.model.holes import Holes
+from holdfast.model.tolerance import Tolerance
+
+WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
+
+
+def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> None:
+    """Faces, zones, angles, blocked holes and bodies; lengths in the unit that was asked for."""
+    words = ["--avoid", "3,7", "--avoid", "1", "--keep-out", "circle=1,2,3", "--keep-out", "polygon=0,0;4,0;4,25.4mm"]
+    words += ["--angle", "-10..20", "--angle", "90", "--blocked", "L-B3,R-A", "--body-radius", "0.15", "--unit", "inch"]
+    inches = ("design", "widget", "--pitch", "0.4", "--columns", "2", "--peg-radius", "0.1")
+    assert run(*inches, *words).exit_code == 0
+    asked = searched["asked"]
+    restrictions = asked["restrictions"]
+    assert restrictions.avoid == (1, 3, 7)
+    assert restrictions.angles == ((-10.0, 20.0), (90.0, 90.0))
+    circle, polygon = (zone.loop for zone in restrictions.zones)
+    assert circle[:, :2].tolist() == [pytest.approx([-50.8, 50.8]), pytest.approx([101.6, 50.8])]
+    assert polygon[2, :2].tolist() == pytest.approx([101.6, 25.4])
+    assert asked["vise"].blocked == (Holes("left", 1, 2), Holes("right", 0, None))
+    assert asked["vise"].body_radius == pytest.approx(3.81)
+
+
+def test_loads_ranking_and_tolerance_reach_the_search(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+    """From the command line and from a file."""
+    (tmp_path / "loads.toml").write_text('[[load]]\nname = "drill"\nmoment = 5000\n')
+    words = ["--load", "force=200 at=10,5 direction=30..60", "--loads", tmp_path / "loads.toml"]
+    assert run(*WIDGET, *words, "--rank-by", "load-reaction,end-distance", "--tolerance", "0.02,0.05").exit_code == 0
+    asked = searched["asked"]
+    first, second = asked["loads"]
+    assert (first.force, first.points, first.directions) == (200.0, ((10.0, 5.0),), (30.0, 60.0))
+    assert (second.name, second.moment) == ("drill", 5000.0)
+    assert asked["rank_by"] == ["load-reaction", "end-distance"]
+    assert asked["tolerance"] == Tolerance(0.02, 0.05)
+
+
+def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(run: Any, searched: dict[str, Any]) -> None:
+    """What is typed wins over what the vise says."""
+    assert run("design", "widget", "--vise", "plate-20mm", "--columns", "3", "--min-opening", "44").exit_code == 0
+    vise, tolerance = searched["asked"]["vise"], searched["asked"]["tolerance"]
+    assert (vise.pitch, vise.columns, vise.min_gap) == ((20.0, 20.0), 3, 44.0)
+    assert tolerance != Tolerance()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--avoid", "x"), "--avoid 'x' is not a whole number"),
+        (("--keep-out", "square=1,2"), "--keep-out 'square=1,2' is no zone: give circle=X,Y,RADIUS"),
+        (("--keep-out", "circle=1,2,0"), "give a positive radius"),
+        (("--keep-out", "circle=1,2,wide"), "--keep-out 'wide' is not a length"),
+        (("--angle", "steep"), "--angle 'steep' is no range of angles"),
+        (("--angle", "20..10"), "give the smaller first"),
+        (("--blocked", "B3"), "'B3' names no hole"),
+        (("--blocked", "L-D1"), "L-D1 is blocked, but each jaw has only 2 columns"),
+        (("--body-radius", "1"), "body radius 1 is not one of a peg of radius 3"),
+        (("--rank-by", "beauty"), "'beauty' is no figure to rank by"),
+        (("--rank-by", "load-reaction"), "there is no load"),
+        (("--tolerance", "1,2,3"), "has 3 numbers"),
+        (("--tolerance", "-1"), "tolerance -1.0 is not a length"),
+        (("--load", "force=200"), "load"),
+        (("--loads", "none.toml"), "none.toml cannot be read"),
+        (("--vise", "plate-21mm"), "plate-20mm"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_in_a_sentence(
+    run: Any, searched: dict[str, Any], words: tuple[str, ...], message: str
+) -> None:
+    """Before any search, with exit code 2."""
+    outcome = run(*WIDGET, *words)
+    assert outcome.exit_code == 2 and searched["asked"] is None
+    assert message in outcome.stderr and outcome.stderr.count("\n") == 1
+
+
+def test_a_vise_that_is_not_described_is_asked_for(run: Any) -> None:
+    """Naming the option, and the other way."""
+    outcome = run("design", "widget", "--pitch", "10", "--columns", "2")
+    assert outcome.exit_code == 2
+    assert "add --peg-radius, or name a vise with --vise" in outcome.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("--avoid", "99"), ("--keep-out", "circle=0,0,500"), ("--avoid", ",".join(map(str, range(16))))]
+)
+def test_nothing_left_to_touch_is_refused(run: Any, words: tuple[str, ...]) -> None:
+    """Faces that do not exist and zones that cover everything: one sentence."""
+    outcome = run(*WIDGET, *words)
+    assert outcome.exit_code == 2
+    assert outcome.stderr.count("\n") == 1 and outcome.stderr.startswith("holdfast: error: ")
+
+
+def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: Path) -> None:
+    """The rule that left nothing, and a picture of what came nearest."""
+    outcome = run(*WIDGET, "--min-gap", "300", "--draw", tmp_path)
+    assert outcome.exit_code == 0
+    assert "The last were removed by: smallest gap." in outcome.stdout
+    assert "with a smallest gap of 6 mm" in outcome.stdout
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["nearest-miss.png", "nearest-miss.svg"]
+
+
+def test_explore_lists_every_vise(run: Any, tmp_path: Path) -> None:
+    """With counts as a design of its own finds them, the vises that cannot be, and the best."""
+    table = tmp_path / "table.csv"
+    words = ["--pitch", "8,10x12,5", "--columns", "1", "--peg-radius", "3", "--out", table, "--rank-by", "end-distance"]
+    outcome = run("explore", "widget", *words)
+    assert outcome.exit_code == 0
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    assert rows[0][:4] == ["vise", "fixtures", "type_one", "type_two"]
+    assert len(rows) == 4
+    assert "505" in outcome.stdout and "pegs of radius 3 overlap" in outcome.stdout
+    assert "Best by end distance: pitch" in outcome.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--pitch", "8"), "a list of pitches alone makes no vise"),
+        (("--pitch", "8,,9", "--columns", "1", "--peg-radius", "3"), "has an empty entry"),
+        (("--vise", "plate-99mm"), "plate-99mm"),
+        (("--avoid", "99"), "has no face 99"),
+        (("--columns", ",".join(map(str, range(1, 400)))), "combine to"),
+    ],
+)
+def test_explore_refuses_in_a_sentence(run: Any, words: tuple[str, ...], message: str) -> None:
+    """Exit code 2 before any search."""
+    outcome = run("explore", "widget", *words)
+    assert outcome.exit_code == 2
+    assert message in outcome.stderr and outcome.stderr.count("\n") == 1

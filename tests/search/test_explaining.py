@@ -1,0 +1,97 @@
+"""Why there is no fixture: counts that add up, the rule that took the last away, a nearest miss, and help that helps."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+from holdfast import Vise, Workpiece, design, load
+from holdfast.listing.problem import Problem
+from holdfast.model.explanation import Explanation
+from holdfast.model.holes import holes_named
+from holdfast.model.restrictions import Restrictions, circle_zone
+from holdfast.search.contacts import count_contacts
+from holdfast.search.explaining import explain
+
+PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
+
+
+def explained(vise: Vise, **asked: Any) -> Explanation:
+    """The explanation for the widget, which has no fixture as asked."""
+    widget, margin = load("widget"), asked.pop("contact_margin", 0.0)
+    restrictions = Restrictions(**asked)
+    assert len(design(widget, vise, restrictions=restrictions, contact_margin=margin)) == 0
+    return explain(Problem.of(widget, vise, margin, restrictions))
+
+
+HOLES = "holes that the jaws do not have, or too near for the bodies"
+CASES: list[tuple[str, Vise, dict[str, Any]]] = [
+    ("contact margin", PLAIN, {"contact_margin": 6.0}),
+    ("smallest gap", evolve(PLAIN, min_gap=200.0), {}),
+    ("closure", PLAIN, {"avoid": (0, 3, 7), "angles": ((100.0, 103.0),)}),
+    ("angles of the part", PLAIN, {"angles": ((1.0, 1.001),)}),
+    ("largest opening", evolve(PLAIN, max_opening=8.01), {}),
+    (HOLES, evolve(PLAIN, rows=1), {}),
+    ("bodies that would overlap", evolve(PLAIN, body_radius=22.0), {}),
+    ("blocked holes", evolve(PLAIN, rows=4, blocked=map(holes_named, ["L-A1", "L-A2", "L-A3"])), {}),
+    ("keep-out zones", PLAIN, {"zones": (circle_zone(30.0, 23.0, 42.0),)}),
+]
+
+
+@pytest.mark.parametrize(("rule", "vise", "asked"), CASES, ids=[case[0] for case in CASES])
+def test_the_rules_take_all_away(rule: str, vise: Vise, asked: dict[str, Any]) -> None:
+    """Each rule begins with what the one before it left, the last leaves nothing, and what was asked for is among them."""
+    explanation = explained(vise, **asked)
+    removals = explanation.removals
+    assert explanation.contacts > 0 and removals[0].before == explanation.contacts
+    assert all(one.after == next_.before for one, next_ in pairwise(removals))
+    assert all(removal.after <= removal.before for removal in removals)
+    assert removals[-1].after == 0 and explanation.last_rule == removals[-1].rule
+    assert rule in [removal.rule for removal in removals]
+    assert explanation.nearest is not None or removals[-1].rule in ("keep-out zones", "angles of the part", HOLES)
+
+
+def test_help_helps() -> None:
+    """Each change that is named has as many fixtures as it says, the most first."""
+    explanation = explained(PLAIN, avoid=(0, 1, 2, 3, 4))
+    counts = [item.fixtures for item in explanation.helps]
+    assert counts == sorted(counts, reverse=True) and counts[0] == len(design(load("widget"), PLAIN))
+    one = next(item for item in explanation.helps if item.change == "touching face 1 too")
+    rest = Restrictions(avoid=(0, 2, 3, 4))
+    assert one.fixtures == len(design(load("widget"), PLAIN, restrictions=rest))
+
+
+def test_the_nearest_miss_touches_with_all_four_pegs() -> None:
+    """It breaks a rule, but the pegs touch their faces: the rectangle between jaws that are too far apart."""
+    part = Workpiece.from_loops("rectangle", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
+    vise = Vise(pitch=10, columns=2, peg_radius=3, min_gap=100)
+    explanation = explain(Problem.of(part, vise))
+    assert explanation.last_rule == "smallest gap"
+    assert explanation.nearest is not None and "smallest gap is 100 mm" in explanation.nearest.words
+    fixture = explanation.nearest.fixture
+    angle = np.radians(fixture.pose.theta_deg)
+    for peg in fixture.pegs:
+        x, y = peg.x - fixture.pose.x, peg.y - fixture.pose.y
+        x, y = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
+        outside = np.hypot(max(-x, 0, x - 60), max(-y, 0, y - 40))
+        assert outside == pytest.approx(3.0, abs=1e-6)
+
+
+def test_parts_that_four_pegs_cannot_touch() -> None:
+    """Nothing to remove, no nearest miss."""
+    part = Workpiece.from_loops("pin", [[[-2, 0, 1], [2, 0, 1]]])
+    explanation = explain(Problem.of(part, Vise(pitch=50, columns=1, peg_radius=3)))
+    assert (explanation.contacts, explanation.removals, explanation.nearest) == (0, (), None)
+    assert explanation.last_rule is None
+
+
+def test_contacts_are_among_those_counted() -> None:
+    """A count of its own also has sets in which two pegs stand in one place, and those on a joint of two faces twice."""
+    part, vise = load("widget"), evolve(PLAIN, min_gap=200.0)
+    explanation = explain(Problem.of(part, vise))
+    counted = count_contacts(part, vise)
+    assert 0.5 * counted <= explanation.contacts <= counted

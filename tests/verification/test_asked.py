@@ -1,0 +1,71 @@
+"""A result is held to what it says was asked for: restrictions, figures of quality, order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import pytest
+
+from holdfast import Result, Vise, design, load
+from holdfast.model.holes import holes_named
+from holdfast.model.load import Load
+from holdfast.model.quality import FIGURES
+from holdfast.model.restrictions import Restrictions, circle_zone
+from holdfast.verification import Verification, verify
+
+Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
+
+
+@pytest.fixture(scope="module")
+def limited() -> Result:
+    """The best fixtures of a search with everything that can be asked for."""
+    vise = Vise(pitch=8, columns=2, peg_radius=3, body_radius=3.5, blocked=[holes_named("R-B")])
+    asked = Restrictions(avoid=(3,), zones=(circle_zone(40.0, 30.0, 4.0),), angles=((-80.0, 60.0),))
+    return design(load("widget"), vise, restrictions=asked, loads=[Load(((10.0, 5.0),), 100.0)], best=10)
+
+
+def test_what_a_search_lists_keeps_what_was_asked(limited: Result) -> None:
+    """Nothing is refuted."""
+    outcome = verify(limited)
+    assert (outcome.proven, outcome.refuted, outcome.faults) == (len(limited), 0, ())
+
+
+@pytest.mark.parametrize(
+    ("restrictions", "words"),
+    [
+        (lambda r: Restrictions(avoid=(r[0].pegs[2].segment,)), "which is to be avoided"),
+        (lambda r: Restrictions(zones=(circle_zone(*r.workpiece.center, 500.0),)), "stands over a keep-out zone"),
+        (lambda r: Restrictions(angles=((r[0].pose.theta_deg + 0.01, r[0].pose.theta_deg + 1),)), "outside the angles"),
+    ],
+)
+def test_a_restriction_that_is_broken_refutes(limited: Result, restrictions: Any, words: str) -> None:
+    """The first fixture was found under other restrictions."""
+    outcome = verify(attrs.evolve(limited, restrictions=restrictions(limited)))
+    assert any(item.index == 0 and words in item.reason for item in outcome.unproven)
+
+
+def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
+    """A vise with a hole blocked that a peg stands in, and one with bodies as wide as the part."""
+    hole = limited[0].pegs[3].hole
+    outcome = verify(attrs.evolve(limited, vise=attrs.evolve(limited.vise, blocked=[holes_named(hole)])))
+    assert any(f"stands in {hole}, which is blocked" in item.reason for item in outcome.unproven)
+    outcome = verify(attrs.evolve(limited, vise=attrs.evolve(limited.vise, body_radius=200.0, blocked=[])))
+    assert any("overlap" in item.reason or "stands over" in item.reason for item in outcome.unproven)
+
+
+@pytest.mark.parametrize("number", range(len(FIGURES)))
+def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
+    """Each figure of quality is derived again."""
+    quality = limited.table.quality.copy()
+    quality[4, number] += 1e-4 * max(1.0, quality[4, number])
+    outcome = verify(attrs.evolve(limited, table=attrs.evolve(limited.table, quality=quality)))
+    assert [item.index for item in outcome.unproven] == [4]
+    assert FIGURES[number].words in outcome.unproven[0].reason
+
+
+def test_a_wrong_order_is_a_fault(limited: Result) -> None:
+    """The last before the first."""
+    outcome = verify(attrs.evolve(limited, table=limited.table.take(slice(None, None, -1))))
+    assert any("is better than the one before it" in fault for fault in outcome.faults)
