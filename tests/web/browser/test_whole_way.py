@@ -95,7 +95,12 @@ def test_a_search_can_be_cancelled(walk: Walk) -> None:
     page = walk.page
     walk.take("8Handle", None)
     vise = LONG["vise"]
-    for name, value in (("#peg-radius", vise["peg_radius"]), ("#columns", vise["columns"]), ("#pitch-x", 3), ("#pitch-y", 3)):
+    for name, value in (
+        ("#peg-radius", vise["peg_radius"]),
+        ("#columns", vise["columns"]),
+        ("#pitch-x", 3),
+        ("#pitch-y", 3),
+    ):
         page.fill(name, str(value))
     page.press("#pitch-y", "Tab")
     page.click("#search")

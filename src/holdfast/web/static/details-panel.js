@@ -32,7 +32,7 @@ function write() {
 
 /** The table of pegs. */
 function writePegs(row) {
-  byId("force-title").textContent = loaded ? "Force N" : "Force per N";
+  byId("force-title").textContent = loaded ? "Force N" : "Force";
   byId("force-title").title = loaded ? "Under the load" : "For each newton of jaw force";
   byId("pegs").replaceChildren(
     ...row.holes.map((hole, k) =>
@@ -45,7 +45,7 @@ function writePegs(row) {
   );
   byId("pose-words").textContent =
     `Jaw separation ${length(row.jaw_separation)}. Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
-    `${bareLength(row.x)}, ${length(row.y)} from hole L-A1.`;
+    `${bareLength(row.x)}, ${length(row.y)} from hole L-A1. ` + (loaded ? "" : "Forces are for each newton of jaw force.");
 }
 
 /** The figures of quality; beside those of the pinned fixture, the better one of each marked. */

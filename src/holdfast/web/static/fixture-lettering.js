@@ -175,9 +175,11 @@ function forceArrows({ row, view, contacts, load }) {
 function loadArrow({ view, load }) {
   const tail = view.page(load.at);
   const tip = view.page([load.at[0] + load.vector[0], load.at[1] + load.vector[1]]);
+  const long = Math.hypot(tip[0] - tail[0], tip[1] - tail[1]);
+  const [ux, uy] = long > 1 ? [(tip[0] - tail[0]) / long, (tip[1] - tail[1]) / long] : [0, -1];
   return [
     arrow(tail, tip, "load"),
     draw("circle.load-handle", { cx: tail[0], cy: tail[1], r: 6 }),
-    word(`${number(load.size, 0)} N`, [tip[0], tip[1] - 14], "load-text"),
+    word(`${number(load.size, 0)} N`, [tip[0] + 28 * ux, tip[1] + 14 * uy], "load-text"),
   ];
 }

@@ -153,16 +153,16 @@ function writeBars(row, { forces, needed, jaw, loose }) {
       fill.style.transform = `scaleX(${Math.abs(force) / most})`;
       return make(`div.bar${pulls ? ".pulls" : ""}`, {},
         make("b", {}, row.holes[k]), make("div.bar-track", { "aria-hidden": "true" }, fill),
-        make("span.number", {}, pulls ? `lets go` : `${number(force, 0)} N`));
+        make("span.number", {}, pulls ? "lets go" : `${number(force, 0)} N`));
     }),
   );
   const enough = jaw >= needed * (1 - 1e-9);
-  const told = state.force?.jaw === null && needed > 0 ? "that" : `a jaw force of ${number(jaw, 0)} N`;
+  const told = state.force?.jaw === null && needed > 0 ? "that jaw force" : `a jaw force of ${number(jaw, 0)} N`;
   byId("force-words").textContent = [
     needed === 0
       ? "No peg lets go, however little the jaw presses."
       : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
-    enough ? `The forces are those for ${told}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
+    enough ? `Forces are told for ${told}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
   ].join(" ");
 }
 
@@ -188,7 +188,7 @@ function askBest() {
 
 /** Links to the fixtures that resist best. */
 function writeBest(best) {
-  const links = best.slice(0, 5).map(({ rank, load_reaction: most }) =>
+  const links = best.slice(0, 4).map(({ rank, load_reaction: most }) =>
     make("button", { type: "button", click: () => selectRank(rank) }, `${rank}: ${number(most, 0)} N`),
   );
   byId("resist-words").replaceChildren("Resisted best, by the largest peg force: ", ...links.flatMap((link) => [link, " "]));

@@ -101,12 +101,12 @@ function showSelected() {
     return;
   }
   miss = null;
-  showTitle("");
+  // The title first: it takes room from the drawing.
+  showTitle(state.pinned ? `Shown: ${row.rank}` : "");
   fixtureDrawing.show(state.part, state.vise, row);
   const now = performance.now();
   if (now - shownAt > 700) fixtureDrawing.close();
   shownAt = now;
-  showPinButton();
 }
 
 /**
@@ -139,19 +139,14 @@ function showPinned() {
   const row = state.pinned;
   show(byId("board-pinned"), row !== null && state.view === "fixture");
   if (row) {
+    if (state.selected) showTitle(`Shown: ${state.selected.rank}`);
     byId("pinned-title").textContent = `Pinned: ${row.rank}`;
     pinnedDrawing.show(state.part, state.vise, row);
   } else {
     pinnedDrawing.clear();
     if (state.selected) showTitle("");
   }
-  showPinButton();
-}
-
-/** Whether two fixtures are compared. */
-function showPinButton() {
-  byId("pin").setAttribute("aria-pressed", String(state.pinned !== null));
-  if (state.pinned && state.selected) showTitle(`Shown: ${state.selected.rank}`);
+  byId("pin").setAttribute("aria-pressed", String(row !== null));
 }
 
 /** Keep the fixture shown beside the next ones, or leave the pinned one. */
