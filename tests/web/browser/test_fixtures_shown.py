@@ -87,6 +87,10 @@ def test_a_dragged_force_is_answered_as_the_server_answers_it(walk: Walk) -> Non
     link.click()
     walk.seen(f"#quality-heads:has-text('Fixture {best['rank']}')")
     assert walk.shown()["rank"] == best["rank"]
+    with page.expect_request(lambda request: request.url.endswith("/api/jobs")):
+        page.click("#rank-load")
+    walk.searched()
+    assert walk.shown()["quality"]["load_reaction"] == pytest.approx(best["load_reaction"])
 
 
 def test_two_fixtures_side_by_side(walk: Walk) -> None:

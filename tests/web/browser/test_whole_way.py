@@ -90,6 +90,20 @@ def test_new_settings_leave_nothing_of_the_old_search(walk: Walk) -> None:
     assert walk.server.client.get(f"/api/jobs/{old}").status_code == 404
 
 
+def test_a_search_that_the_server_forgot_is_done_again(walk: Walk) -> None:
+    """Who comes back late and scrolls on sees the same fixtures."""
+    walk.take()
+    walk.search()
+    old, count = walk.job(), walk.count()
+    walk.server.client.delete(f"/api/jobs/{old}")
+    with walk.page.expect_request(lambda request: request.url.endswith("/api/jobs")):
+        walk.page.select_option("#sort", "end_distance")
+    walk.searched()
+    assert walk.count() == count
+    assert walk.job() != old
+    walk.troubles = [line for line in walk.troubles if "404" not in line]
+
+
 def test_a_search_can_be_cancelled(walk: Walk) -> None:
     """While it runs there is a count and a button; after that the page says that it is not all."""
     page = walk.page

@@ -204,5 +204,5 @@ export function loadOf(force) {
 /** Search anew, ranked by how well this load is resisted. */
 function rankByLoad() {
   const { force } = state;
-  if (force) change({ loads: [loadOf(force)], ranking: ["load_reaction", "location_error"] });
+  if (force) change({ loads: [loadOf(force)], ranking: ["load_reaction"] });
 }

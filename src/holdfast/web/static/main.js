@@ -91,6 +91,8 @@ async function begin() {
   await offerVises(taken);
   const keepSoon = quiet(keep, 150);
   on(Object.keys(state), keepSoon);
+  // Another link in the same window; the page's own changes of the address are not told.
+  addEventListener("hashchange", () => location.reload());
   document.body.dataset.ready = "true";
 }
 

@@ -119,12 +119,13 @@ function openRows() {
   rows = null;
   const job = state.job?.job;
   if (job) {
-    rows = new Rows(job, state.list, () => {
+    const changed = () => {
       tellTotal(opened.total);
       list.update();
       firstRow(opened);
       tellMatches();
-    });
+    };
+    rows = new Rows(job, state.list, changed, start);
     const opened = rows;
     if (state.selected) change({ index: -1 });
   }
@@ -137,7 +138,7 @@ function openRows() {
 async function firstRow(from) {
   if (from !== rows) return;
   const first = from.at(0);
-  if (state.job?.state !== "done" && wanted) return;
+  if (searching() && wanted) return;
   if (wanted && first) {
     const { rank, pinned, view } = wanted;
     wanted = null;
@@ -151,7 +152,7 @@ async function firstRow(from) {
     return;
   }
   if (first && (!state.selected || (!chosenByUser && searchMoved(first)))) {
-    change({ selected: first, index: 0, ...(state.selected ? {} : { view: "fixture" }) });
+    change({ selected: first, index: 0, ...(state.selected || state.view === "draw" ? {} : { view: "fixture" }) });
   } else if (state.selected && state.index < 0 && first && state.selected.rank === first.rank) {
     change({ index: 0 });
   }

@@ -1,7 +1,7 @@
 /**
  * The fixtures of a search as the list shows them, fetched in pages as they come into sight.
  */
-import { ask } from "./api.js";
+import { ApiError, ask } from "./api.js";
 
 const PAGE = 200;
 const MOST_PAGES = 60;
@@ -12,11 +12,13 @@ export class Rows {
    * @param {string} job
    * @param {{sort: string, descending: boolean, type: string, face: string, angle: string}} list
    * @param {() => void} changed called when rows or their number are known
+   * @param {() => void} gone called when the server has forgotten the job
    */
-  constructor(job, list, changed) {
+  constructor(job, list, changed, gone) {
     this.job = job;
     this.list = list;
     this.changed = changed;
+    this.gone = gone;
     this.total = 0;
     /** The total is known. */
     this.known = false;
@@ -65,7 +67,10 @@ export class Rows {
         if (this.pages.size > MOST_PAGES) this.pages.delete(this.pages.keys().next().value);
         this.changed();
       })
-      .catch(() => {})
+      .catch((error) => {
+        if (!(error instanceof ApiError)) throw error;
+        if (error.status === 404 && !this.left) this.gone();
+      })
       .finally(() => this.asked.delete(page));
     this.asked.set(page, going);
     return going;

@@ -39,6 +39,7 @@ export function rulesPanel(drawing, showPart) {
   on(["zones", "unit"], writeZones);
   on(["angles", "contactMargin", "types", "unit"], write);
   on(["loads"], writeLoads);
+  on(["view"], () => state.view !== "part" && stopZone());
 }
 
 /** A button for each face; pressed means forbidden. */

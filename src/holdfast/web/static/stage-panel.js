@@ -92,12 +92,12 @@ export function showView() {
 let shownAt = 0;
 function showSelected() {
   const row = state.selected;
+  pegWords(null, null, null);
   show(byId("below"), row !== null && state.view === "fixture");
   byId("view-fixture").toggleAttribute("disabled", row === null && miss === null);
   for (const id of ["close-vise", "push", "pin"]) byId(id).toggleAttribute("disabled", row === null);
   if (!row) {
     if (!miss) fixtureDrawing.clear();
-    pegWords(null, null, null);
     return;
   }
   miss = null;
