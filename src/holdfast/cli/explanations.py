@@ -30,7 +30,7 @@ def explain_none(
     from holdfast.search.explaining import explain
 
     problem = Problem.of(result.workpiece, result.vise, result.contact_margin, result.restrictions)
-    explanation = explain(problem, types, threads)
+    explanation = explain(problem, types, threads, unit)
     print_explanation(explanation, unit, stream)
     if folder is not None and explanation.nearest is not None:
         draw_nearest_miss(explanation, result, folder, unit, stream)
