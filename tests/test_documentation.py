@@ -51,7 +51,7 @@ def test_modules_named_in_the_documentation_exist() -> None:
     """The map from the paper to the code names modules that exist."""
     text = (ROOT / "docs" / "index.md").read_text()
     package = ROOT / "src" / "holdfast"
-    layers = "geometry|model|contact|kernels|statics|listing|search|algebra|verification|files|drawing|cli"
+    layers = "geometry|model|contact|kernels|statics|listing|search|algebra|verification|files|drawing|web|cli"
     for name in set(re.findall(rf"`((?:{layers})\.[a-z_]+)", text)):
         path = package / Path(*name.split("."))
         assert path.with_suffix(".py").exists(), name

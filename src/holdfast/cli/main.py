@@ -23,6 +23,7 @@ from holdfast.cli.design_command import design
 from holdfast.cli.explore_command import explore
 from holdfast.cli.features_command import features
 from holdfast.cli.parts_command import parts
+from holdfast.cli.serve_command import serve
 from holdfast.cli.sheet_command import sheet
 from holdfast.cli.show_command import show
 from holdfast.cli.verify_command import verify
@@ -101,6 +102,7 @@ app.command(cls=PlainCommand)(features)
 app.command(cls=PlainCommand)(parts)
 app.command(cls=PlainCommand)(vises)
 app.command(cls=PlainCommand)(verify)
+app.command(cls=PlainCommand)(serve)
 
 
 def show_version(wanted: bool) -> None:

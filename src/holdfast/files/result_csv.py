@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import IO
@@ -11,7 +12,7 @@ from holdfast.files.result_file import fixture_rows, known_figures
 from holdfast.model.holes import column_letters
 from holdfast.model.result import Result
 
-__all__ = ["write_result_csv", "write_result_csv_to"]
+__all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
 POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y", "jaw_separation")
@@ -35,9 +36,15 @@ def write_result_csv(result: Result, path: str | Path) -> None:
 
 def write_result_csv_to(result: Result, stream: IO[str]) -> None:
     """Write the comma-separated values to an open text stream."""
+    for text in result_csv_text(result):
+        stream.write(text)
+
+
+def result_csv_text(result: Result) -> Iterator[str]:
+    """The comma-separated values, piece by piece."""
     figures = known_figures(result.table)
     pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
-    stream.write(",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n")
+    yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
     letters = cache(column_letters)
     number = 0
     for kinds, rows in fixture_rows(result.table, result.vise):
@@ -52,4 +59,4 @@ def write_result_csv_to(result: Result, stream: IO[str]) -> None:
                 hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"
                 fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
             lines.append(",".join(fields) + "\n")
-        stream.write("".join(lines))
+        yield "".join(lines)

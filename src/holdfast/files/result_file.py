@@ -26,7 +26,16 @@ from holdfast.model.quality import FIGURES, Figure
 from holdfast.model.result import FixtureTable, Result
 from holdfast.model.vise import Vise
 
-__all__ = ["FORMAT", "fixture_rows", "known_figures", "write_result", "write_result_to"]
+__all__ = [
+    "FORMAT",
+    "fixture_rows",
+    "known_figures",
+    "load_entry",
+    "proof_entry",
+    "result_text",
+    "write_result",
+    "write_result_to",
+]
 
 FORMAT = "holdfast-result/1"
 BLOCK = 4096
@@ -58,17 +67,23 @@ def write_result(result: Result, path: str | Path) -> None:
 
 def write_result_to(result: Result, stream: IO[str]) -> None:
     """Write a result to an open text stream."""
+    for text in result_text(result):
+        stream.write(text)
+
+
+def result_text(result: Result) -> Iterator[str]:
+    """The text of a result file, piece by piece."""
     lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
-    stream.write("{" + "".join(lines) + '"fixtures": [')
-    write_fixtures(result.table, result.vise, stream)
+    yield "{" + "".join(lines) + '"fixtures": ['
+    yield from fixture_lines(result.table, result.vise)
     if len(result.twins):
-        stream.write('\n],\n"twins": [')
-        write_fixtures(result.twins, result.vise, stream)
-    stream.write("\n]}\n")
+        yield '\n],\n"twins": ['
+        yield from fixture_lines(result.twins, result.vise)
+    yield "\n]}\n"
 
 
-def write_fixtures(table: FixtureTable, vise: Vise, stream: IO[str]) -> None:
-    """Write the lines of a list of fixtures, each after the line break that ends the one before."""
+def fixture_lines(table: FixtureTable, vise: Vise) -> Iterator[str]:
+    """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     figures = known_figures(table)
     templates = {
@@ -76,7 +91,7 @@ def write_fixtures(table: FixtureTable, vise: Vise, stream: IO[str]) -> None:
         2: fixture_template("II", ("left", "left", "left", "right"), figures),
     }
     for kind, numbers in fixture_rows(table, vise):
-        stream.write(separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)]))
+        yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from holdfast.errors import InputError
 from holdfast.files.vise_file import LoadedVise, described_vise, read_vise_file
 
-__all__ = ["LoadedVise", "load_vise", "preset_names"]
+__all__ = ["LoadedVise", "load_vise", "preset", "preset_names"]
 
 ENDING = ".toml"
 

@@ -20,7 +20,7 @@ from holdfast.listing.ranking import Preference, rank
 from holdfast.model.proof import Proof
 from holdfast.model.result import FixtureTable, Result
 
-__all__ = ["Work", "best_result", "listed_result"]
+__all__ = ["Work", "best_result", "listed_result", "result_of"]
 
 
 @frozen

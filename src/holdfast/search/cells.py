@@ -69,6 +69,7 @@ def run_blocks(
     progress: Progress | None,
     cancel: Event | None,
     receive: Callable[[Records], float] | None = None,
+    look: Callable[[Records], None] | None = None,
 ) -> tuple[list[Records], list[Block]]:
     """Do all blocks on some threads.
 
@@ -77,6 +78,7 @@ def run_blocks(
     receive : called from this thread with the records of each block, in the order of the blocks; they are then not kept. It
         returns the closure margin that further fixtures must reach, which is told to the block ``LAG`` places later: so what
         a block leaves out does not depend on how fast the others are.
+    look : called from this thread with the records of each block as it finishes, in any order.
 
     Returns
     -------
@@ -97,6 +99,8 @@ def run_blocks(
         done.append(blocks[index])
         if progress is not None:
             progress(min(done_cost / total, 1.0), found)
+        if look is not None:
+            look(records)
     rest = [results[index] for index in sorted(results)]
     if receive is not None:
         # Blocks that were done when others before them were cancelled.

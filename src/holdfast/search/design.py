@@ -23,6 +23,7 @@ from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 from holdfast.search.cells import run_blocks, thread_count
 from holdfast.search.contacts import contacts_of
+from holdfast.search.preview import Preview, Previews
 from holdfast.search.vise_search import LEAST_BLOCKS, ViseSearch
 
 __all__ = ["design"]
@@ -45,6 +46,7 @@ def design(
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
+    preview: Preview | None = None,
 ) -> Result:
     """Find every fixture of a workpiece in a vise.
 
@@ -62,6 +64,8 @@ def design(
     threads : how many threads share the work; None for one on each processor. The result does not depend on it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
+    preview : called from this thread now and then with some fixtures found so far, as a result marked incomplete; not in the
+        first 0.3 s.
 
     Returns
     -------
@@ -95,7 +99,8 @@ def design(
     kept = None if best is None else BestFixtures(problem, preference, best, cancel)
     workers = thread_count(threads)
     receive = None if kept is None else kept.add
-    records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive)
+    look = None if preview is None else Previews(problem, preference, preview).add
+    records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive, look)
     totals = search.totals
     work = Work(
         complete=len(done) == len(blocks),

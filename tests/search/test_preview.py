@@ -1,0 +1,56 @@
+"""Fixtures shown while a search runs are fixtures it finds, and showing them changes nothing."""
+
+from __future__ import annotations
+
+from io import StringIO
+from typing import Any
+
+import pytest
+
+from holdfast.files.load import load
+from holdfast.files.result_file import write_result_to
+from holdfast.model.result import Result
+from holdfast.model.vise import Vise
+from holdfast.search import preview
+from holdfast.search.design import design
+
+
+def identity(fixture: Any) -> tuple[Any, ...]:
+    """What tells fixtures apart."""
+    return (
+        tuple(peg.hole for peg in fixture.pegs),
+        tuple(peg.segment for peg in fixture.pegs),
+        round(fixture.pose.theta_deg, 6),
+    )
+
+
+def text(result: Result) -> str:
+    """The result file."""
+    stream = StringIO()
+    write_result_to(result, stream)
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize("best", [None, 20])
+def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best: int | None) -> None:
+    monkeypatch.setattr(preview, "PAUSE", 0.0)
+    monkeypatch.setattr(preview, "SHARE", 0.0)
+    widget, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+    shown: list[Result] = []
+    result = design(widget, vise, best=best, preview=shown.append, threads=1)
+    everything = {identity(fixture) for fixture in design(widget, vise)}
+    assert len(shown) > 3
+    before: set[Any] = set()
+    for some in shown:
+        now = {identity(fixture) for fixture in some}
+        assert before <= now <= everything and len(now) == len(some)
+        assert not some.complete and some.ranking == result.ranking
+        before = now
+    assert text(result) == text(design(widget, vise, best=best))
+
+
+def test_a_short_search_shows_nothing_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(preview, "PAUSE", 1000.0)
+    shown: list[Result] = []
+    design(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), preview=shown.append)
+    assert shown == []

@@ -1,0 +1,108 @@
+"""A server that runs while tests talk to it, and what they ask it for."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import httpx
+from attrs import define
+
+from holdfast.files.load import load
+from holdfast.web.guard import Hosts
+from holdfast.web.limits import Limits
+from holdfast.web.serve import Server, bound_socket, make_server
+from holdfast.web.state import ServerState
+
+PATIENCE = 60.0
+# Kernels may have to be compiled first.
+START_PATIENCE = 400.0
+
+WIDGET = {"name": "widget", "loops": [loop.tolist() for loop in load("widget").loops]}
+VISE = {"pitch": [8, 8], "columns": 1, "peg_radius": 3}
+SQUARE = [[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]
+# A search that takes longer than any test.
+LONG = {
+    "workpiece": {"name": "8Handle", "loops": [loop.tolist() for loop in load("8Handle").loops]},
+    "vise": {"pitch": [3, 3], "columns": 7, "peg_radius": 1.4},
+}
+
+
+def request(**changes: Any) -> dict[str, Any]:
+    """A search of the widget, with some values changed."""
+    return {"workpiece": WIDGET, "vise": VISE, **changes}
+
+
+@define
+class RunningServer:
+    """A server in a thread, a client of it, and its insides."""
+
+    server: Server
+    client: httpx.Client
+    address: tuple[str, int]
+
+    @property
+    def state(self) -> ServerState:
+        """What the routes share."""
+        return self.server.config.app.state.server  # type: ignore[union-attr]
+
+    def submit(self, asked: dict[str, Any], path: str = "/api/jobs") -> str:
+        """Begin a job; its address."""
+        answer = self.client.post(path, json=asked)
+        assert answer.status_code == 202, answer.text
+        url: str = answer.json()["url"]
+        return url
+
+    def state_when(self, url: str, holds: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        """The state of a job as soon as something holds of it."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            state: dict[str, Any] = self.client.get(url).json()
+            if holds(state):
+                return state
+            time.sleep(0.02)
+        raise AssertionError(f"waited in vain: {state}")
+
+    def outcome(self, url: str) -> dict[str, Any]:
+        """The state of a job once it is over."""
+        return self.state_when(url, lambda state: state["state"] in ("done", "failed", "cancelled"))
+
+    def done(self, asked: dict[str, Any], path: str = "/api/jobs") -> str:
+        """The address of a job that is done."""
+        url = self.submit(asked, path)
+        state = self.outcome(url)
+        assert state["state"] == "done", state
+        return url
+
+    def wait_until(self, holds: Callable[[], object], patience: float = PATIENCE) -> None:
+        """Wait until something holds of the server's insides."""
+        end = time.monotonic() + patience
+        while not holds():
+            assert time.monotonic() < end, "waited in vain"
+            time.sleep(0.02)
+
+
+@contextmanager
+def running_server(**limits: Any) -> Iterator[RunningServer]:
+    """A server with one worker of each kind, ready for requests."""
+    listening = threading.Event()
+    socket = bound_socket("127.0.0.1", 0)
+    server = make_server(Limits(**{"searches": 1, "desks": 1, **limits}), Hosts(), listening.set)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
+    thread.start()
+    try:
+        assert listening.wait(PATIENCE)
+        host, port = socket.getsockname()
+        with httpx.Client(base_url=f"http://{host}:{port}", timeout=PATIENCE) as client:
+            running = RunningServer(server, client, (host, port))
+            state = running.state
+            running.wait_until(lambda: state.searchers.ready.is_set() and state.desks.ready.is_set(), START_PATIENCE)
+            yield running
+    finally:
+        server.should_exit = True
+        thread.join(PATIENCE)
+        socket.close()
+    assert not thread.is_alive()

@@ -1,0 +1,344 @@
+"""Searches over HTTP give what the program gives."""
+
+from __future__ import annotations
+
+import json
+from io import StringIO
+from math import cos, isclose, radians, sin
+from typing import Any
+
+import httpx
+import pytest
+from running_server import LONG, SQUARE, VISE, WIDGET, RunningServer, request
+from test_parts import refused
+
+from holdfast.files.load import load
+from holdfast.files.result_csv import write_result_csv_to
+from holdfast.files.result_file import write_result_to
+from holdfast.model.load import Load
+from holdfast.model.quality import FIGURES
+from holdfast.model.result import Result
+from holdfast.model.tolerance import Tolerance
+from holdfast.model.vise import Vise
+from holdfast.search.design import design
+from holdfast.statics.loads import load_cases
+
+LOAD = {"points": [[10, 5]], "force": 200, "directions": [-30, 30]}
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    """What the program finds for the usual request."""
+    return design(load("widget"), Vise(**VISE))
+
+
+@pytest.fixture(scope="module")
+def job(server: RunningServer) -> str:
+    """The address of the usual job, done."""
+    return server.done(request())
+
+
+def rows(server: RunningServer, job: str, **query: Any) -> list[dict[str, Any]]:
+    """A page of fixtures."""
+    answer = server.client.get(f"{job}/fixtures", params={"limit": 1000, **query})
+    assert answer.status_code == 200, answer.text
+    return list(answer.json()["rows"])
+
+
+def events(server: RunningServer, job: str) -> list[dict[str, Any]]:
+    """All events of a job until it is over."""
+    out = []
+    with server.client.stream("GET", f"{job}/events") as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        for line in stream.iter_lines():
+            if line.startswith("data: "):
+                out.append(json.loads(line.removeprefix("data: ")))
+    return out
+
+
+def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, result: Result) -> None:
+    state = server.client.get(job).json()
+    assert state["counts"] == result.counts and state["found"] == len(result)
+    assert state["complete"] and state["fraction"] == 1.0 and state["error"] is None
+    assert state["proof"]["verified"] == result.proof.verified  # type: ignore[union-attr]
+    assert state["request"]["vise"]["pitch"] == [8, 8]
+    listed = rows(server, job)
+    assert [row["rank"] for row in listed] == list(range(1, len(result) + 1))
+    for row, fixture in zip(listed, result, strict=True):
+        assert row["holes"] == [peg.hole for peg in fixture.pegs]
+        assert row["faces"] == [peg.segment for peg in fixture.pegs]
+        assert row["theta_deg"] == pytest.approx(fixture.pose.theta_deg, abs=1e-9)
+        assert row["quality"] == pytest.approx(dict(fixture.quality))
+
+
+def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: str, result: Result) -> None:
+    for ending, write in (("json", write_result_to), ("csv", write_result_csv_to)):
+        answer = server.client.get(f"{job}/result.{ending}")
+        stream = StringIO()
+        write(result, stream)
+        assert answer.text == stream.getvalue()
+        assert answer.headers["content-disposition"] == f'attachment; filename="widget.{ending}"'
+
+
+def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
+    whole = rows(server, job)
+    pages = [row for offset in range(0, len(whole) + 50, 50) for row in rows(server, job, offset=offset, limit=50)]
+    assert pages == whole
+
+
+@pytest.mark.parametrize("key", [figure.key for figure in FIGURES[:-1]])
+@pytest.mark.parametrize("descending", [False, True])
+def test_lists_are_sorted_by_any_figure(server: RunningServer, job: str, key: str, descending: bool) -> None:
+    listed = rows(server, job, sort=key, descending=descending)
+    values = [row["quality"][key] for row in listed]
+    assert values == sorted(values, reverse=descending)
+    assert sorted(row["rank"] for row in listed) == list(range(1, len(listed) + 1))
+
+
+def test_filters_keep_exactly_what_they_say(server: RunningServer, job: str) -> None:
+    whole = rows(server, job)
+    assert rows(server, job, type="II") == [row for row in whole if row["type"] == "II"]
+    assert rows(server, job, face=9) == [row for row in whole if 9 in row["faces"]]
+    turned = rows(server, job, angle="-20..45")
+    assert turned == [row for row in whole if row["theta_deg"] >= 340 or row["theta_deg"] <= 45] != []
+    some = server.client.get(f"{job}/fixtures", params={"type": "I", "face": 9, "limit": 3}).json()
+    assert len(some["rows"]) == 3 and some["total"] == sum(row["type"] == "I" and 9 in row["faces"] for row in whole)
+
+
+@pytest.mark.parametrize(
+    "query",
+    ["limit=0", "limit=5000", "offset=-1", "sort=beauty", "type=III", "angle=10", "angle=5..1", "angle=a..b", "face=x"],
+)
+def test_queries_that_mean_nothing_are_refused(server: RunningServer, job: str, query: str) -> None:
+    refused(server.client.get(f"{job}/fixtures?{query}"))
+
+
+def test_contacts_are_a_peg_radius_away_and_forces_balance(server: RunningServer, job: str) -> None:
+    for rank in (1, 100, 505):
+        fixture = server.client.get(f"{job}/fixtures/{rank}").json()
+        total = [0.0, 0.0]
+        for k in range(4):
+            (nx, ny), (x, y), (cx, cy) = fixture["normals"][k], fixture["pegs"][k], fixture["contacts"][k]
+            assert isclose(nx * nx + ny * ny, 1.0)
+            assert (x - cx, y - cy) == pytest.approx((3 * nx, 3 * ny), abs=1e-9)
+            total = [total[0] + fixture["forces"][k] * nx, total[1] + fixture["forces"][k] * ny]
+        assert total == pytest.approx([0, 0], abs=1e-6)
+        assert fixture["right_jaw"] == [hole.startswith("R") for hole in fixture["holes"]]
+        # The contact lies on the part: back in its coordinates it is on the face's line or circle.
+        c, s = cos(radians(fixture["theta_deg"])), sin(radians(fixture["theta_deg"]))
+        part = server.client.get("/api/parts/widget").json()
+        for (cx, cy), face in zip(fixture["contacts"], fixture["faces"], strict=True):
+            dx, dy = cx - fixture["x"], cy - fixture["y"]
+            qx, qy = c * dx + s * dy, c * dy - s * dx
+            segment = next(item for item in part["segments"] if item["number"] == face)
+            if segment["radius"] is not None:
+                off = (qx - segment["center"][0]) ** 2 + (qy - segment["center"][1]) ** 2
+                assert off == pytest.approx(segment["radius"] ** 2, abs=1e-6)
+            else:
+                (ax, ay), (bx, by) = segment["start"], segment["end"]
+                assert (bx - ax) * (qy - ay) - (by - ay) * (qx - ax) == pytest.approx(0, abs=1e-6)
+
+
+def test_there_is_no_fixture_beyond_the_last(server: RunningServer, job: str) -> None:
+    refused(server.client.get(f"{job}/fixtures/506"), 404)
+    refused(server.client.get(f"{job}/fixtures/0"))
+    refused(server.client.get(f"{job}/fixtures/506/sheet.pdf"), 404)
+    refused(server.client.get(f"{job}/fixtures/1?revision=99"), 409)
+
+
+def test_loads_are_answered_as_by_the_program(server: RunningServer, job: str, result: Result) -> None:
+    body = {"loads": [LOAD], "jaw_force": 1000, "friction": 0.1}
+    answer = server.client.post(f"{job}/fixtures/7/loads", json=body).json()
+    load_asked = Load(points=[(10, 5)], force=200, directions=(-30, 30))
+    (case,) = load_cases(result[6], result.workpiece, result.vise, [load_asked], 1000, 0.1)
+    (told,) = answer["cases"]
+    assert told["smallest"] == pytest.approx(list(case.smallest)) and told["largest"] == pytest.approx(
+        list(case.largest)
+    )
+    assert told["needed"]["value"] == pytest.approx(case.needed.value) and told["needed"]["peg"] == case.needed.peg
+    assert told["needed_with_friction"] == pytest.approx(case.needed_with_friction)
+
+
+def test_those_that_resist_best_are_first_of_a_search_ranked_by_the_reaction(server: RunningServer, job: str) -> None:
+    best = server.client.post(f"{job}/resist", json={"loads": [LOAD]}).json()["best"]
+    ranked = server.done(request(loads=[LOAD], ranking=["load_reaction"]))
+    expected = [row["quality"]["load_reaction"] for row in rows(server, ranked, limit=10)]
+    assert [row["load_reaction"] for row in best] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"loads": []},
+        {"loads": [{"force": 5}]},
+        {"loads": [{"force": -5, "points": [[0, 0]]}]},
+        {"loads": [LOAD], "jaw_force": -1},
+        {"loads": [LOAD], "friction": "much"},
+        {"loads": [{**LOAD, "directions": [0, 900]}]},
+    ],
+)
+def test_loads_that_are_none_are_refused(server: RunningServer, job: str, body: dict[str, Any]) -> None:
+    refused(server.client.post(f"{job}/fixtures/1/loads", json=body))
+    if "jaw_force" not in body:
+        refused(server.client.post(f"{job}/resist", json=body))
+
+
+@pytest.mark.parametrize(
+    ("kind", "start", "content_type"),
+    [
+        ("sheet.pdf?unit=inch&paper=letter&date=2026-03-31&jaw_force=500", b"%PDF", "application/pdf"),
+        ("sheet.svg?date=2026-03-31", b"<svg", "image/svg+xml"),
+        ("setup.dxf", b"  0\nSECTION", "image/vnd.dxf"),
+        ("picture.svg", b"<svg", "image/svg+xml"),
+    ],
+)
+def test_papers_are_made_and_the_same_each_time(
+    server: RunningServer, job: str, kind: str, start: bytes, content_type: str
+) -> None:
+    answer = server.client.get(f"{job}/fixtures/2/{kind}")
+    assert answer.status_code == 200, answer.text
+    assert start in answer.content[:200] and answer.headers["content-type"].startswith(content_type)
+    assert server.client.get(f"{job}/fixtures/2/{kind}").content == answer.content
+
+
+@pytest.mark.parametrize("query", ["sheet.pdf?paper=a3", "sheet.pdf?unit=foot", "sheet.pdf?date=today", "sheet.exe"])
+def test_papers_that_there_are_not_are_refused(server: RunningServer, job: str, query: str) -> None:
+    refused(server.client.get(f"{job}/fixtures/1/{query}"))
+
+
+def test_events_end_with_the_job_and_tell_its_state(server: RunningServer) -> None:
+    url = server.submit(request(contact_margin=0.5))
+    told = events(server, url)
+    assert told[-1]["state"] == "done"
+    final = server.client.get(url).json()
+    final.pop("request")
+    assert told[-1] == final
+    assert [event["revision"] for event in told] == sorted(event["revision"] for event in told)
+
+
+def test_restrictions_ranking_and_tolerance_are_heeded(server: RunningServer) -> None:
+    zone = [[-60, -60, 0], [0, -60, 0], [0, -10, 0], [-60, -10, 0]]
+    asked = request(
+        restrictions={"avoid": [9], "zones": [zone], "angles": [[0, 180]]},
+        ranking=["wrench_radius"],
+        tolerance={"peg": 0.02, "face": 0},
+        types=["I"],
+    )
+    url = server.done(asked)
+    listed = rows(server, url)
+    assert listed
+    values = [row["quality"]["wrench_radius"] for row in listed]
+    assert values == sorted(values, reverse=True)
+    for row in listed:
+        assert row["type"] == "I" and 9 not in row["faces"] and row["theta_deg"] <= 180 + 1e-6
+    assert server.state.jobs.by_name[url.rpartition("/")[2]].asked[0].tolerance == Tolerance(0.02, 0.0)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"vise": {**VISE, "pitch": [8]}},
+        {"vise": {**VISE, "pitch": [8, -8]}},
+        {"vise": {**VISE, "columns": 0}},
+        {"vise": {**VISE, "columns": 1.5}},
+        {"vise": {**VISE, "peg_radius": 5}},
+        {"vise": {**VISE, "blocked": ["hole 3"]}},
+        {"vise": {**VISE, "colour": "red"}},
+        {"vise": None},
+        {"workpiece": {"name": "x", "loops": []}},
+        {"types": ["III"]},
+        {"types": []},
+        {"contact_margin": -1},
+        {"restrictions": {"avoid": [999]}},
+        {"restrictions": {"avoid": list(range(16))}},
+        {"restrictions": {"zones": [[[0, 0, 0], [1, 1, 0]]]}},
+        {"restrictions": {"angles": [[10, 0]]}},
+        {"ranking": ["beauty"]},
+        {"ranking": ["load_reaction"]},
+        {"loads": [{"force": 1}]},
+        {"tolerance": {"peg": -1, "face": 0}},
+        {"unknown": 1},
+    ],
+)
+def test_searches_that_cannot_be_are_refused_before_they_begin(server: RunningServer, change: dict[str, Any]) -> None:
+    before = len(server.state.jobs.by_name)
+    refused(server.client.post("/api/jobs", json=request(**change)))
+    assert len(server.state.jobs.by_name) == before
+
+
+def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
+    url = server.done(
+        {"workpiece": {"name": "s", "loops": [SQUARE]}, "vise": {"pitch": [50, 50], "columns": 1, "peg_radius": 3}}
+    )
+    state = server.client.get(url).json()
+    assert state["found"] == 0 and state["notes"]
+    explanation = server.client.get(f"{url}/explanation").json()
+    assert set(explanation) >= {"contacts", "removals", "nearest", "helps"}
+    assert explanation == server.client.get(f"{url}/explanation").json()
+    refused(server.client.get(f"{job}/explanation"), 409)
+
+
+def test_vises_are_compared(server: RunningServer) -> None:
+    vises = [{**VISE, "title": "one"}, {**VISE, "pitch": [12, 12], "title": "two"}, {**VISE, "pitch": [500, 500]}]
+    url = server.done({"workpiece": WIDGET, "vises": vises}, "/api/explore")
+    state = server.client.get(url).json()
+    assert [row["title"] for row in state["table"]] == ["one", "two", ""]
+    assert state["table"][0]["counts"] == {"I": 459, "II": 46}
+    listed = rows(server, server.done(request()))
+    assert state["table"][0]["best"]["closure_margin"] == max(row["quality"]["closure_margin"] for row in listed)
+    assert state["table"][0]["best"]["location_error"] == min(row["quality"]["location_error"] for row in listed)
+    assert state["table"][2]["counts"] == {"I": 0, "II": 0} and state["table"][2]["note"]
+    refused(server.client.get(f"{url}/result.json"), 409)
+    refused(server.client.get(f"{url}/fixtures/1"), 409)
+
+
+def test_fixtures_show_while_the_search_runs_and_stay_when_it_is_cancelled(server: RunningServer) -> None:
+    url = server.submit(LONG)
+    running = server.state_when(url, lambda state: state["revision"] > 0)
+    assert running["state"] == "running" and not running["complete"] and running["counts"] is None
+    assert rows(server, url, limit=5)
+    assert server.client.get(f"{url}/fixtures/1").status_code == 200
+    assert server.client.get(f"{url}/fixtures/1/picture.svg").status_code == 200
+    refused(server.client.get(f"{url}/result.json"), 409)
+    refused(server.client.get(f"{url}/fixtures/1/sheet.pdf"), 409)
+    assert server.client.post(f"{url}/cancel").status_code == 202
+    stopped = server.outcome(url)
+    assert stopped["state"] == "cancelled" and not stopped["complete"]
+    assert rows(server, url, limit=5)
+
+
+def test_a_deleted_job_is_gone_and_its_worker_free(server: RunningServer) -> None:
+    url = server.submit(LONG)
+    server.state_when(url, lambda state: state["state"] == "running")
+    waiting = server.submit(request())
+    assert server.client.get(waiting).json()["state"] == "queued"
+    assert server.client.delete(url).status_code == 204
+    assert server.client.delete(url).status_code == 204
+    for path in ("", "/events", "/fixtures", "/fixtures/1", "/result.json", "/explanation", "/fixtures/1/sheet.pdf"):
+        refused(server.client.get(url + path), 404)
+    assert server.outcome(waiting)["state"] == "done"
+
+
+def test_one_that_waits_can_be_deleted(server: RunningServer) -> None:
+    first, second = server.submit(LONG), server.submit(LONG)
+    server.client.delete(second)
+    server.client.delete(first)
+    assert not server.state.searchers.waiting
+    assert server.outcome(server.submit(request()))["state"] == "done"
+
+
+def test_names_of_jobs_are_long_and_never_the_same(server: RunningServer) -> None:
+    names = {server.submit(request()).rpartition("/")[2] for _ in range(5)}
+    assert len(names) == 5 and all(len(name) >= 22 for name in names)
+    for path in ("/api/jobs", "/api/jobs/"):
+        refused(server.client.get(path), 405 if path == "/api/jobs" else 404)
+
+
+def test_a_stream_of_events_that_is_left_does_not_stay(server: RunningServer) -> None:
+    url = server.submit(LONG)
+    with httpx.Client(base_url=server.client.base_url) as other, other.stream("GET", f"{url}/events") as stream:
+        lines = stream.iter_lines()
+        next(lines)
+        assert server.state.streams == 1
+    server.wait_until(lambda: server.state.streams == 0)
+    server.client.delete(url)

@@ -1,0 +1,138 @@
+"""What the server does not give, and that others do not suffer for it."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Iterator
+
+import pytest
+from running_server import LONG, SQUARE, RunningServer, request, running_server
+from test_parts import refused
+
+LIMITED = {
+    "upload_bytes": 2_000,
+    "request_bytes": 20_000,
+    "body_seconds": 1.0,
+    "uploads": 1,
+    "segments": 20,
+    "waiting": 2,
+    "jobs": 3,
+    "seconds": 1.5,
+    "fixtures": 100,
+    "kept_jobs": 20,
+    "kept_bytes": 60_000,
+    "streams": 1,
+}
+
+
+@pytest.fixture(scope="module")
+def small() -> Iterator[RunningServer]:
+    """A server that gives little."""
+    with running_server(**LIMITED) as running:
+        yield running
+
+
+@pytest.fixture(autouse=True)
+def tidy(small: RunningServer) -> Iterator[None]:
+    """Leave no job behind."""
+    yield
+    for name in list(small.state.jobs.by_name):
+        small.client.delete(f"/api/jobs/{name}")
+    small.wait_until(lambda: not small.state.searchers.busy)
+
+
+def test_large_files_and_requests_are_refused(small: RunningServer) -> None:
+    refused(small.client.post("/api/parts", content=bytes(2_001)), 413)
+    refused(small.client.post("/api/jobs", content=bytes(20_001)), 413)
+
+
+def test_parts_of_many_segments_are_refused(small: RunningServer) -> None:
+    many = [[k, 0, 0] for k in range(20)] + [[10, 10, 0]]
+    assert "21 segments" in refused(small.client.post("/api/parts/check", json={"name": "m", "loops": [many]}))
+    refused(small.client.post("/api/jobs", json=request(workpiece={"name": "m", "loops": [many]})))
+
+
+def test_a_slow_client_is_let_go_and_others_are_answered(small: RunningServer) -> None:
+    with socket.create_connection(small.address, timeout=20) as slow:
+        slow.sendall(b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000\r\n\r\n<svg")
+        small.wait_until(lambda: arriving(small) == 1)
+        # The only place for a file is taken; everything else goes on.
+        answer = small.client.post("/api/parts", content=b"x")
+        refused(answer, 503)
+        assert answer.headers["retry-after"]
+        assert small.client.get("/api/about").status_code == 200
+        assert b" 408 " in slow.recv(400)
+    small.wait_until(lambda: arriving(small) == 0)
+
+
+def arriving(server: RunningServer) -> int:
+    """How many files are arriving."""
+    app = server.server.config.app.middleware_stack  # type: ignore[union-attr]
+    while not hasattr(app, "arriving"):
+        app = app.app
+    return int(app.arriving)
+
+
+def test_too_many_searches_of_one_address_are_refused(small: RunningServer) -> None:
+    for _ in range(3):
+        small.submit(LONG)
+    answer = small.client.post("/api/jobs", json=request())
+    refused(answer, 429)
+    assert answer.headers["retry-after"]
+
+
+def test_a_search_that_takes_too_long_shows_what_it_found(small: RunningServer) -> None:
+    state = small.outcome(small.submit(LONG))
+    assert state["state"] == "done" and not state["complete"]
+    assert any("1.5 s" in note for note in state["notes"])
+    assert state["listed"] == 100 < state["found"]
+
+
+def test_only_the_best_fixtures_are_kept_and_it_is_said(small: RunningServer) -> None:
+    url = small.done(request())
+    state = small.client.get(url).json()
+    assert state["complete"] and state["found"] == 505 and state["listed"] == 100
+    assert any("505" in note and "100" in note for note in state["notes"])
+    assert small.client.get(f"{url}/fixtures").json()["total"] == 100
+
+
+def test_the_longest_unused_go_when_too_much_is_kept(small: RunningServer) -> None:
+    urls = [small.done(request()) for _ in range(3)]
+    size = small.state.jobs.by_name[urls[-1].rpartition("/")[2]].size
+    assert size <= LIMITED["kept_bytes"] < 4 * size
+    small.client.get(urls[0])
+    urls += [small.done(request()) for _ in range(LIMITED["kept_bytes"] // size - 2)]
+    assert [small.client.get(url).status_code for url in urls] == [200, 404, *[200] * (len(urls) - 2)]
+
+
+def test_one_stream_too_many_is_refused(small: RunningServer) -> None:
+    url = small.submit(LONG)
+    with small.client.stream("GET", f"{url}/events") as stream:
+        lines = stream.iter_lines()
+        next(lines)
+        refused(small.client.get(f"{url}/events"), 503)
+
+
+@pytest.fixture(scope="module")
+def strict() -> Iterator[RunningServer]:
+    """A server of little memory that forgets soon."""
+    with running_server(memory_bytes=1 << 30, life_seconds=1.0) as running:
+        yield running
+
+
+def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: RunningServer) -> None:
+    huge = {"pitch": [0.0001, 0.0001], "columns": 200, "peg_radius": 0.00001}
+    state = strict.outcome(strict.submit(request(vise=huge, workpiece={"name": "s", "loops": [SQUARE]})))
+    assert state["state"] == "failed" and "memory" in state["error"]
+    assert strict.outcome(strict.submit(request()))["state"] == "done"
+
+
+def test_nothing_is_kept_after_the_life_of_a_search(strict: RunningServer) -> None:
+    url = strict.done(request())
+    time.sleep(0.6)
+    assert strict.client.get(url).status_code == 200
+    time.sleep(0.6)
+    assert strict.client.get(url).status_code == 200
+    strict.wait_until(lambda: not strict.state.jobs.by_name)
+    refused(strict.client.get(url), 404)

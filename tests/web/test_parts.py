@@ -1,0 +1,172 @@
+"""Parts, vises and figures over HTTP."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running_server import SQUARE, WIDGET, RunningServer
+
+from holdfast.files.load import builtin_parts, read_workpiece
+from holdfast.files.vise_presets import load_vise, preset_names
+from holdfast.model.quality import FIGURES
+from holdfast.model.vise import Vise
+
+BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
+
+
+def refused(answer: Any, status: int = 400) -> str:
+    """The sentence of a refusal, which must be one."""
+    assert answer.status_code == status, answer.text
+    body = answer.json()
+    assert set(body) == {"error", "place"}
+    assert body["error"].endswith(".") and "\n" not in body["error"] and "Traceback" not in body["error"]
+    return str(body["error"])
+
+
+def upload(server: RunningServer, content: bytes, name: str, **query: str) -> Any:
+    """The answer to a file."""
+    return server.client.post("/api/parts", content=content, headers={"X-Filename": name}, params=query)
+
+
+def test_about_tells_the_limits_in_force(server: RunningServer) -> None:
+    about = server.client.get("/api/about").json()
+    limits = server.state.limits
+    assert about["limits"]["upload_bytes"] == limits.upload_bytes
+    assert about["limits"]["fixtures"] == limits.fixtures
+    assert isinstance(about["step"], bool)
+
+
+def test_every_builtin_part_is_listed_and_read(server: RunningServer) -> None:
+    listed = server.client.get("/api/parts").json()
+    assert [part["name"] for part in listed] == [part.name for part in builtin_parts()]
+    for part in listed:
+        answer = server.client.get(f"/api/parts/{part['name']}").json()
+        workpiece = read_workpiece(part["name"]).workpiece
+        assert answer["loops"] == [loop.tolist() for loop in workpiece.loops]
+        assert answer["bounds"] == list(workpiece.bounds)
+        assert [face["number"] for face in answer["faces"]] == [face.number for face in workpiece.faces]
+
+
+@pytest.mark.parametrize("name", ["nothing", "..%2F..%2Fetc%2Fpasswd", "%2Fetc%2Fpasswd", "widget.json", "con%00"])
+def test_only_builtin_names_are_parts(server: RunningServer, name: str) -> None:
+    refused(server.client.get(f"/api/parts/{name}"), 404)
+
+
+def test_segments_join_and_belong_to_faces(server: RunningServer) -> None:
+    part = server.client.get("/api/parts/widget").json()
+    for loop in range(len(part["loops"])):
+        run = [segment for segment in part["segments"] if segment["loop"] == loop]
+        for one, other in zip(run, run[1:] + run[:1], strict=True):
+            assert one["end"] == pytest.approx(other["start"], abs=1e-9)
+    faces = {face["number"]: face for face in part["faces"]}
+    for segment in part["segments"]:
+        face = faces[segment["face"]]
+        assert (face["kind"] == "arc") == (segment["radius"] is not None)
+
+
+def test_a_drawing_becomes_the_part_the_program_reads(server: RunningServer) -> None:
+    answer = upload(server, BRACKET.read_bytes(), "my%20br%C3%A4cket.dxf").json()
+    workpiece = read_workpiece(BRACKET).workpiece
+    assert answer["loops"] == [loop.tolist() for loop in workpiece.loops]
+    assert answer["name"] == "my bräcket"
+    # The answer can be sent back as it is.
+    again = server.client.post("/api/parts/check", json={"name": answer["name"], "loops": answer["loops"]})
+    assert again.json()["segments"] == answer["segments"]
+
+
+def test_units_and_parts_of_a_drawing_can_be_chosen(server: RunningServer) -> None:
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H20V10H0Z"/><path d="M50 0H60V5H50Z"/></svg>'
+    wide = upload(server, svg, "two.svg", unit="inch").json()
+    assert wide["bounds"][2] - wide["bounds"][0] == pytest.approx(20 * 25.4)
+    small = upload(server, svg, "two.svg", unit="mm", part="2").json()
+    assert small["bounds"][2] - small["bounds"][0] == pytest.approx(10)
+    assert any("2 separate parts" in remark for remark in small["remarks"])
+    refused(upload(server, svg, "two.svg", unit="mm", part="3"))
+    refused(upload(server, svg, "two.svg", unit="furlong"))
+    refused(upload(server, svg, "two.svg", unit="mm", part="0"))
+
+
+@pytest.mark.parametrize(
+    "name", ["../../../etc/passwd", "..%2f..%2fx.json", "C%3A%5Cx.json", "", "%00.json", "a" * 500]
+)
+def test_a_files_name_is_never_a_path(server: RunningServer, name: str) -> None:
+    content = json.dumps({"units": "mm", "loops": [SQUARE]}).encode()
+    answer = upload(server, content, name)
+    assert answer.status_code == 200, answer.text
+    assert "/" not in answer.json()["name"] and "\\" not in answer.json()["name"]
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        (b"", "empty.dxf"),
+        (b"PK\x03\x04" + bytes(200), "zipped.dxf"),
+        (b"\x1f\x8b" + bytes(200), "zipped.svg"),
+        (b"hello", "note.txt"),
+        (b"{" * 100_000, "deep.json"),
+        (b"<svg xmlns='http://www.w3.org/2000/svg'/>", "none.svg"),
+        (b"ISO-10303-21;garbage", "part.step"),
+        (b"\xff\xfe\x00" * 50, "part.json"),
+        (json.dumps({"units": "mm", "loops": [[[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]]}).encode(), "bow.json"),
+    ],
+)
+def test_what_is_no_part_is_refused_in_a_sentence(server: RunningServer, content: bytes, name: str) -> None:
+    sentence = refused(upload(server, content, name))
+    assert "/tmp" not in sentence and "part.json:" not in sentence
+
+
+def test_entities_of_xml_do_not_grow(server: RunningServer) -> None:
+    levels = "".join(f'<!ENTITY a{k + 1} "{f"&a{k};" * 10}">' for k in range(12))
+    bomb = f'<!DOCTYPE svg [<!ENTITY a0 "ha">{levels}]><svg xmlns="http://www.w3.org/2000/svg"><text>&a12;</text></svg>'
+    refused(upload(server, bomb.encode(), "bomb.svg", unit="mm"))
+
+
+def test_an_outline_that_crosses_itself_is_refused_with_the_place(server: RunningServer) -> None:
+    bow = [[0, 0, 0], [20, 20, 0], [20, 0, 0], [0, 20, 0]]
+    answer = server.client.post("/api/parts/check", json={"name": "bow", "loops": [bow]})
+    refused(answer)
+    assert answer.json()["place"] == {"x": 10.0, "y": 10.0}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"loops": []},
+        {"loops": [[]]},
+        {"loops": [[[0, 0]]]},
+        {"loops": [[[0, 0, "0"]]]},
+        {"loops": [[[1e300, 0, 0], [0, 1e300, 0], [0, 0, 0]]]},
+        {"loops": "round"},
+        {"name": 5},
+        {"more": 1},
+    ],
+)
+def test_wrong_shapes_are_refused(server: RunningServer, change: dict[str, Any]) -> None:
+    refused(server.client.post("/api/parts/check", json={**WIDGET, **change}))
+
+
+@pytest.mark.parametrize("body", [b"", b"{", b"[1e999]", b"null", b"\xff"])
+def test_what_is_no_json_is_refused(server: RunningServer, body: bytes) -> None:
+    headers = {"content-type": "application/json"}
+    refused(server.client.post("/api/parts/check", content=body, headers=headers))
+
+
+def test_vises_are_the_presets_and_can_be_asked_for(server: RunningServer) -> None:
+    vises = server.client.get("/api/vises").json()
+    assert [vise["name"] for vise in vises] == list(preset_names())
+    for vise in vises:
+        assert Vise(**vise["fields"]) == load_vise(vise["name"]).vise
+
+
+def test_figures_are_all_told(server: RunningServer) -> None:
+    figures = server.client.get("/api/figures").json()
+    assert [figure["key"] for figure in figures] == [figure.key for figure in FIGURES]
+
+
+def test_there_is_nothing_elsewhere(server: RunningServer) -> None:
+    for path in ("/static/../limits.py", "/static/%2e%2e/limits.py", "/static/", "/api/none", "/docs", "/etc/passwd"):
+        refused(server.client.get(path), 404)
+    refused(server.client.put("/api/parts"), 405)
