@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from reading_helpers import new_dxf, rectangle
+from svg_reading import texts
 
 from fakes import fake_result
 from holdfast.cli.tables import fixture_tables, result_table
@@ -78,6 +79,29 @@ def test_show_in_inches(run: Any, tmp_path: Path) -> None:
     assert "mm" not in outcome.stdout
     refused = run("show", tmp_path / "r.json", 1, "--unit", "ell")
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+
+
+@pytest.mark.parametrize("unit", [None, "inch"])
+def test_pictures_are_in_the_unit_asked(run: Any, searched: dict[str, Any], tmp_path: Path, unit: str | None) -> None:
+    """Of one fixture, of the faces, of the best and their thumbnails; millimetres where no unit is asked."""
+    result = searched["result"] = fake_result(1)
+    write_result(result, tmp_path / "r.json")
+    asked = () if unit is None else ("--unit", unit)
+    assert run("show", tmp_path / "r.json", 1, "--draw", tmp_path / "shown.svg", *asked).exit_code == 0
+    assert run("features", "widget", "--peg-radius", "3mm", "--draw", tmp_path / "faces.svg", *asked).exit_code == 0
+    vise = ("--pitch", "10mm", "--columns", "3", "--peg-radius", "3mm")
+    assert run("design", "widget", *vise, "--draw", tmp_path, *asked).exit_code == 0
+    opening = result[0].jaw_separation
+    wanted, size = (f"{opening:.3f} mm", "6 mm") if unit is None else (f"{opening / 25.4:.4f} in", "0.23622 in")
+    words = {path.stem: " ".join(texts(path.read_text())) for path in tmp_path.glob("*.svg")}
+    assert [name for name in ("shown", "fixture-01", "thumbnails") if f"S = {wanted}" not in words[name]] == []
+    assert f"a peg of Ø {size} lies" in words["faces"]
+
+
+def test_the_nearest_miss_is_drawn_in_the_unit_asked(run: Any, tmp_path: Path) -> None:
+    vise = ("--pitch", "10mm", "--columns", "1", "--peg-radius", "3mm", "--min-gap", "300mm")
+    assert run("design", "widget", *vise, "--unit", "inch", "--draw", tmp_path).exit_code == 0
+    assert "Ø 0.23622 in" in texts((tmp_path / "nearest-miss.svg").read_text())
 
 
 def test_a_drawing_without_a_unit_is_in_that_of_the_command(run: Any, tmp_path: Path) -> None:

@@ -36,6 +36,14 @@ def to_model(group: ET.Element, x: float, y: float) -> tuple[float, float]:
     return (x - e) / a, (y - f) / d
 
 
+def scale_bar_of(svg: str) -> tuple[float, str]:
+    """Length of the scale bar's four pieces in millimetres of the model, and the words beside it."""
+    part, (bar,) = by_class(svg, "part")[0], by_class(svg, "scale")
+    *pieces, label = list(bar)
+    first, last = (piece.attrib["d"].strip("MZ").split("L") for piece in (pieces[0], pieces[-1]))
+    return (float(last[1].split()[0]) - float(first[0].split()[0])) / matrix(part)[0], label.text or ""
+
+
 def area(path: str) -> float:
     """Area between the loops of a path on the page: the integral of x dy - y dx over 2, arcs in closed form."""
     total = 0.0

@@ -10,7 +10,7 @@ import pytest
 from attrs import evolve
 from drawing_examples import diamond, example
 from sheet_reading import collisions, distance, page_of, words_of
-from svg_reading import by_class, matrix, texts, to_model
+from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
 from holdfast.drawing.length_unit import LengthUnit
@@ -96,12 +96,8 @@ def test_scale_bar_is_as_long_as_it_says(held: Held) -> None:
     """The four pieces of the bar together measure the length beside it, in inches too."""
     for unit, size in ((MILLIMETRE, 1.0), (INCH, 25.4)):
         page = draw_sheet(*held, evolve(DETAILS, unit=unit))[0]
-        (part,) = by_class(page, "part")
-        (bar,) = by_class(page, "scale")
-        *pieces, label = list(bar)
-        first, last = (piece.attrib["d"].strip("MZ").split("L") for piece in (pieces[0], pieces[-1]))
-        length = (float(last[1].split()[0]) - float(first[0].split()[0])) / matrix(part)[0]
-        assert float((label.text or "").split()[0]) * size == pytest.approx(length, rel=1e-4)
+        length, words = scale_bar_of(page)
+        assert float(words.split()[0]) * size == pytest.approx(length, rel=1e-4)
 
 
 def test_pegs_are_labelled_by_the_holes_they_stand_in(held: Held) -> None:
@@ -126,7 +122,7 @@ def test_all_a_machinist_needs_is_written(size: float) -> None:
     held = diamond(size)
     fixture, workpiece, _ = held
     words = joined(draw_sheet(*held, details_for(held)))
-    pose, lengths = fixture.pose, LengthUnit.for_pitch(MILLIMETRE, held[2].pitch[0])
+    pose, lengths = fixture.pose, LengthUnit.suiting(MILLIMETRE, held[2].pitch[0])
     for wanted in [
         workpiece.name,
         "2026-03-31",

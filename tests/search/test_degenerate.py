@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from math import sqrt
+from pathlib import Path
 
 import pytest
 
 from fixture_sets import Judge, assert_same, listed, missing, turned
-from holdfast import InputError, Vise, Workpiece, design
+from holdfast import InputError, Vise, Workpiece, design, load
 from holdfast.algebra.engine import design_by_algebra
 from holdfast.geometry import face
+
+DRAWINGS = Path(__file__).parent.parent / "data" / "drawings"
 
 
 def disc(radius: float, x: float = 0.0, y: float = 0.0) -> list[list[float]]:
@@ -170,3 +173,12 @@ def test_slots_on_the_lattice_of_the_vise() -> None:
         ours, theirs = listed(design(part, vise)), listed(design_by_algebra(part, vise))
         assert len(ours) > 100
         assert_same(ours, theirs, Judge(part, vise))
+
+
+def test_a_drawing_turned_and_saved_is_decided() -> None:
+    """A part with a slot, turned by an odd angle and saved with a dozen digits: its parallel lines are so to 1e-13 only.
+    Three pegs on such lines leave the fourth no share, wherever along them the exact contact may be."""
+    turned_part = load(DRAWINGS / "bracket_turned.json")
+    result = design(turned_part, Vise(pitch=20, columns=2, peg_radius=3))
+    assert len(result) > 2000
+    assert result.proof is not None and result.proof.undecided == ()

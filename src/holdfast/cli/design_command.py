@@ -217,7 +217,7 @@ def design(
     if not any(result.found.values()) and engine == "curves":
         explain_none(result, types, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
     elif folder is not None:
-        draw_pictures(result, folder, out)
+        draw_pictures(result, folder, out, shown)
 
 
 def search_of(engine: str, threads: int | None) -> Callable[..., Result]:
@@ -305,12 +305,12 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
         typer.echo(f"holdfast: interrupted: this is a part of the fixtures only{marked}.", err=True)
 
 
-def draw_pictures(result: Result, folder: Path, out: str | None) -> None:
+def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
     """Draw the best fixtures and say where they are."""
     from holdfast.cli.pictures import draw_best
     from holdfast.cli.tables import plural, print_tables
 
-    written = draw_best(result, folder)
+    written = draw_best(result, folder, unit)
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     if written:
         print_tables(f"Drawn: {plural(len(written), 'picture')} in {folder}.", stream=stream)

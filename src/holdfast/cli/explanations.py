@@ -30,10 +30,10 @@ def explain_none(
     from holdfast.search.explaining import explain
 
     problem = Problem.of(result.workpiece, result.vise, result.contact_margin, result.restrictions)
-    explanation = explain(problem, types, threads)
+    explanation = explain(problem, types, threads, unit)
     print_explanation(explanation, unit, stream)
     if folder is not None and explanation.nearest is not None:
-        draw_nearest_miss(explanation, result, folder, stream)
+        draw_nearest_miss(explanation, result, folder, unit, stream)
 
 
 def print_explanation(explanation: Explanation, unit: Unit, stream: TextIO) -> None:
@@ -61,7 +61,7 @@ def print_explanation(explanation: Explanation, unit: Unit, stream: TextIO) -> N
     print_tables(helps, stream=stream)
 
 
-def draw_nearest_miss(explanation: Explanation, result: Result, folder: Path, stream: TextIO) -> None:
+def draw_nearest_miss(explanation: Explanation, result: Result, folder: Path, unit: Unit, stream: TextIO) -> None:
     """Draw the nearest miss into a folder, as SVG and PNG.
 
     Raises
@@ -73,5 +73,5 @@ def draw_nearest_miss(explanation: Explanation, result: Result, folder: Path, st
     from holdfast.cli.tables import print_tables
 
     assert explanation.nearest is not None
-    written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss")
+    written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
     print_tables(f"Drawn: the nearest miss in {written[0]} and {written[-1].name}.", stream=stream)

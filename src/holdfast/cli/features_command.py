@@ -69,5 +69,6 @@ def features(
         from holdfast.drawing.features_picture import draw_features
         from holdfast.drawing.render import render
 
-        write_bytes(picture, render(draw_features(workpiece, peg_radius=radius), ending))
+        svg = draw_features(workpiece, peg_radius=radius, unit=shown_unit)
+        write_bytes(picture, render(svg, ending))
         print_tables(f"Drawn in {picture}.")

@@ -11,6 +11,7 @@ from holdfast.errors import InputError
 if TYPE_CHECKING:
     from holdfast.model.fixture import Fixture
     from holdfast.model.result import Result
+    from holdfast.model.units import Unit
 
 __all__ = ["BEST_DRAWN", "draw_best", "draw_one"]
 
@@ -18,7 +19,7 @@ BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
 
 
-def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str) -> list[Path]:
+def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
     """Draw one fixture of a result's part and vise into a folder, as SVG and PNG; returns the files written.
 
     Raises
@@ -32,7 +33,8 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
-    return write_pictures({name: draw_fixture(fixture, result.workpiece, result.vise, title=title)}, folder)
+    svg = draw_fixture(fixture, result.workpiece, result.vise, title=title, unit=unit)
+    return write_pictures({name: svg}, folder)
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
@@ -49,7 +51,7 @@ def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
     return written
 
 
-def draw_best(result: Result, folder: Path) -> list[Path]:
+def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     """Draw the best twelve fixtures and the thumbnails into a folder, as SVG and PNG; returns the files written.
 
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
@@ -75,8 +77,8 @@ def draw_best(result: Result, folder: Path) -> list[Path]:
         return []
     pictures = {}
     for rank, fixture in enumerate(fixtures, 1):
-        title = f"Fixture {rank}"
-        pictures[f"fixture-{rank:02d}"] = draw_fixture(fixture, result.workpiece, result.vise, title=title)
+        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=unit)
+        pictures[f"fixture-{rank:02d}"] = svg
     titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
-    pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles)
+    pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles, unit=unit)
     return write_pictures(pictures, folder)

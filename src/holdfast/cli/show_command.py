@@ -71,7 +71,6 @@ def show(
         from holdfast.drawing.fixture_picture import draw_fixture
         from holdfast.drawing.render import render
 
-        title = f"Fixture {rank}"
-        svg = draw_fixture(fixture, result.workpiece, result.vise, title=title)
+        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=shown_unit)
         write_bytes(picture, render(svg, ending))
         print_tables(f"Drawn in {picture}.")

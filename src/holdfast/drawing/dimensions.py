@@ -9,19 +9,9 @@ from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.scene import BLACK, GREY, Scene, number
 from holdfast.geometry.segment import Point
 
-__all__ = ["angle_mark", "dimension", "millimetres", "round_length", "scale_bar"]
+__all__ = ["angle_mark", "dimension", "round_length", "scale_bar"]
 
 TIGHT = 34.0
-MILLIMETRES = LengthUnit.mm()
-
-
-def millimetres(length: float, decimals: int = 3) -> str:
-    """A length with its unit.
-
-    >>> millimetres(24.125), millimetres(-0.0)
-    ('24.125 mm', '0.000 mm')
-    """
-    return LengthUnit.mm(decimals).words(length)
 
 
 def dimension(scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False) -> None:
@@ -58,9 +48,9 @@ def scale_bar(
     scene: Scene,
     at: Point,
     scale: float,
+    lengths: LengthUnit,
     longest: float = 150.0,
     size: float = 12.0,
-    lengths: LengthUnit = MILLIMETRES,
     more: str = "",
 ) -> float:
     """Draw a bar of a round length with its lower left corner at a page point; return its total width.
@@ -68,8 +58,8 @@ def scale_bar(
     Parameters
     ----------
     scale : page units for a mm.
-    longest : page units the bar may take.
     lengths : the unit in which the length is round.
+    longest : page units the bar may take.
     more : words behind the length.
     """
     scale *= lengths.unit.millimetres

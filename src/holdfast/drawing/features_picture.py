@@ -7,13 +7,15 @@ from math import atan2, hypot, pi
 
 from holdfast.contact.features import contact_features
 from holdfast.drawing.bench import ARROW, PART_FILL
-from holdfast.drawing.dimensions import dimension, millimetres, scale_bar
+from holdfast.drawing.dimensions import dimension, scale_bar
 from holdfast.drawing.fonts import shortened, text_width
 from holdfast.drawing.labels import Label, LabelPlacer, around, joined, leader_end
+from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.part import extent, outline_path, sampled, sampled_loop, segment_path
-from holdfast.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View, decimals_for
+from holdfast.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from holdfast.geometry.face import Face
 from holdfast.geometry.segment import Arc, Segment
+from holdfast.model.units import MILLIMETRE, Unit
 from holdfast.model.workpiece import Workpiece
 
 __all__ = ["draw_features"]
@@ -28,12 +30,13 @@ DIMENSIONS = 36.0
 LEADER = "#6b4a00"
 
 
-def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None) -> str:
+def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
     """Draw the part with numbered faces, its overall size and a scale, on A4, or on A3 or A2 for more than 80 faces.
 
     Parameters
     ----------
     peg_radius : draw the contact features for pegs of this radius in mm as well.
+    unit : of the lengths written.
 
     Returns
     -------
@@ -41,6 +44,7 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None) -> s
         SVG text; the group of class ``part`` carries the map from mm to the page, as in :func:`draw_fixture`.
     """
     bounds = extent(workpiece.loop_segments[0])
+    lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
     page = sheet(len(workpiece.faces), LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT)
     numbers = MORE_NUMBERS if len(workpiece.faces) > MANY_FACES else NUMBERS
     margin = numbers + DIMENSIONS
@@ -48,13 +52,13 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None) -> s
     room = Box(drawing.x0 + margin, drawing.y0 + numbers, drawing.x1 - numbers, drawing.y1 - margin)
     view = View.fitting(bounds, room)
     scene = Scene.page(page, f"{workpiece.name}: faces")
-    draw_header(scene, workpiece, bounds, peg_radius)
+    draw_header(scene, workpiece, bounds, peg_radius, lengths)
     draw_outline(scene, workpiece, view)
     if peg_radius is not None:
         draw_contact_features(scene, workpiece, view, peg_radius)
     draw_numbers(scene, workpiece, view, view.box(bounds).grown(numbers - 6), peg_radius)
-    draw_overall(scene, bounds, view, numbers)
-    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale)
+    draw_overall(scene, bounds, view, numbers, lengths)
+    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.svg()
 
 
@@ -64,17 +68,17 @@ def sheet(faces: int, page: tuple[float, float]) -> tuple[float, float]:
     return round(larger * page[0]), round(larger * page[1])
 
 
-def draw_header(scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: float | None) -> None:
+def draw_header(scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> None:
     """Write what the part is."""
     group = scene.group("header")
     width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
     group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
     faces, holes = len(workpiece.faces), len(workpiece.loops) - 1
     words = [counted(faces, "face"), counted(holes, "hole") if holes else "no holes"]
-    decimals = decimals_for(max(bounds.width, bounds.height))
-    words.append(f"{bounds.width:.{decimals}f} × {millimetres(bounds.height, decimals)}")
+    words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
     if peg_radius is not None:
-        words.append(f"dashed: where the centre of a peg of Ø {2 * peg_radius:g} mm lies when it touches a face")
+        size = lengths.plain(2 * peg_radius)
+        words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
     line = " · ".join(words)
     group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)
 
@@ -163,16 +167,15 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
     return joined(labels)
 
 
-def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float) -> None:
+def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
     """Dimension the overall width below the part and its height at the left."""
     group = scene.group("overall")
     box = view.box(bounds)
-    decimals = decimals_for(max(bounds.width, bounds.height))
     y = box.y1 + numbers + 22
     for x in (box.x0, box.x1):
         group.line([(x, box.y1 + 10), (x, y + 4)], GREY, 0.6)
-    dimension(group, (box.x0, y), (box.x1, y), millimetres(bounds.width, decimals))
+    dimension(group, (box.x0, y), (box.x1, y), lengths.words(bounds.width))
     x = box.x0 - numbers - 8
     for y in (box.y0, box.y1):
         group.line([(box.x0 - 10, y), (x - 4, y)], GREY, 0.6)
-    dimension(group, (x, box.y1), (x, box.y0), millimetres(bounds.height, decimals))
+    dimension(group, (x, box.y1), (x, box.y0), lengths.words(bounds.height))

@@ -11,8 +11,9 @@ from holdfast.drawing.jaws import CLOSEST_HOLES
 from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.panel import Column, draw_legend, draw_peg_table, draw_settings, draw_title
 from holdfast.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
-from holdfast.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View, decimals_for
+from holdfast.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from holdfast.model.fixture import Fixture
+from holdfast.model.units import MILLIMETRE, Unit
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -46,7 +47,9 @@ def layout_on(page: tuple[float, float]) -> Layout:
     return Layout(page, Box(EDGE, EDGE, split - 24, height - EDGE), Box(split, EDGE, width - EDGE, height - EDGE))
 
 
-def draw_fixture(fixture: Fixture, workpiece: Workpiece, vise: Vise, *, title: str | None = None) -> str:
+def draw_fixture(
+    fixture: Fixture, workpiece: Workpiece, vise: Vise, *, title: str | None = None, unit: Unit = MILLIMETRE
+) -> str:
     """Draw a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their attribute
@@ -55,33 +58,42 @@ def draw_fixture(fixture: Fixture, workpiece: Workpiece, vise: Vise, *, title: s
     Parameters
     ----------
     title : what to call the fixture, such as ``Fixture 3 of 70``.
+    unit : of the lengths written.
 
     Returns
     -------
     str
         SVG text.
     """
+    lengths = LengthUnit.suiting(unit, min(vise.pitch))
     bench = bench_of(fixture, workpiece, vise)
     landscape, portrait = layout_on(LANDSCAPE), layout_on(PORTRAIT)
     layout = portrait if portrait.view(bench).scale > 1.15 * landscape.view(bench).scale else landscape
     view = layout.view(bench)
     scene = Scene.page(layout.page, f"{workpiece.name}: {title or 'Fixture'}")
-    draw_plan(scene, bench, view, workpiece, layout.drawing, LengthUnit.mm(decimals_for(min(vise.pitch))))
-    scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale)
-    draw_panel(scene, layout.panel, view.scale, fixture, workpiece, vise, title)
+    draw_plan(scene, bench, view, workpiece, layout.drawing, lengths)
+    scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale, lengths)
+    draw_panel(scene, layout.panel, view.scale, fixture, workpiece, vise, title, lengths)
     return scene.svg()
 
 
 def draw_panel(
-    scene: Scene, panel: Box, scale: float, fixture: Fixture, workpiece: Workpiece, vise: Vise, title: str | None
+    scene: Scene,
+    panel: Box,
+    scale: float,
+    fixture: Fixture,
+    workpiece: Workpiece,
+    vise: Vise,
+    title: str | None,
+    lengths: LengthUnit,
 ) -> None:
     """Write the panel, with the part as drawn at its foot; ``scale`` is that of the drawing beside it."""
     group = scene.group("panel")
     group.line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
     column = Column(group, panel.x0, panel.y0, panel.width)
     draw_title(column, fixture, workpiece, title)
-    draw_settings(column, fixture, vise)
-    draw_peg_table(column, fixture, vise)
+    draw_settings(column, fixture, vise, lengths)
+    draw_peg_table(column, fixture, lengths)
     draw_legend(column)
     if min(vise.pitch) * scale < CLOSEST_HOLES:
         column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)

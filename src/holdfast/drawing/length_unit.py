@@ -22,7 +22,7 @@ class LengthUnit:
     Examples
     --------
     >>> from holdfast.model.units import INCH
-    >>> LengthUnit.mm().words(24.125), LengthUnit.for_pitch(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
+    >>> LengthUnit.mm().words(24.125), LengthUnit.suiting(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """
 
@@ -35,9 +35,9 @@ class LengthUnit:
         return cls(MILLIMETRE, decimals)
 
     @classmethod
-    def for_pitch(cls, unit: Unit, pitch: float) -> LengthUnit:
-        """A unit with decimals that suit a vise of a pitch in mm."""
-        return cls(unit, unit.decimals + decimals_for(pitch) - decimals_for(1.0))
+    def suiting(cls, unit: Unit, length: float) -> LengthUnit:
+        """A unit with decimals that suit a picture whose typical length is ``length`` mm, such as a vise's pitch."""
+        return cls(unit, unit.decimals + decimals_for(length) - decimals_for(1.0))
 
     @property
     def sign(self) -> str:
@@ -58,4 +58,8 @@ class LengthUnit:
         >>> LengthUnit.mm().plain(12.7), LengthUnit.mm().plain(10.0)
         ('12.7 mm', '10 mm')
         """
-        return f"{length / self.unit.millimetres:.{digits}g} {self.sign}"
+        return f"{self.plain_number(length, digits)} {self.sign}"
+
+    def plain_number(self, length: float, digits: int = 6) -> str:
+        """As :meth:`plain`, without the sign of the unit."""
+        return f"{length / self.unit.millimetres:.{digits}g}"

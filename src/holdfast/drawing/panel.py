@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from holdfast.drawing.bench import ARROW, PEG_FILL, TOUCHED
-from holdfast.drawing.dimensions import millimetres
 from holdfast.drawing.fonts import shortened, text_width, wrapped
-from holdfast.drawing.scene import BLACK, GREY, Scene, decimals_for
+from holdfast.drawing.length_unit import LengthUnit
+from holdfast.drawing.scene import BLACK, GREY, Scene
 from holdfast.model.fixture import Fixture
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
 __all__ = ["TYPE_WORDS", "Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
 
+# Size of the name of a fact, and the least room between it and the value.
+FACT_NAME, FACT_GAP = 13.0, 8.0
 TYPE_WORDS = {"I": "Type I: two pegs on each jaw", "II": "Type II: three pegs left, one right"}
 
 
@@ -45,10 +47,12 @@ class Column:
             self.y += 0.55 * size
 
     def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
-        """Write a name at the left and its value at the right of one line."""
+        """Write a name at the left and its value at the right of one line, smaller where it would reach the name."""
         self.y += 0.75 * size
-        self.scene.text((self.x, self.y), name, 13.0, fill=GREY, middle=False)
-        self.scene.text((self.x + self.width, self.y), value, size, "end", bold=bold, middle=False)
+        self.scene.text((self.x, self.y), name, FACT_NAME, fill=GREY, middle=False)
+        room = self.width - text_width(name, FACT_NAME) - FACT_GAP
+        fitting = min(size, size * room / text_width(value, size, bold))
+        self.scene.text((self.x + self.width, self.y), value, fitting, "end", bold=bold, middle=False)
         self.y += 0.62 * size
 
     def rule(self, width: float = 1.0) -> None:
@@ -83,35 +87,33 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, title: st
     column.rule(2.0)
 
 
-def draw_settings(column: Column, fixture: Fixture, vise: Vise) -> None:
+def draw_settings(column: Column, fixture: Fixture, vise: Vise, lengths: LengthUnit) -> None:
     """Write what to set, with the jaw separation first."""
-    decimals = decimals_for(min(vise.pitch))
     column.words("Jaw separation S", 13, fill=GREY, gap=0.8)
-    column.words(millimetres(fixture.jaw_separation, decimals), 32, bold=True, gap=0.4)
+    column.words(lengths.words(fixture.jaw_separation), 32, bold=True, gap=0.4)
     column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
-    origin = f"{signed(fixture.pose.x, decimals)}, {signed(fixture.pose.y, decimals)} mm"
-    column.fact("Part origin x, y", origin)
+    column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()
     count = f"{vise.columns} column{'s' if vise.columns > 1 else ''}"
-    column.fact("Each jaw", f"{count}, pitch {vise.pitch[0]:g} × {vise.pitch[1]:g} mm")
-    column.fact("Pegs", f"Ø {2 * vise.peg_radius:g} mm" if vise.peg_radius else "points, no diameter")
+    column.fact("Each jaw", f"{count}, pitch {lengths.plain_number(vise.pitch[0])} × {lengths.plain(vise.pitch[1])}")
+    column.fact("Pegs", f"Ø {lengths.plain(2 * vise.peg_radius)}" if vise.peg_radius else "points, no diameter")
     if vise.row_offset:
         word = "above" if vise.row_offset > 0 else "below"
-        column.fact("R rows over L rows", f"{millimetres(abs(vise.row_offset), decimals)} {word}")
+        column.fact("R rows over L rows", f"{lengths.words(abs(vise.row_offset))} {word}")
     column.rule()
 
 
-def draw_peg_table(column: Column, fixture: Fixture, vise: Vise) -> None:
+def draw_peg_table(column: Column, fixture: Fixture, lengths: LengthUnit) -> None:
     """Write the four pegs: hole, face, place and force."""
-    decimals = decimals_for(min(vise.pitch))
     ends = (0.32, 0.575, 0.82, 1.0)
-    places = [(signed(peg.x, decimals), signed(peg.y, decimals)) for peg in fixture.pegs]
+    places = [(lengths.number(peg.x), lengths.number(peg.y)) for peg in fixture.pegs]
     widest = max(text_width(cell, 14) for place in places for cell in place)
     size = 14 if widest < 0.24 * column.width else 11
-    column.row(["Peg in", "face", "x mm", "y mm", "force"], ends, 13, bold=True)
+    column.row(["Peg in", "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
     for peg, place in zip(fixture.pegs, places, strict=True):
-        column.row([peg.hole, str(peg.segment), *place, signed(peg.force, 3)], ends, size)
+        force = f"{peg.force:z.3f}".replace("-", "−")
+        column.row([peg.hole, str(peg.segment), *place, force], ends, size)
     column.y += 2
     column.words("x, y: peg centre, from the centre of hole L-A1.", 11, fill=GREY)
     column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
@@ -141,8 +143,3 @@ def draw_legend(column: Column, fill: str = GREY) -> None:
             scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
         scene.text((x + 28, y), line, 11.5, fill=fill)
         column.y += 21
-
-
-def signed(value: float, decimals: int) -> str:
-    """A number with a real minus sign and no negative zero."""
-    return millimetres(value, decimals).removesuffix(" mm")

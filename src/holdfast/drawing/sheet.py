@@ -42,7 +42,7 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, vise: Vise, details: Shee
     tuple of str
         SVG text of every page, each of the paper's size.
     """
-    lengths = LengthUnit.for_pitch(details.unit, min(vise.pitch))
+    lengths = LengthUnit.suiting(details.unit, min(vise.pitch))
     cautions = cautions_of(fixture, edge_distances(fixture, workpiece, vise), details, lengths)
     bench, zero = bench_of(fixture, workpiece, vise), (fixture.pose.x, fixture.pose.y)
     shown = bench.extent.contains(Box(*zero, *zero))
@@ -59,7 +59,7 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, vise: Vise, details: Shee
     words = f", scale {arrangement.scale.name}"
     if min(vise.pitch) * view.scale < CLOSEST_HOLES:
         words += "; only the holes near the pegs are drawn"
-    scale_bar(scene, (room.x0, room.y1), view.scale, lengths=lengths, more=words)
+    scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     pages = [scene]
     write_columns(scene, arrangement.columns)
     if arrangement.second:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from holdfast.drawing.bench import Bench, bench_of, draw_bench
-from holdfast.drawing.dimensions import millimetres, scale_bar
+from holdfast.drawing.dimensions import scale_bar
 from holdfast.drawing.fonts import shortened, text_width
+from holdfast.drawing.length_unit import LengthUnit
 from holdfast.drawing.panel import closure_margin
-from holdfast.drawing.scene import GREY, LANDSCAPE, Box, Scene, View, decimals_for
+from holdfast.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from holdfast.errors import InputError
 from holdfast.model.fixture import Fixture
+from holdfast.model.units import MILLIMETRE, Unit
 from holdfast.model.vise import Vise
 from holdfast.model.workpiece import Workpiece
 
@@ -24,12 +26,20 @@ CAPTION = 44.0
 GAP = 14.0
 
 
-def draw_thumbnails(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vise, titles: Sequence[str]) -> str:
+def draw_thumbnails(
+    fixtures: Sequence[Fixture],
+    workpiece: Workpiece,
+    vise: Vise,
+    titles: Sequence[str],
+    *,
+    unit: Unit = MILLIMETRE,
+) -> str:
     """Draw up to twelve fixtures on one A4 sheet, all to the same scale, with type, closure margin and jaw separation.
 
     Parameters
     ----------
     titles : what to call each of them, such as its rank.
+    unit : of the lengths written.
 
     Returns
     -------
@@ -46,6 +56,7 @@ def draw_thumbnails(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vis
         raise InputError(f"a sheet of thumbnails holds 1 to {MOST_THUMBNAILS} fixtures, not {count}: choose fewer.")
     if len(titles) != count:
         raise InputError(f"{count} fixtures have {len(titles)} titles: give one title for each.")
+    lengths = LengthUnit.suiting(unit, min(vise.pitch))
     benches = [bench_of(fixture, workpiece, vise) for fixture in fixtures]
     cells = grid(count)
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
@@ -58,8 +69,8 @@ def draw_thumbnails(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vis
     scene.text((EDGE, EDGE + 10), name, 24, bold=True)
     scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
     for bench, title, cell, room in zip(benches, titles, cells, rooms, strict=True):
-        draw_cell(scene, bench, title, cell, View.fitting(bench.extent, room, scale))
-    scale_bar(scene, (EDGE, height - EDGE + 8), scale)
+        draw_cell(scene, bench, title, cell, View.fitting(bench.extent, room, scale), lengths)
+    scale_bar(scene, (EDGE, height - EDGE + 8), scale, lengths)
     return scene.svg()
 
 
@@ -76,7 +87,7 @@ def grid(count: int) -> list[Box]:
     return cells
 
 
-def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View) -> None:
+def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
     """Draw one thumbnail with its caption."""
     group = scene.group("thumbnail")
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
@@ -86,6 +97,6 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View) -> 
     name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
     group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
-    separation = millimetres(fixture.jaw_separation, decimals_for(min(bench.vise.pitch)))
+    separation = lengths.words(fixture.jaw_separation)
     group.text((cell.x0 + 10, cell.y1 - 12), f"margin {closure_margin(fixture)}", 12, fill=GREY)
     group.text((cell.x1 - 10, cell.y1 - 12), f"S = {separation}", 12, "end", fill=GREY)

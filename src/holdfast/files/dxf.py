@@ -17,7 +17,7 @@ from holdfast.errors import InputError
 from holdfast.files.chain import Drawing
 from holdfast.files.dxf_walk import Nest, Walk
 from holdfast.files.placement import Placement
-from holdfast.files.units import millimetres_per
+from holdfast.model.units import unit_named
 
 __all__ = ["read_dxf"]
 
@@ -125,17 +125,17 @@ def scale_of(document: Any, unit: str | None, usual_unit: str | None) -> tuple[f
     code = document.header.get("$INSUNITS", 0)
     known = INSUNITS.get(code)
     if unit is not None:
-        scale = millimetres_per(unit)
+        scale = unit_named(unit).millimetres
         if known is not None and known[1] != scale:
             return scale, [f"The file says its unit is {known[0]}; it was read in {unit} as asked."]
         return scale, []
     if known is not None:
-        if usual_unit is not None and known[1] != millimetres_per(usual_unit):
+        if usual_unit is not None and known[1] != unit_named(usual_unit).millimetres:
             # Whoever gave the unit for the drawing's sake learns here that it did not count.
             return known[1], [f"The file says its unit is {known[0]}; it was read so (--drawing-unit overrides it)."]
         return known[1], []
     if usual_unit is not None:
-        return millimetres_per(usual_unit), []
+        return unit_named(usual_unit).millimetres, []
     if code:
         raise InputError(
             f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with --unit mm (or inch)."

@@ -15,7 +15,7 @@ from holdfast.files.chain import Drawing, cleaned
 from holdfast.files.joining import Loop, join
 from holdfast.files.nesting import Part, chosen_part, nest, refuse_loops_across
 from holdfast.files.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
-from holdfast.files.units import millimetres_per
+from holdfast.model.units import unit_named
 from holdfast.model.workpiece import Workpiece
 
 __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
@@ -115,7 +115,7 @@ def read_workpiece(
         raise InputError(f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more.")
     for name in (unit, usual_unit):
         if name is not None:
-            millimetres_per(name)
+            unit_named(name)
     path = found(part)
     try:
         content = read_bytes(path)

@@ -23,8 +23,8 @@ from pathlib import Path
 from typing import Any
 
 from holdfast.errors import InputError
-from holdfast.files.units import millimetres_per
 from holdfast.model.load import ANY_DIRECTION, Load
+from holdfast.model.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
 
@@ -63,7 +63,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
             raise InputError(f"{path} has an unknown key '{key}': give unit, and a table [[load]] for each load.")
     if "unit" in content:
         try:
-            unit_scale = millimetres_per(str(content["unit"]))
+            unit_scale = unit_named(str(content["unit"])).millimetres
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
     tables = content.get("load")

@@ -24,7 +24,7 @@ from holdfast.files.chain import Chain, Drawing, counted
 from holdfast.files.placement import Placement
 from holdfast.files.svg_shapes import SHAPES, Shape, length, local_name, named, numbers, physical_length, transform_of
 from holdfast.files.svg_style import hidden_selectors, is_hidden, is_invisible
-from holdfast.files.units import millimetres_per
+from holdfast.model.units import unit_named
 
 __all__ = ["read_svg"]
 
@@ -121,7 +121,7 @@ def page(root: Element, unit: str | None, usual_unit: str | None) -> tuple[Place
     if scale is None and unit is None:
         unit = usual_unit
     if unit is not None:
-        asked = millimetres_per(unit)
+        asked = unit_named(unit).millimetres
         if scale is not None and abs(scale - asked) > 1e-9 * asked:
             remarks.append(f"The file's size makes a user unit {scale:.6g} mm; it was read as 1 {unit} as asked.")
         scale = asked

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from attrs import frozen
 
 from holdfast.errors import InputError
-from holdfast.files.units import millimetres_per
+from holdfast.model.units import unit_named
 
 __all__ = ["JsonWorkpiece", "read_json"]
 
@@ -49,7 +49,7 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
     units: str = content["units"]
     if units not in ("mm", "inch"):
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
-    scale = millimetres_per(units)
+    scale = unit_named(units).millimetres
     loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
     return JsonWorkpiece(content.get("name"), loops)
 

@@ -12,6 +12,7 @@ leaves with the first that decides it:
 
 from __future__ import annotations
 
+from itertools import combinations
 from threading import Event, Lock
 from typing import TYPE_CHECKING
 
@@ -37,6 +38,8 @@ IntArray = NDArray[np.int64]
 
 # The precision of balls is one for the whole process, so one thread at a time works with them.
 BALLS = Lock()
+# Lines are parallel within this angle in radians (model).
+PARALLEL = 1e-9
 # Records looked at between two looks at the flag that stops the work.
 OPEN_BLOCK = 64
 GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"
@@ -152,6 +155,7 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
     lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
     chosen = records[~given_up] if lost else records
     proven, rest = sifted(chosen, problem, setting_of(problem))
+    rest = rest[~has_three_parallels(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
     settled, reasons, left = escalated(rest, problem, course)
     if len(settled):
@@ -171,6 +175,23 @@ def sifted(records: Array, problem: Problem, setting: Array) -> tuple[Array, Arr
     proven = records[is_proven]
     proven[:, record.PSI : record.REACH] = solutions[is_proven]
     return proven, records[verdicts == OPEN]
+
+
+def has_three_parallels(records: Array, problem: Problem) -> NDArray[np.bool_]:
+    """Which records (N,) have three pegs on lines that are parallel: the fourth peg then has no share in any closure.
+
+    Lines parallel within ``PARALLEL`` are parallel (model). Where rounding makes them not quite so, the exact contact may be
+    anywhere along them, which takes long to decide and means nothing.
+    """
+    rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
+    x, y, is_line = rows[..., 3], rows[..., 4], rows[..., 0] == 0.0
+    out = np.zeros(len(records), np.bool_)
+    for triple in combinations(range(4), 3):
+        parallel = is_line[:, triple].all(axis=1)
+        for i, j in combinations(triple, 2):
+            parallel &= np.abs(x[:, i] * y[:, j] - y[:, i] * x[:, j]) <= PARALLEL
+        out |= parallel
+    return out
 
 
 def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:

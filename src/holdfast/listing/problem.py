@@ -9,7 +9,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from holdfast.contact.features import allowed_features, contact_features, end_slacks, feature_rows
+from holdfast.contact.features import ContactFeature, allowed_features, contact_features, end_slacks, feature_rows
 from holdfast.errors import InputError
 from holdfast.geometry.segment import segment_rows
 from holdfast.model.diameter import outline_diameter
@@ -34,6 +34,7 @@ class Problem:
     workpiece, vise : what to hold and what to hold it in.
     contact_margin : smallest distance between a contact and the end of its feature.
     restrictions : what is ruled out.
+    locus : all contact features, also those that are ruled out.
     rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     outline : (S, 8) the part's faces.
@@ -44,6 +45,7 @@ class Problem:
     vise: Vise
     contact_margin: float
     restrictions: Restrictions
+    locus: tuple[ContactFeature, ...]
     rows: NDArray[np.float64]
     faces: NDArray[np.int64]
     outline: NDArray[np.float64]
@@ -71,6 +73,7 @@ class Problem:
                 f"a peg of radius {vise.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
                 "corners too narrow for it; use a smaller peg."
             )
+        locus = tuple(features)
         if restrictions:
             features = allowed_features(features, workpiece, restrictions, vise.body_radius)
         center = workpiece.center
@@ -79,6 +82,7 @@ class Problem:
             vise,
             contact_margin,
             restrictions,
+            locus,
             rows=np.concatenate([centered(feature_rows(features), center), end_slacks(features)], axis=1),
             faces=np.array([feature.face for feature in features], dtype=np.int64),
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),

@@ -19,6 +19,7 @@ from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figur
 from holdfast.model.result import FixtureTable
 from holdfast.model.tolerance import Tolerance
 from holdfast.statics.quality import quality_of
+from holdfast.statics.stances import Touched
 
 __all__ = ["DEFAULT_RANKING", "Preference", "best_marked", "preference_of", "rank"]
 
@@ -51,7 +52,9 @@ class Preference:
 
     def measured(self, table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
         """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
-        quality = quality_of(table, problem.workpiece, problem.vise, self.tolerance, self.loads, threads)
+        part, vise = problem.workpiece, problem.vise
+        touched = Touched.of(part, vise, problem.locus, problem.wrench_length)
+        quality = quality_of(table, part, vise, self.tolerance, self.loads, threads, touched)
         quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
         return evolve(table, quality=quality)
 

@@ -24,7 +24,7 @@ from holdfast.model.workpiece import Workpiece
 from holdfast.search.cells import run_blocks, thread_count
 from holdfast.search.contacts import contacts_of
 from holdfast.search.preview import Preview, Previews
-from holdfast.search.vise_search import ViseSearch
+from holdfast.search.vise_search import LEAST_BLOCKS, ViseSearch
 
 __all__ = ["design"]
 
@@ -94,7 +94,8 @@ def design(
     preference = preference_of(rank_by, tolerance, loads)
     problem = Problem.of(workpiece, vise, contact_margin, restrictions)
     search = ViseSearch.of(problem)
-    blocks = search.blocks(types)
+    # Smaller blocks learn earlier what margin is to be reached.
+    blocks = search.blocks(types, LEAST_BLOCKS if best is None else 2 * LEAST_BLOCKS)
     kept = None if best is None else BestFixtures(problem, preference, best, cancel)
     workers = thread_count(threads)
     receive = None if kept is None else kept.add

@@ -23,6 +23,7 @@ from holdfast.listing.problem import TYPES, Problem
 from holdfast.model.explanation import Explanation, Help, NearestMiss, Removal
 from holdfast.model.restrictions import Restrictions
 from holdfast.model.result import fixture_at
+from holdfast.model.units import MILLIMETRE, Unit
 from holdfast.model.vise import Vise
 from holdfast.search.cells import run_blocks, thread_count
 from holdfast.search.contacts import contacts_of
@@ -70,7 +71,9 @@ class Contacts:
         return Contacts(self.candidates.take(chosen), *rest)
 
 
-def explain(problem: Problem, types: Sequence[str] = TYPES, threads: int | None = None) -> Explanation:
+def explain(
+    problem: Problem, types: Sequence[str] = TYPES, threads: int | None = None, unit: Unit = MILLIMETRE
+) -> Explanation:
     """Explain why a problem has no fixture.
 
     Parameters
@@ -78,11 +81,12 @@ def explain(problem: Problem, types: Sequence[str] = TYPES, threads: int | None 
     problem : what was searched in vain.
     types : "I", "II" or both.
     threads : how many threads share the work; None for one on each processor.
+    unit : of the lengths in its words.
     """
     contacts = all_contacts(problem, types, threads)
     first, removals = restriction_removals(problem, types, threads, len(contacts.margin))
     nearest = None
-    for rule, keeps, miss in rules(problem):
+    for rule, keeps, miss in rules(problem, unit):
         if len(contacts.margin) == 0:
             break
         kept = keeps(contacts)
@@ -91,7 +95,7 @@ def explain(problem: Problem, types: Sequence[str] = TYPES, threads: int | None 
             nearest = nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
     removals = [removal for removal in removals if removal.before > 0]
-    return Explanation(first, tuple(removals), nearest, helps(problem, types, threads))
+    return Explanation(first, tuple(removals), nearest, helps(problem, types, threads, unit))
 
 
 def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) -> Contacts:
@@ -179,14 +183,18 @@ def restriction_removals(
 Rule = tuple[str, Callable[[Contacts], BoolArray], Callable[[Contacts], tuple[int, str]]]
 
 
-def rules(problem: Problem) -> list[Rule]:
+def rules(problem: Problem, unit: Unit) -> list[Rule]:
     """The rules in the order they are asked: words, which contacts keep it, and which broken one comes nearest and why."""
     vise, margin = problem.vise, problem.contact_margin
     out: list[Rule] = []
     if margin > 0.0:
-        out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin)))
+        out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin, unit)))
     out.append(
-        ("smallest gap", lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK, partial(too_near, vise))
+        (
+            "smallest gap",
+            lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK,
+            partial(too_near, vise, unit),
+        )
     )
     out.append(("closure", lambda c: c.margin > record.LEAST_CLOSURE, open_contact))
     out.append(("clamping", lambda c: c.clamping > record.LEAST_CLAMPING, unclamped))
@@ -224,20 +232,22 @@ def no_contact(contacts: Contacts) -> BoolArray:
     return np.zeros(len(contacts.margin), np.bool_)
 
 
-def short_of_margin(margin: float, c: Contacts) -> tuple[int, str]:
+def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
     """The contact whose pegs are farthest from the ends of their faces."""
     index = int(c.end_distance.argmax())
     return index, (
-        f"a peg touches {c.end_distance[index]:.3f} mm from where its face ends for it; the contact margin is {margin:g} mm."
+        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; the contact margin is "
+        f"{unit.figure(margin)} {unit.abbreviation}."
     )
 
 
-def too_near(vise: Vise, c: Contacts) -> tuple[int, str]:
+def too_near(vise: Vise, unit: Unit, c: Contacts) -> tuple[int, str]:
     """The contact whose right pegs are farthest from the left ones."""
     index = int(c.candidates.opening.argmax())
     opening = c.candidates.opening[index]
-    where = f"{opening:.3f} mm to the right of the left ones" if opening >= 0 else f"{-opening:.3f} mm to their left"
-    return index, f"the right pegs would stand {where}; the smallest gap is {vise.min_gap:g} mm."
+    where = f"{unit.text(abs(opening))} {'to the right of the left ones' if opening >= 0 else 'to their left'}"
+    gap = f"{unit.figure(vise.min_gap)} {unit.abbreviation}"
+    return index, f"the right pegs would stand {where}; the smallest gap is {gap}."
 
 
 def open_contact(c: Contacts) -> tuple[int, str]:
@@ -277,10 +287,10 @@ def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) ->
     return NearestMiss(fixture_at(table, vise, 0), words)
 
 
-def helps(problem: Problem, types: Sequence[str], threads: int | None) -> tuple[Help, ...]:
+def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out = []
-    for words, vise, restrictions, margin in changes(problem):
+    for words, vise, restrictions, margin in changes(problem, unit):
         try:
             found = design(
                 problem.workpiece,
@@ -298,7 +308,7 @@ def helps(problem: Problem, types: Sequence[str], threads: int | None) -> tuple[
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 
-def changes(problem: Problem) -> Iterator[tuple[str, Vise, Restrictions, float]]:
+def changes(problem: Problem, unit: Unit) -> Iterator[tuple[str, Vise, Restrictions, float]]:
     """Changes to try, one at a time."""
     vise, asked, margin = problem.vise, problem.restrictions, problem.contact_margin
     if asked.avoid:
@@ -324,11 +334,12 @@ def changes(problem: Problem) -> Iterator[tuple[str, Vise, Restrictions, float]]
         yield "with a larger opening", evolve(vise, max_opening=None), asked, margin
     if vise.min_gap > 2 * vise.peg_radius > 0:
         narrow = evolve(vise, min_gap=2 * vise.peg_radius)
-        yield f"with a smallest gap of {narrow.min_gap:g} mm", narrow, asked, margin
+        yield f"with a smallest gap of {unit.figure(narrow.min_gap)} {unit.abbreviation}", narrow, asked, margin
     yield "with one more column on each jaw", evolve(vise, columns=vise.columns + 1), asked, margin
     if vise.row_offset == 0.0:
         offset = vise.pitch[1] / 2
-        yield f"with the right jaw's rows offset by {offset:g} mm", evolve(vise, row_offset=offset), asked, margin
+        words = f"{unit.figure(offset)} {unit.abbreviation}"
+        yield f"with the right jaw's rows offset by {words}", evolve(vise, row_offset=offset), asked, margin
     if min(vise.pitch) >= 4 * vise.peg_radius:
         half = (vise.pitch[0] / 2, vise.pitch[1] / 2)
         yield (

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from functools import partial
+from itertools import pairwise
 from math import hypot, pi, tau
 
 import numpy as np
@@ -25,7 +26,7 @@ from holdfast.listing.problem import Problem
 from holdfast.model.vise import Vise
 from holdfast.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
 
-__all__ = ["ViseSearch", "lattice_steps"]
+__all__ = ["LEAST_BLOCKS", "ViseSearch", "lattice_steps"]
 
 Array = NDArray[np.float64]
 
@@ -34,7 +35,7 @@ CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
 # Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
 PAIRS_PER_BLOCK = 2e6
-LEAST_BLOCKS = 32
+LEAST_BLOCKS = 16
 # Cells this near to a range of angles, in degrees, are searched too.
 ANGLE_HAIR = 1e-5
 
@@ -175,13 +176,14 @@ class ViseSearch:
         """How many chord curves exist at an orientation, on average."""
         return float((self.table.reals[:, TO] - self.table.reals[:, FROM]).sum()) / tau
 
-    def blocks(self, types: Collection[str]) -> list[Block]:
-        """Blocks of work that together find all fixtures of the given types ("I", "II")."""
+    def blocks(self, types: Collection[str], least: int = LEAST_BLOCKS) -> list[Block]:
+        """Blocks of work that together find all fixtures of the given types ("I", "II"), about ``least`` or more for a half
+        turn."""
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
         cells = int(
             min(max(CELLS_PER_PITCH * self.problem.wrench_length / self.vise.pitch[1], FEWEST_CELLS), MOST_CELLS)
         )
-        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // LEAST_BLOCKS))
+        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // least))
         blocks: list[Block] = []
         for name, half_turns in (("I", 1), ("II", 2)):
             if name not in types:
@@ -202,7 +204,9 @@ class ViseSearch:
         self.table.upright_reals[:, ORIENTATION] = psi
         cells = np.searchsorted(edges, psi, side="right") - 1
         cells[psi >= FIRST_ORIENTATION + half_turns * pi] = -1
-        return [np.flatnonzero(cells == cell) for cell in range(len(edges) - 1)]
+        order = np.argsort(cells, kind="stable")
+        starts = np.searchsorted(cells[order], np.arange(len(edges)))
+        return [order[first:last] for first, last in pairwise(starts)]
 
     def crossing_block(self, name: str, edges: Array) -> Block:
         """The crossings of some neighbouring cells."""

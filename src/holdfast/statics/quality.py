@@ -35,6 +35,7 @@ def quality_of(
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
     threads: int = 1,
+    touched: Touched | None = None,
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -45,6 +46,7 @@ def quality_of(
     tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
     loads : for the load reaction, the worst of them; each acts by itself.
     threads : how many threads share the work; the outcome does not depend on it.
+    touched : the workpiece's contact features, where they are known already.
 
     Returns
     -------
@@ -52,7 +54,7 @@ def quality_of(
     whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
-    touched = Touched.of(workpiece, vise)
+    known = touched or Touched.of(workpiece, vise)
     corners, arcs = extremes(workpiece)
     rows = load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
@@ -63,14 +65,14 @@ def quality_of(
         pose = np.column_stack([block.theta, block.position])
         faces = block.segment.astype(np.int64)
         right = block.jaw.astype(np.float64)
-        stances = touched.stances(peg_centers(block, vise), pose, right, faces)
+        stances = known.stances(peg_centers(block, vise), pose, right, faces)
         figures(
             stances.points,
             stances.normals,
             stances.ends,
             stances.inverses,
             faces,
-            touched.length,
+            known.length,
             tolerances,
             corners,
             arcs,

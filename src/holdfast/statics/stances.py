@@ -8,11 +8,13 @@ stance : the contacts of a fixture in the part's frame, with the inverse of its 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from holdfast.contact.features import contact_features, feature_rows
+from holdfast.contact.features import ContactFeature, contact_features, feature_rows
 from holdfast.kernels.stances import stances_of
 from holdfast.model.diameter import outline_diameter
 from holdfast.model.vise import Vise
@@ -59,9 +61,15 @@ class Touched:
     starts: NDArray[np.int64]
 
     @classmethod
-    def of(cls, workpiece: Workpiece, vise: Vise) -> Touched:
-        """The contact features of a workpiece for a vise's pegs."""
-        features = contact_features(workpiece, vise.peg_radius)
+    def of(
+        cls,
+        workpiece: Workpiece,
+        vise: Vise,
+        features: Sequence[ContactFeature] | None = None,
+        length: float | None = None,
+    ) -> Touched:
+        """The contact features of a workpiece for a vise's pegs; ``features`` and L in mm where they are known already."""
+        features = contact_features(workpiece, vise.peg_radius) if features is None else list(features)
         center = np.array(workpiece.center)
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
         rows = np.zeros((len(features) + 1, 8))
@@ -70,7 +78,7 @@ class Touched:
         faces = np.array([feature.face for feature in features], np.int64)
         return cls(
             center=center,
-            length=outline_diameter(workpiece) / 2 + vise.peg_radius,
+            length=outline_diameter(workpiece) / 2 + vise.peg_radius if length is None else length,
             features=rows,
             starts=np.searchsorted(faces, np.arange(len(workpiece.segments) + 1)).astype(np.int64),
         )
