@@ -67,8 +67,17 @@ async function takeUpState() {
   return true;
 }
 
+/** The next frame, or a tenth of a second where none is drawn. */
+function painted() {
+  return new Promise((resolve) => {
+    requestAnimationFrame(() => setTimeout(resolve));
+    setTimeout(resolve, 100);
+  });
+}
+
 /** Set everything up. */
 async function begin() {
+  await painted();
   stagePanel();
   rulesPanel(partDrawing, () => change({ view: "part" }));
   visePanel();
