@@ -11,11 +11,13 @@ INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check -c const
 
 .PHONY: demo test check bench prove clean
 
-# Designs for the example bracket and draws the best fixtures.
+# Designs for the example bracket, draws the best fixtures and writes the setup sheet of the best.
 demo: $(INSTALLED)
 	@mkdir -p demo
 	$(BIN)/holdfast design examples/bracket.dxf --pitch 10 --columns 2 --peg-radius 3 --out demo/bracket.json --draw demo/drawings
-	@echo "Look at demo/drawings/fixture-01.png and demo/drawings/thumbnails.png; all fixtures are in demo/bracket.json."
+	$(BIN)/holdfast sheet demo/bracket.json 1 -o demo/setup.pdf --jaw-force 3000
+	@echo "Look at demo/setup.pdf, demo/drawings/fixture-01.png and demo/drawings/thumbnails.png; all fixtures are in demo/bracket.json."
+	@echo "$(BIN)/holdfast serve --open shows the same, and more, as a page in the browser."
 
 # Every test and every example of the documentation.
 test: $(INSTALLED_DEV)
