@@ -358,3 +358,16 @@ def test_part_keeps_the_files_stem_as_name(tmp_path: Path) -> None:
     """A drawing has no name but the file's."""
     assert read_dxf(tmp_path, rectangle).workpiece.name == "drawn"
     assert len(read_workpiece(tmp_path / "drawn.dxf").parts) == 1
+
+
+def test_a_file_without_a_header_says_no_unit(tmp_path: Path) -> None:
+    """Entities alone are a valid DXF file; nothing in it tells a unit, so none is assumed."""
+    corners = [(0, 0), (40, 0), (40, 30), (0, 30)]
+    lines = ["0", "SECTION", "2", "ENTITIES"]
+    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
+        lines += ["0", "LINE", "8", "0", "10", str(x0), "20", str(y0), "11", str(x1), "21", str(y1)]
+    path = tmp_path / "bare.dxf"
+    path.write_text("\n".join([*lines, "0", "ENDSEC", "0", "EOF", ""]))
+    with pytest.raises(InputError, match="unit"):
+        load(path)
+    assert load(path, unit="mm").bounds == (0.0, 0.0, 40.0, 30.0)

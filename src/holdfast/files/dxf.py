@@ -58,7 +58,9 @@ def read_dxf(
     """
     refuse_other_formats(content)
     document, remarks = opened(path)
-    scale, unit_remarks = scale_of(document, unit, usual_unit)
+    # Into a file without a header ezdxf writes one of its own, with metres in it.
+    code = document.header.get("$INSUNITS", 0) if b"$INSUNITS" in content else 0
+    scale, unit_remarks = scale_of(code, unit, usual_unit)
     walk = Walk(document, layers)
     walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
     walk.refuse_missing_layers()
@@ -114,15 +116,14 @@ def one_line(error: Exception) -> str:
     return text[:120].rstrip(".")
 
 
-def scale_of(document: Any, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]]:
-    """Millimetres per drawing unit, and a remark when the user's unit is not the file's.
+def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]]:
+    """Millimetres per drawing unit, and a remark when the user's unit is not the file's ($INSUNITS, 0 for none).
 
     Raises
     ------
     InputError
         When neither the file nor the user gives a unit.
     """
-    code = document.header.get("$INSUNITS", 0)
     known = INSUNITS.get(code)
     if unit is not None:
         scale = unit_named(unit).millimetres
