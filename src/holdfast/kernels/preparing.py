@@ -16,6 +16,9 @@ from holdfast.kernels.certifying import certified
 from holdfast.kernels.contacts import SETTING_LENGTH
 from holdfast.kernels.curve_columns import CURVE_INTEGERS, CURVE_REALS
 from holdfast.kernels.curve_table import tail_curves
+from holdfast.kernels.quality import figures
+from holdfast.kernels.reactions import LOAD_LENGTH
+from holdfast.kernels.stances import stances_of
 from holdfast.kernels.standing import contacts_of, stand
 from holdfast.kernels.stretches import STRETCH_LENGTH
 from holdfast.kernels.type_one import STATISTICS, type_one_cells
@@ -66,3 +69,8 @@ def prepare_table_and_listing() -> None:
         certified(records, checked, outline, np.zeros((0, 4)), setting, np.zeros((0, 4)))
         contacts_of(records, checked, setting, np.zeros((0, 4, 2)), np.zeros(0), np.zeros((0, 4)), np.zeros((0, 4)))
         stand(none, np.zeros(0), whole, whole.copy(), whole.copy(), 0.0)
+        pairs, fours, matrices = np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros((0, 4, 4))
+        pose, two = np.zeros((0, 3)), np.zeros(2)
+        stances_of(pairs, pose, fours, whole, features, none, two, 1.0, pairs, pairs, fours, matrices)
+        rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 6))
+        figures(pairs, pairs, fours, matrices, whole, 1.0, two, *rows)
