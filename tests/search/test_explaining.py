@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from holdfast.listing.problem import Problem
 from holdfast.model.explanation import Explanation
 from holdfast.model.holes import holes_named
 from holdfast.model.restrictions import Restrictions, circle_zone
+from holdfast.search import explaining
 from holdfast.search.contacts import count_contacts
 from holdfast.search.explaining import explain
 
@@ -63,6 +65,22 @@ def test_help_helps() -> None:
     one = next(item for item in explanation.helps if item.change == "touching face 1 too")
     rest = Restrictions(avoid=(0, 2, 3, 4))
     assert one.fixtures == len(design(load("widget"), PLAIN, restrictions=rest))
+
+
+def test_a_change_that_takes_long_is_told_as_far_as_it_came(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It helps all the same; how many fixtures there are is then a lower bound, and said to be one."""
+    events: list[Event] = []
+
+    def interrupted(*arguments: Any, cancel: Event, **options: Any) -> Any:
+        events.append(cancel)
+        assert cancel.wait(5.0)
+        return evolve(design(*arguments, **options), complete=False)
+
+    monkeypatch.setattr(explaining, "HELP_SECONDS", 0.01)
+    monkeypatch.setattr(explaining, "design", interrupted)
+    explanation = explain(Problem.of(load("widget"), evolve(PLAIN, min_gap=200.0)))
+    assert len(events) > 1 and len(explanation.helps) > 0
+    assert not any(item.complete for item in explanation.helps)
 
 
 def test_the_nearest_miss_touches_with_all_four_pegs() -> None:

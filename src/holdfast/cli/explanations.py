@@ -57,7 +57,7 @@ def print_explanation(explanation: Explanation, unit: Unit, stream: TextIO) -> N
         return
     helps = Table(("what would help", ">fixtures"))
     for item in explanation.helps[:MOST_HELPS]:
-        helps.add_row(item.change, f"{item.fixtures:,}")
+        helps.add_row(item.change, f"{item.fixtures:,}" if item.complete else f"over {item.fixtures:,}")
     print_tables(helps, stream=stream)
 
 

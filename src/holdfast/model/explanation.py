@@ -51,10 +51,12 @@ class Help:
     ----------
     change : in a few words, such as "without avoiding faces 1, 4".
     fixtures : how many there are then.
+    complete : False when there are more, because the search for them was ended.
     """
 
     change: str
     fixtures: int
+    complete: bool = True
 
 
 @frozen

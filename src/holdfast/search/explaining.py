@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from threading import Event, Timer
 
 import numpy as np
 from attrs import define, evolve
@@ -42,6 +43,8 @@ MOST_LISTED = 5_000
 MOST_FACES = 8
 # Pegs this near in x, in mm, are even.
 EVEN = 1e-6
+# Seconds after which a change has shown that it helps; how many fixtures there are in all is then not known.
+HELP_SECONDS = 10.0
 # A contact misses closure by this much at most to be called near.
 ROUNDING = 1e-12
 
@@ -291,8 +294,11 @@ def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Uni
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out = []
     for words, vise, restrictions, margin in changes(problem, unit):
+        enough = Event()
+        timer = Timer(HELP_SECONDS, enough.set)
+        timer.start()
         try:
-            found = design(
+            result = design(
                 problem.workpiece,
                 vise,
                 types=types,
@@ -300,11 +306,14 @@ def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Uni
                 restrictions=restrictions,
                 rank_by=["closure_margin"],
                 threads=threads,
-            ).found
+                cancel=enough,
+            )
         except InputError:
             continue
-        if sum(found.values()):
-            out.append(Help(words, sum(found.values())))
+        finally:
+            timer.cancel()
+        if any(result.found.values()):
+            out.append(Help(words, sum(result.found.values()), result.complete))
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 

@@ -246,5 +246,7 @@ def explanation_answer(explanation: Explanation) -> dict[str, Any]:
         "nearest": None
         if nearest is None
         else {"row": {"rank": None, **fixture_answer(nearest.fixture)}, "words": nearest.words},
-        "helps": [{"change": help.change, "fixtures": help.fixtures} for help in explanation.helps],
+        "helps": [
+            {"change": help.change, "fixtures": help.fixtures, "complete": help.complete} for help in explanation.helps
+        ],
     }

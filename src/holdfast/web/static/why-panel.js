@@ -65,7 +65,8 @@ function write(box, { contacts, removals, nearest, helps }) {
 
 /** A change that helps, as a button where the page can make it. */
 function helpButton(help) {
-  const words = `${help.change}: ${countText(help.fixtures)} fixture${help.fixtures === 1 ? "" : "s"}`;
+  const count = `${help.complete ? "" : "over "}${countText(help.fixtures)}`;
+  const words = `${help.change}: ${count} fixture${help.fixtures === 1 ? "" : "s"}`;
   const patch = appliedHelp(help.change, state);
   if (!patch) return make("p", {}, words);
   return make("button", { type: "button", click: () => change(patch) }, words);
