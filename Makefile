@@ -14,10 +14,10 @@ INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check -c const
 # Designs for the example bracket, draws the best fixtures and writes the setup sheet of the best.
 demo: $(INSTALLED)
 	@mkdir -p demo
-	$(BIN)/holdfast design examples/bracket.dxf --pitch 10 --columns 2 --peg-radius 3 --out demo/bracket.json --draw demo/drawings
-	$(BIN)/holdfast sheet demo/bracket.json 1 -o demo/setup.pdf --jaw-force 3000
+	$(BIN)/workhold design examples/bracket.dxf --pitch 10 --columns 2 --peg-radius 3 --out demo/bracket.json --draw demo/drawings
+	$(BIN)/workhold sheet demo/bracket.json 1 -o demo/setup.pdf --jaw-force 3000
 	@echo "Look at demo/setup.pdf, demo/drawings/fixture-01.png and demo/drawings/thumbnails.png; all fixtures are in demo/bracket.json."
-	@echo "$(BIN)/holdfast serve --open shows the same, and more, as a page in the browser."
+	@echo "$(BIN)/workhold serve --open shows the same, and more, as a page in the browser."
 
 # Every test and every example of the documentation.
 test: $(INSTALLED_DEV)
@@ -47,15 +47,15 @@ clean:
 	find . -path ./$(VENV) -prune -o -name __pycache__ -type d -exec rm -rf {} +
 
 $(BIN)/python:
-	$(PYTHON) -c 'import sys; sys.exit("holdfast needs Python 3.11 or later") if sys.version_info < (3, 11) else None'
+	$(PYTHON) -c 'import sys; sys.exit("workhold needs Python 3.11 or later") if sys.version_info < (3, 11) else None'
 	$(PYTHON) -m venv $(VENV)
 
 $(INSTALLED): pyproject.toml constraints.txt | $(BIN)/python
-	@echo 'Installing holdfast and what it needs into $(VENV) ...'
+	@echo 'Installing workhold and what it needs into $(VENV) ...'
 	$(INSTALL) -e .
 	@touch $@
 
 $(INSTALLED_DEV): pyproject.toml constraints.txt | $(BIN)/python
-	@echo 'Installing holdfast and its tools into $(VENV) ...'
+	@echo 'Installing workhold and its tools into $(VENV) ...'
 	$(INSTALL) -e '.[$(EXTRAS)]'
 	@touch $@ $(INSTALLED)

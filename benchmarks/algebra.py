@@ -30,7 +30,7 @@ COLUMNS = (
 
 def algebra_seconds(part: str, pitch: float, columns: int, peg_radius: float) -> dict[str, Any]:
     """Task: counts and seconds of a design by algebra, and the seconds of its polynomial step."""
-    from holdfast.algebra import engine
+    from workhold.algebra import engine
 
     solve, spent = vars(engine)["orientations"], [0.0]
 

@@ -93,21 +93,21 @@ def larger_rows(quick: bool) -> list[tuple[Design, int]]:
 
 def loaded(part: str, pitch: float, columns: int, peg_radius: float) -> tuple[Any, Any]:
     """Workpiece and vise."""
-    import holdfast
+    import workhold
 
-    return holdfast.load(part), holdfast.Vise(pitch=pitch, columns=columns, peg_radius=peg_radius)
+    return workhold.load(part), workhold.Vise(pitch=pitch, columns=columns, peg_radius=peg_radius)
 
 
 def warm() -> None:
     """Load all kernels, compiling them where that has not been done."""
-    import holdfast
+    import workhold
 
-    holdfast.design(*loaded("oblongPart", 10, 1, PEG_RADIUS), threads=1)
+    workhold.design(*loaded("oblongPart", 10, 1, PEG_RADIUS), threads=1)
 
 
 def contact_count(part: str, pitch: float, columns: int, peg_radius: float) -> int:
     """Task: simultaneous contacts, all four inside their features, before closure, jaw order and clamping."""
-    from holdfast.search.contacts import count_contacts
+    from workhold.search.contacts import count_contacts
 
     return count_contacts(*loaded(part, pitch, columns, peg_radius))
 
@@ -122,7 +122,7 @@ def design_seconds(
     counts of types I and II found and listed, statistics, undecided candidates, and the seconds of the fastest of up to
     five runs (one, where a run takes more than two seconds), each from a part loaded anew to the finished result.
     """
-    import holdfast
+    import workhold
 
     warm()
     fastest, spent, runs = inf, 0.0, 0
@@ -131,7 +131,7 @@ def design_seconds(
         start = perf_counter()
         # Only the closure margin is bounded, so only a ranking by it leaves work out.
         rank_by = None if best is None else ["closure-margin"]
-        result = holdfast.design(workpiece, vise, rank_by=rank_by, best=best, threads=threads)
+        result = workhold.design(workpiece, vise, rank_by=rank_by, best=best, threads=threads)
         seconds = perf_counter() - start
         fastest, spent, runs = min(fastest, seconds), spent + seconds, runs + 1
     undecided = 0 if result.proof is None else len(result.proof.undecided)

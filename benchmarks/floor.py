@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 
 def random_contacts(part: str, peg_radius: float, count: int) -> tuple[Array, Array, float]:
     """Points (count, 4, 2) about the part's centre and outward normals (count, 4, 2) of quadruples; the part's half size."""
-    from holdfast.contact.features import contact_features
+    from workhold.contact.features import contact_features
 
     workpiece, _ = loaded(part, 4 * peg_radius, 1, peg_radius)
     features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
@@ -55,7 +55,7 @@ def floor_seconds(part: str, peg_radius: float, tests: int) -> dict[str, Any]:
     """Task: seconds of so many closure tests, the fastest of five runs, and the part of them that close."""
     from numba import njit
 
-    from holdfast.kernels.closure import minors
+    from workhold.kernels.closure import minors
 
     @njit(nogil=True, error_model="numpy")
     def closing(points: Array, normals: Array, length: float, tests: int) -> int:

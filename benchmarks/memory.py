@@ -16,7 +16,7 @@ from random import Random
 from attrs import frozen
 
 from report import Column, Section, measured, run_alone
-from terminal import HOLDFAST, Watched, watch
+from terminal import WORKHOLD, Watched, watch
 
 SIZE = 200.0
 MOST_MEMORY = 1024.0
@@ -71,14 +71,14 @@ def ragged_part(faces: int) -> list[tuple[float, float, float]]:
 
 def face_count(path: str) -> int:
     """Task: how many faces a part has."""
-    import holdfast
+    import workhold
 
-    return len(holdfast.load(path).faces)
+    return len(workhold.load(path).faces)
 
 
 def listed_in(path: str) -> dict[str, bool | int]:
     """Task: whether a result is complete, and how many fixtures it lists."""
-    from holdfast.files.result_reader import read_result
+    from workhold.files.result_reader import read_result
 
     result = read_result(path)
     return {"complete": result.complete, "listed": len(result)}
@@ -87,7 +87,7 @@ def listed_in(path: str) -> dict[str, bool | int]:
 def interrupted(large: Large, part: Path, out: Path, seconds: float) -> Watched:
     """Run the search on a terminal and interrupt it."""
     vise = ["--pitch", f"{large.pitch:g}", "--columns", str(large.columns), "--peg-radius", f"{0.4 * large.pitch:g}"]
-    command = [*HOLDFAST, "design", str(part), *vise, "--best", str(large.best), "--out", str(out)]
+    command = [*WORKHOLD, "design", str(part), *vise, "--best", str(large.best), "--out", str(out)]
     return watch(command, interrupt_after=seconds)
 
 

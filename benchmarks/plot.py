@@ -7,8 +7,8 @@ from typing import Any
 
 from attrs import frozen
 
-from holdfast.drawing.scene import BLACK, GREY, Box, Scene
-from holdfast.geometry.segment import Point
+from workhold.drawing.scene import BLACK, GREY, Box, Scene
+from workhold.geometry.segment import Point
 
 __all__ = ["drawn"]
 

@@ -14,9 +14,9 @@ from statistics import median
 from time import perf_counter
 
 from report import Column, Section, child_environment, run_alone
-from terminal import HOLDFAST, watch
+from terminal import WORKHOLD, watch
 
-DESIGN = [*HOLDFAST, "design", "widget", "--pitch", "8", "--columns", "1", "--peg-radius", "3", "--out"]
+DESIGN = [*WORKHOLD, "design", "widget", "--pitch", "8", "--columns", "1", "--peg-radius", "3", "--out"]
 RUNS = 7
 FIRST_RUN = 12.0
 WORD = "first run"
@@ -46,8 +46,8 @@ def run(quick: bool) -> Section:
         out = str(Path(folder) / "r.json")
         for name, command, limit in (
             ("design widget, pitch 8, cache warm", [*DESIGN, out], 1.0),
-            ("holdfast --help", [*HOLDFAST, "--help"], 0.25),
-            ("import holdfast", [sys.executable, "-c", "import holdfast"], 0.15),
+            ("workhold --help", [*WORKHOLD, "--help"], 0.25),
+            ("import workhold", [sys.executable, "-c", "import workhold"], 0.15),
         ):
             seconds = process_seconds(command, 3 if quick else RUNS)
             middle = median(seconds)
@@ -55,7 +55,7 @@ def run(quick: bool) -> Section:
             section.target(5, f"{name} under {limit:g} s", f"{middle:.3f} s", middle < limit)
         if not quick:
             cache = str(Path(folder) / "cache")
-            first = watch([*DESIGN, out], HOLDFAST_CACHE_DIR=cache)
+            first = watch([*DESIGN, out], WORKHOLD_CACHE_DIR=cache)
             told = (
                 f"the user is told after {first.first_shown:.1f} s" if WORD in first.shown else "the user is not told"
             )

@@ -23,13 +23,13 @@ from attrs import frozen
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-import holdfast  # noqa: E402
+import workhold  # noqa: E402
 from fixture_sets import Judge, Listed, listed, missing  # noqa: E402
-from holdfast import Result, Vise, Workpiece  # noqa: E402
-from holdfast.algebra import design_by_algebra  # noqa: E402
-from holdfast.algebra.table_two import table_two  # noqa: E402
-from holdfast.files.builtin import builtin_parts  # noqa: E402
 from strategies import random_outline  # noqa: E402
+from workhold import Result, Vise, Workpiece  # noqa: E402
+from workhold.algebra import design_by_algebra  # noqa: E402
+from workhold.algebra.table_two import table_two  # noqa: E402
+from workhold.files.builtin import builtin_parts  # noqa: E402
 
 RANDOM_PARTS = 200
 # Differing fixtures shown of each case.
@@ -42,7 +42,7 @@ def paper_parts() -> Iterator[Case]:
     """The models of the paper's parts, with one column and with two."""
     for columns in (1, 2):
         for part in builtin_parts():
-            yield part.name, holdfast.load(part.name), Vise(pitch=10, columns=columns, peg_radius=3)
+            yield part.name, workhold.load(part.name), Vise(pitch=10, columns=columns, peg_radius=3)
 
 
 def complete_sets() -> Iterator[Case]:
@@ -94,7 +94,7 @@ def compare(case: Case) -> Outcome:
     """Run both engines on one case."""
     name, workpiece, vise = case
     start = perf_counter()
-    curves = holdfast.design(workpiece, vise, threads=1)
+    curves = workhold.design(workpiece, vise, threads=1)
     middle = perf_counter()
     algebra = design_by_algebra(workpiece, vise)
     seconds = middle - start, perf_counter() - middle
@@ -134,7 +134,7 @@ def print_comparison(cases: list[Case], processes: int) -> bool:
     sys.stdout.write(f"{'undecided':>13} | {'seconds':>7} {'algebra':>8}\n")
     outcomes = []
     # The first design compiles the kernels; every process finds them on disk, and is to use one processor.
-    holdfast.design(*cases[0][1:])
+    workhold.design(*cases[0][1:])
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with multiprocessing.get_context("spawn").Pool(processes) as pool:
         for outcome in pool.imap(compare, cases):

@@ -32,17 +32,17 @@ COLUMNS = (
 
 def compared(part: str, pitch: float, columns: int, peg_radius: float) -> list[dict[str, Any]]:
     """Task: for every K whether the best K are the first K of the full run, contacts examined by both, and seconds."""
-    import holdfast
+    import workhold
 
     warm()
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
     start = perf_counter()
-    everything = holdfast.design(workpiece, vise, rank_by=RANKING, threads=1)
+    everything = workhold.design(workpiece, vise, rank_by=RANKING, threads=1)
     middle = perf_counter()
     outcomes = []
     for kept in KEPT:
         start_best = perf_counter()
-        best = holdfast.design(workpiece, vise, rank_by=RANKING, best=kept, threads=1)
+        best = workhold.design(workpiece, vise, rank_by=RANKING, best=kept, threads=1)
         seconds = perf_counter() - start_best
         outcomes.append(
             {

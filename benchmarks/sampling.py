@@ -18,9 +18,9 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-import holdfast
-from holdfast import Result, Vise
-from holdfast.listing.problem import Problem
+import workhold
+from workhold import Result, Vise
+from workhold.listing.problem import Problem
 
 Array = NDArray[np.float64]
 Key = tuple[tuple[int, int, int, int], ...]
@@ -176,7 +176,7 @@ def main() -> None:
     for name, pitch, columns in CASES:
         start = perf_counter()
         vise = Vise(pitch=pitch, columns=columns, peg_radius=3)
-        result = holdfast.design(holdfast.load(name), vise, types=["I"])
+        result = workhold.design(workhold.load(name), vise, types=["I"])
         problem, wanted = Problem.of(result.workpiece, vise), expected(result)
         chords = Chords.of(problem)
         say(f"{name:13} {pitch:5} {columns:2} | {len(result):6} {len(wanted):9} |")

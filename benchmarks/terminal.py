@@ -16,10 +16,10 @@ from attrs import frozen
 
 from report import child_environment
 
-__all__ = ["HOLDFAST", "Watched", "watch"]
+__all__ = ["WORKHOLD", "Watched", "watch"]
 
-SCRIPT = Path(sys.executable).with_name("holdfast")
-HOLDFAST = [str(SCRIPT)] if SCRIPT.exists() else [sys.executable, "-m", "holdfast"]
+SCRIPT = Path(sys.executable).with_name("workhold")
+WORKHOLD = [str(SCRIPT)] if SCRIPT.exists() else [sys.executable, "-m", "workhold"]
 
 # How often the process is looked after, in seconds, and how long it has to end after an interrupt.
 LOOK = 0.02

@@ -1,6 +1,6 @@
 """Many clients at once: is anything lost, does memory stay flat, are others answered while some do their worst?
 
-Starts ``holdfast serve`` and lets clients search, follow, page, draw, cancel and delete for a minute; some send nonsense,
+Starts ``workhold serve`` and lets clients search, follow, page, draw, cancel and delete for a minute; some send nonsense,
 files that are too large, and requests that never end. Prints figures; exit code 1 when something was lost.
 """
 
@@ -22,7 +22,7 @@ from typing import Any
 import httpx
 from attrs import define, field
 
-from holdfast.files.load import load
+from workhold.files.load import load
 
 WIDGET = {"name": "widget", "loops": [loop.tolist() for loop in load("widget").loops]}
 KNOB = {"name": "8Handle", "loops": [loop.tolist() for loop in load("8Handle").loops]}
@@ -167,7 +167,7 @@ def main() -> int:
     parser.add_argument("--clients", type=int, default=50)
     parser.add_argument("--seconds", type=float, default=60.0)
     options = parser.parse_args()
-    command = [sys.executable, "-m", "holdfast", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "workhold", "serve", "--port", "0"]
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None

@@ -9,11 +9,11 @@ from random import Random
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.chord import chord, write_curve
-from holdfast.kernels.chord_intervals import chord_intervals
-from holdfast.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
-from holdfast.kernels.through_motion import NONE, coincidence
 from strategies import random_row
+from workhold.kernels.chord import chord, write_curve
+from workhold.kernels.chord_intervals import chord_intervals
+from workhold.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
+from workhold.kernels.through_motion import NONE, coincidence
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.kernels.vise_checks import LEAST_SPAN
-from holdfast.statics.wrenches import wrench_minors
+from workhold.kernels.vise_checks import LEAST_SPAN
+from workhold.statics.wrenches import wrench_minors
 
 Array = NDArray[np.float64]
 

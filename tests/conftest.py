@@ -6,16 +6,16 @@ from __future__ import annotations
 import os
 
 # Before the first kernel is imported.
-os.environ.setdefault("HOLDFAST_KERNELS", "callable")
+os.environ.setdefault("WORKHOLD_KERNELS", "callable")
 
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
-    "holdfast",
+    "workhold",
     deadline=None,
     derandomize=True,
     print_blob=False,
     max_examples=60,
     suppress_health_check=[HealthCheck.too_slow],
 )
-settings.load_profile("holdfast")
+settings.load_profile("workhold")

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chord_examples import KINDS, random_chord
-from holdfast.contact.curves import CurveTable, LatticeSteps, curve_table
-from holdfast.kernels.chord import HEIGHT, POSITION
-from holdfast.kernels.crossing import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
-from holdfast.kernels.curve_columns import COLUMN_STEP, LENGTH, ROW_STEP
-from holdfast.kernels.pieces import cell_pieces
 from strategies import random_row
+from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
+from workhold.kernels.chord import HEIGHT, POSITION
+from workhold.kernels.crossing import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
+from workhold.kernels.curve_columns import COLUMN_STEP, LENGTH, ROW_STEP
+from workhold.kernels.pieces import cell_pieces
 
 Array = NDArray[np.float64]
 

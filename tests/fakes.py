@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from holdfast.model.proof import Proof, Undecided
-from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
-from holdfast.model.result import FixtureTable, Result
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.model.proof import Proof, Undecided
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.model.result import FixtureTable, Result
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 PLATE = [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, -0.2]], [[20, 20, -1], [30, 20, -1]]]
 

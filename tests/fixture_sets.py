@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 import check_result
-from holdfast import Vise, Workpiece
-from holdfast.model.fixture import Fixture
+from workhold import Vise, Workpiece
+from workhold.model.fixture import Fixture
 
 Listed = dict[str, Any]
 

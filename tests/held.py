@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-import holdfast
-from holdfast.model.fixture import Fixture
-from holdfast.model.result import Result
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+import workhold
+from workhold.model.fixture import Fixture
+from workhold.model.result import Result
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 Array = NDArray[np.float64]
 COMPLETE = Path(__file__).parent / "data" / "complete"
@@ -63,13 +63,13 @@ def held_part(name: str) -> Workpiece:
         return Workpiece.from_loops(name, DRAWN[name])
     for path in COMPLETE.glob(f"{name}_*.json"):
         return Workpiece.from_loops(name, json.loads(path.read_text())["workpiece"]["loops"])
-    return holdfast.load(name)
+    return workhold.load(name)
 
 
 @cache
 def held(name: str, pitch: float, columns: int, radius: float, count: int) -> Result:
     """Some fixtures of a part, spread evenly over the ranking."""
-    result = holdfast.design(held_part(name), Vise(pitch=pitch, columns=columns, peg_radius=radius))
+    result = workhold.design(held_part(name), Vise(pitch=pitch, columns=columns, peg_radius=radius))
     chosen = np.unique(np.linspace(0, len(result) - 1, count).astype(int))
     object.__setattr__(result, "table", result.table.take(chosen))
     return result

@@ -14,9 +14,9 @@ from random import Random
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.errors import InputError
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 __all__ = ["outlines", "random_outline", "random_row", "seeds", "vises"]
 

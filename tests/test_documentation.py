@@ -50,7 +50,7 @@ def test_every_benchmark_has_a_place_on_the_page() -> None:
 def test_modules_named_in_the_documentation_exist() -> None:
     """The map from the paper to the code names modules that exist."""
     text = (ROOT / "docs" / "index.md").read_text()
-    package = ROOT / "src" / "holdfast"
+    package = ROOT / "src" / "workhold"
     layers = "geometry|model|contact|kernels|statics|listing|search|algebra|verification|files|drawing|web|cli"
     for name in set(re.findall(rf"`((?:{layers})\.[a-z_]+)", text)):
         path = package / Path(*name.split("."))

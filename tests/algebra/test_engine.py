@@ -11,9 +11,9 @@ from threading import Event
 import pytest
 
 from fixture_sets import Judge, assert_same, listed
-from holdfast import Vise, Workpiece, design
-from holdfast.algebra import design_by_algebra
 from strategies import star, straightened
+from workhold import Vise, Workpiece, design
+from workhold.algebra import design_by_algebra
 
 COMPLETE = Path(__file__).parent.parent / "data" / "complete"
 QUARTER = tan(pi / 8)

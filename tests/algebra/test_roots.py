@@ -7,12 +7,12 @@ from math import pi, tau
 import numpy as np
 import pytest
 
-from holdfast.algebra.exact import exact_roots
-from holdfast.algebra.poses import poses_at
-from holdfast.algebra.resultants import PAPER_DEGREES
-from holdfast.algebra.roots import orientations
-from holdfast.algebra.table_two import random_contacts
-from holdfast.algebra.wedges import SECTORS
+from workhold.algebra.exact import exact_roots
+from workhold.algebra.poses import poses_at
+from workhold.algebra.resultants import PAPER_DEGREES
+from workhold.algebra.roots import orientations
+from workhold.algebra.table_two import random_contacts
+from workhold.algebra.wedges import SECTORS
 
 
 @pytest.mark.parametrize("case", [case for case in PAPER_DEGREES if case[0] > 0])

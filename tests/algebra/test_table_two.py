@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from holdfast.algebra.exact import exact_resultant, exact_roots
-from holdfast.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
-from holdfast.algebra.roots import companion_roots
-from holdfast.algebra.table_two import random_contacts, table_two
+from workhold.algebra.exact import exact_resultant, exact_roots
+from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
+from workhold.algebra.roots import companion_roots
+from workhold.algebra.table_two import random_contacts, table_two
 
 
 def test_degrees_are_the_numbers_of_solutions_of_general_systems() -> None:

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from holdfast import Vise, Workpiece
-from holdfast.algebra import design_by_algebra, engine
-from holdfast.algebra.quartets import Systems
-from holdfast.algebra.undecided import MOST_NAMED, undecided_notes
-from holdfast.algebra.wedges import SECTORS
+from workhold import Vise, Workpiece
+from workhold.algebra import design_by_algebra, engine
+from workhold.algebra.quartets import Systems
+from workhold.algebra.undecided import MOST_NAMED, undecided_notes
+from workhold.algebra.wedges import SECTORS
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 VISE = Vise(pitch=15, columns=2, peg_radius=2)

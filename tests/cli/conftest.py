@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 from typer.testing import Result as Outcome
 
 from fakes import fake_result
-from holdfast.cli.main import app
-from holdfast.model.result import Result
+from workhold.cli.main import app
+from workhold.model.result import Result
 
 Run = Callable[..., Outcome]
 
@@ -44,9 +44,9 @@ def searched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         best = options["best"]
         return attrs.evolve(result, table=result.table.take(slice(0, best)))  # type: ignore[arg-type]
 
-    module = ModuleType("holdfast.search.design")
+    module = ModuleType("workhold.search.design")
     module.design = design  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "holdfast.search.design", module)
+    monkeypatch.setitem(sys.modules, "workhold.search.design", module)
     return memory
 
 
@@ -55,7 +55,7 @@ def process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run the command line in a process of its own, in the test's folder."""
 
     def started(*arguments: object, **options: Any) -> subprocess.CompletedProcess[str]:
-        command: Sequence[str] = [sys.executable, "-m", "holdfast", *(str(argument) for argument in arguments)]
+        command: Sequence[str] = [sys.executable, "-m", "workhold", *(str(argument) for argument in arguments)]
         environment = {**os.environ, "COLUMNS": "100", **options.pop("environment", {})}
         return subprocess.run(
             command, capture_output=True, text=True, timeout=60, cwd=tmp_path, env=environment, check=False, **options

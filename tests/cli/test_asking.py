@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from holdfast.model.holes import Holes
-from holdfast.model.tolerance import Tolerance
+from workhold.model.holes import Holes
+from workhold.model.tolerance import Tolerance
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
 
@@ -95,7 +95,7 @@ def test_nothing_left_to_touch_is_refused(run: Any, words: tuple[str, ...]) -> N
     """Faces that do not exist and zones that cover everything: one sentence."""
     outcome = run(*WIDGET, *words)
     assert outcome.exit_code == 2
-    assert outcome.stderr.count("\n") == 1 and outcome.stderr.startswith("holdfast: error: ")
+    assert outcome.stderr.count("\n") == 1 and outcome.stderr.startswith("workhold: error: ")
 
 
 def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: Path) -> None:

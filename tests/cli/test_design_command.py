@@ -1,4 +1,4 @@
-"""``holdfast design``: what it asks the search, what it writes and says, and what it refuses."""
+"""``workhold design``: what it asks the search, what it writes and says, and what it refuses."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from fakes import fake_proof, fake_result
-from holdfast.cli import design_command
-from holdfast.errors import InputError
-from holdfast.files.result_reader import read_result
+from workhold.cli import design_command
+from workhold.errors import InputError
+from workhold.files.result_reader import read_result
 
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 
@@ -242,7 +242,7 @@ def test_bad_requests_are_refused_before_the_search(
     outcome = run("design", "widget", *VISE, "--out", "old.json", *arguments)
     assert outcome.exit_code == 2
     assert message in outcome.stderr
-    assert outcome.stderr.startswith("holdfast: error: ")
+    assert outcome.stderr.startswith("workhold: error: ")
     assert outcome.stderr.count("\n") == 1
     assert outcome.stdout == ""
     assert searched["asked"] is None
@@ -276,10 +276,10 @@ def test_a_refusal_of_the_search_leaves_the_earlier_output(
     def design(*_: object, **__: object) -> None:
         raise InputError("the peg fits nowhere.")
 
-    monkeypatch.setattr(sys.modules["holdfast.search.design"], "design", design)
+    monkeypatch.setattr(sys.modules["workhold.search.design"], "design", design)
     (tmp_path / "r.json").write_text("old")
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
-    assert (outcome.exit_code, outcome.stderr) == (2, "holdfast: error: the peg fits nowhere.\n")
+    assert (outcome.exit_code, outcome.stderr) == (2, "workhold: error: the peg fits nowhere.\n")
     assert (tmp_path / "r.json").read_text() == "old"
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from holdfast.cli.load_option import parse_load
-from holdfast.errors import InputError
-from holdfast.model.load import ANY_DIRECTION, Load
+from workhold.cli.load_option import parse_load
+from workhold.errors import InputError
+from workhold.model.load import ANY_DIRECTION, Load
 
 
 @pytest.mark.parametrize(

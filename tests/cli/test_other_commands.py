@@ -1,4 +1,4 @@
-"""``holdfast show``, ``features`` and ``parts``, and the help."""
+"""``workhold show``, ``features`` and ``parts``, and the help."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
-from holdfast import __version__
-from holdfast.files.result_file import write_result
+from workhold import __version__
+from workhold.files.result_file import write_result
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def test_parts_lists_the_built_in_parts(run: Any) -> None:
 
 
 def test_version_and_help(run: Any) -> None:
-    assert run("--version").stdout == f"holdfast {__version__}\n"
+    assert run("--version").stdout == f"workhold {__version__}\n"
     outcome = run("--help")
     assert outcome.exit_code == 0
     for word in ("design", "show", "features", "parts", "Examples", "millimetres"):
@@ -98,7 +98,7 @@ def test_version_and_help(run: Any) -> None:
     for command in ("design", "show", "features", "parts"):
         outcome = run(command, "--help")
         assert outcome.exit_code == 0
-        assert "Example: holdfast" in outcome.stdout
+        assert "Example: workhold" in outcome.stdout
 
 
 def test_no_command_and_an_unknown_one(run: Any) -> None:
@@ -107,4 +107,4 @@ def test_no_command_and_an_unknown_one(run: Any) -> None:
     assert "Examples" in outcome.output
     outcome = run("desing")
     assert outcome.exit_code == 2
-    assert outcome.stderr == "holdfast: error: No such command 'desing'. Did you mean 'design'?; see holdfast --help.\n"
+    assert outcome.stderr == "workhold: error: No such command 'desing'. Did you mean 'design'?; see workhold --help.\n"

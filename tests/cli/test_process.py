@@ -26,10 +26,10 @@ def design(workpiece, vise, *, cancel, **options):
     print("searching", flush=True)
     {behaviour}
 
-module = types.ModuleType("holdfast.search.design")
+module = types.ModuleType("workhold.search.design")
 module.design = design
-sys.modules["holdfast.search.design"] = module
-from holdfast.cli.main import run
+sys.modules["workhold.search.design"] = module
+from workhold.cli.main import run
 run()
 """
 
@@ -39,7 +39,7 @@ FAULTY = "raise RuntimeError('secret of the inside')"
 
 
 def start(behaviour: str, folder: Path, *arguments: object, **environment: str) -> subprocess.Popen[str]:
-    """Start ``holdfast design`` with a search of some behaviour."""
+    """Start ``workhold design`` with a search of some behaviour."""
     program = PROGRAM.format(tests=str(TESTS), behaviour=behaviour)
     command = [sys.executable, "-c", program, "design", "widget", *VISE, *map(str, arguments)]
     return subprocess.Popen(
@@ -104,14 +104,14 @@ def test_a_fault_is_owned_up_to_and_its_traceback_kept(tmp_path: Path) -> None:
     _, err = process.communicate(timeout=30)
     assert process.returncode == 1
     assert err.count("\n") == 1
-    assert "a mistake of holdfast, not of yours (RuntimeError: secret of the inside)" in err
+    assert "a mistake of workhold, not of yours (RuntimeError: secret of the inside)" in err
     (kept,) = tmp_path.iterdir()
     assert str(kept) in err
     assert "Traceback" in kept.read_text()
 
 
 def test_a_fault_shows_its_traceback_on_request(tmp_path: Path) -> None:
-    process = start(FAULTY, tmp_path, TMPDIR=str(tmp_path), HOLDFAST_TRACEBACK="1")
+    process = start(FAULTY, tmp_path, TMPDIR=str(tmp_path), WORKHOLD_TRACEBACK="1")
     _, err = process.communicate(timeout=30)
     assert process.returncode == 1
     assert "Traceback (most recent call last)" in err
@@ -121,7 +121,7 @@ def test_a_fault_shows_its_traceback_on_request(tmp_path: Path) -> None:
 @pytest.mark.parametrize("arguments", [("parts",), ("--help",), ("features", "widget")])
 def test_nobody_reading_the_output_is_no_reason_to_complain(tmp_path: Path, arguments: tuple[str, ...]) -> None:
     process = subprocess.Popen(
-        [sys.executable, "-m", "holdfast", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "workhold", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     process.stdout.close()
@@ -134,16 +134,16 @@ def test_nobody_reading_the_output_is_no_reason_to_complain(tmp_path: Path, argu
 def test_a_full_disk_is_no_fault_of_ours() -> None:
     with Path("/dev/full").open("w") as full:
         outcome = subprocess.run(
-            [sys.executable, "-m", "holdfast", "parts"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+            [sys.executable, "-m", "workhold", "parts"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert outcome.returncode == 2
-    assert outcome.stderr == "holdfast: error: the output cannot be written: No space left on device.\n"
+    assert outcome.stderr == "workhold: error: the output cannot be written: No space left on device.\n"
 
 
 def test_bad_input_as_a_process(process: Any, tmp_path: Path) -> None:
     outcome = process("design", "none.dxf", *VISE, "--out", "r.json")
     assert outcome.returncode == 2
-    assert outcome.stderr.startswith("holdfast: error: ")
+    assert outcome.stderr.startswith("workhold: error: ")
     assert outcome.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
@@ -171,12 +171,12 @@ atexit.register(lambda: sys.stderr.write(" ".join(m for m in {NUMBERS + OTHERS} 
     return outcome.stderr.split()
 
 
-COMMAND = "from holdfast.cli.main import run; sys.argv[1:] = {!r}; run()"
+COMMAND = "from workhold.cli.main import run; sys.argv[1:] = {!r}; run()"
 
 
 @pytest.mark.parametrize(
     "program",
-    ["import holdfast", "import holdfast.cli.main", COMMAND.format(["--help"]), COMMAND.format(["design", "--help"])],
+    ["import workhold", "import workhold.cli.main", COMMAND.format(["--help"]), COMMAND.format(["design", "--help"])],
 )
 def test_neither_the_package_nor_the_help_needs_anything_heavy(program: str, tmp_path: Path) -> None:
     assert loaded(program, tmp_path) == []

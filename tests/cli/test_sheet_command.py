@@ -1,4 +1,4 @@
-"""``holdfast sheet``: every kind of file, every option, and what it refuses."""
+"""``workhold sheet``: every kind of file, every option, and what it refuses."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import pypdfium2
 import pytest
 from drawing_examples import diamond
 
-from holdfast import __version__
-from holdfast.files.result_file import write_result
-from holdfast.model.result import FixtureTable, Result, unknown_quality
+from workhold import __version__
+from workhold.files.result_file import write_result
+from workhold.model.result import FixtureTable, Result, unknown_quality
 
 
 def diamond_result() -> Result:
@@ -78,7 +78,7 @@ def test_sheet_tells_where_it_comes_from(run: Any, folder: Path) -> None:
     for wanted in (
         date.today().isoformat(),
         sha256((folder / "r.json").read_bytes()).hexdigest()[:12],
-        f"holdfast {__version__}",
+        f"workhold {__version__}",
         "Fixture 2 of 2",
     ):
         assert wanted in words

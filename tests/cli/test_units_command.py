@@ -1,4 +1,4 @@
-"""``--unit`` in and out, and ``holdfast vises``."""
+"""``--unit`` in and out, and ``workhold vises``."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from reading_helpers import new_dxf, rectangle
 from svg_reading import texts
 
 from fakes import fake_result
-from holdfast.cli.tables import fixture_tables, result_table
-from holdfast.cli.values import length, pitches
-from holdfast.errors import InputError
-from holdfast.files.result_file import write_result
-from holdfast.files.vise_presets import load_vise, preset_names
-from holdfast.model.units import INCH, MILLIMETRE
+from workhold.cli.tables import fixture_tables, result_table
+from workhold.cli.values import length, pitches
+from workhold.errors import InputError
+from workhold.files.result_file import write_result
+from workhold.files.vise_presets import load_vise, preset_names
+from workhold.model.units import INCH, MILLIMETRE
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -169,7 +169,7 @@ def test_the_worked_examples_of_the_manual(
     monkeypatch.chdir(tmp_path)
     printed: list[str] = []
     for line in "".join(blocks).splitlines():
-        if line.startswith("$ holdfast "):
+        if line.startswith("$ workhold "):
             outcome = run(*line.split()[2:])
             assert outcome.exit_code == 0, outcome.stderr
             printed = [" ".join(words.split()) for words in outcome.stdout.splitlines()]

@@ -1,4 +1,4 @@
-"""``holdfast verify``."""
+"""``workhold verify``."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
-from holdfast import Result, Vise, Workpiece, design
-from holdfast.files.result_file import write_result
-from holdfast.model.result import FixtureTable, unknown_quality
+from workhold import Result, Vise, Workpiece, design
+from workhold.files.result_file import write_result
+from workhold.model.result import FixtureTable, unknown_quality
 
 
 @pytest.fixture(scope="module")
@@ -166,19 +166,19 @@ def test_refusals(
 def test_help(run: Any) -> None:
     outcome = run("verify", "--help")
     assert outcome.exit_code == 0
-    assert "Example: holdfast verify" in outcome.stdout
+    assert "Example: workhold verify" in outcome.stdout
 
 
 def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, process: Any) -> None:
     """The proof shares no solver with the search, and the command loads none of it: only what figures of quality need."""
     code = (
-        "import sys; from holdfast.verification import verify_file; v = verify_file('r.json'); assert v.proven; "
-        "print([m for m in sys.modules if m.startswith(('holdfast.search', 'holdfast.kernels', 'holdfast.contact'))])"
+        "import sys; from workhold.verification import verify_file; v = verify_file('r.json'); assert v.proven; "
+        "print([m for m in sys.modules if m.startswith(('workhold.search', 'workhold.kernels', 'workhold.contact'))])"
     )
     outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
     loaded = set(re.findall(r"'([^']+)'", outcome.stdout))
     kernels = {
-        f"holdfast.kernels{name}" for name in ("", ".compiling", ".distance", ".stances", ".quality", ".reactions")
+        f"workhold.kernels{name}" for name in ("", ".compiling", ".distance", ".stances", ".quality", ".reactions")
     }
-    assert loaded <= kernels | {"holdfast.contact", "holdfast.contact.features"}
+    assert loaded <= kernels | {"workhold.contact", "workhold.contact.features"}
     assert process("verify", "r.json").returncode == 0

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from holdfast.contact.features import contact_features, end_slacks, feature_rows
-from holdfast.geometry.segment import Arc, segment_rows
-from holdfast.kernels.distance import outline_distance, segment_distance
-from holdfast.model.diameter import outline_diameter
-from holdfast.model.workpiece import Workpiece
-from holdfast.statics.wrenches import outward_normals
 from strategies import outlines, vises
+from workhold.contact.features import contact_features, end_slacks, feature_rows
+from workhold.geometry.segment import Arc, segment_rows
+from workhold.kernels.distance import outline_distance, segment_distance
+from workhold.model.diameter import outline_diameter
+from workhold.model.workpiece import Workpiece
+from workhold.statics.wrenches import outward_normals
 
 
 @given(outlines(), vises())

@@ -6,9 +6,9 @@ import pytest
 from attrs import evolve
 from drawing_examples import example
 
-from holdfast.model.fixture import Fixture
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.model.fixture import Fixture
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 
 @pytest.fixture(params=[1.0, 0.01, 40.0], ids=["usual", "tiny", "huge"])

@@ -6,10 +6,10 @@ from math import sqrt, tan
 
 import numpy as np
 
-from holdfast.model.fixture import Fixture, Peg, Pose
-from holdfast.model.result import hole_position
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.result import hole_position
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 QUARTER = tan(np.pi / 8)
 PART = [

@@ -10,11 +10,11 @@ from attrs import evolve
 from drawing_examples import PART_AREA, example, hole_area
 from svg_reading import area, by_class, matrix, texts, to_model
 
-from holdfast.drawing import draw_fixture
-from holdfast.drawing.fonts import text_width
-from holdfast.model.fixture import Fixture, Pose
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.drawing import draw_fixture
+from workhold.drawing.fonts import text_width
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]
 

@@ -9,10 +9,10 @@ import pypdfium2
 import pytest
 from drawing_examples import diamond, example
 
-from holdfast.drawing import SheetDetails, draw_features, draw_fixture, draw_sheet, draw_thumbnails
-from holdfast.drawing.fonts import text_width
-from holdfast.drawing.pdf import svg_to_pdf, trace_arc
-from holdfast.drawing.scene import BLACK, Box, Scene, View
+from workhold.drawing import SheetDetails, draw_features, draw_fixture, draw_sheet, draw_thumbnails
+from workhold.drawing.fonts import text_width
+from workhold.drawing.pdf import svg_to_pdf, trace_arc
+from workhold.drawing.scene import BLACK, Box, Scene, View
 
 DAY = date(2026, 3, 31)
 DETAILS = SheetDetails(number=1, count=2, day=DAY, result_hash="ab" * 32, version="1.2.3")
@@ -45,7 +45,7 @@ def test_sheet_holds_its_words_as_text() -> None:
     document = pypdfium2.PdfDocument(svg_to_pdf(pages, DAY))
     assert len(document) == len(pages)
     words = "".join(page.get_textpage().get_text_bounded() for page in document)
-    for wanted in ("L-A1", "R-A3", "diamond", "2026-03-31", "θ", "holdfast 1.2.3"):
+    for wanted in ("L-A1", "R-A3", "diamond", "2026-03-31", "θ", "workhold 1.2.3"):
         assert wanted in words
     assert document.get_metadata_value("Title") == "diamond: setup sheet of fixture 1"
     assert document.get_metadata_value("CreationDate").startswith("D:20260331")

@@ -10,11 +10,11 @@ import pytest
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, scale_bar_of, texts
 
-from holdfast.drawing import draw_features, draw_fixture, draw_thumbnails
-from holdfast.model.fixture import Fixture
-from holdfast.model.units import INCH, MILLIMETRE, Unit
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.drawing import draw_features, draw_fixture, draw_thumbnails
+from workhold.model.fixture import Fixture
+from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]
 Drawn = Callable[[Held, Unit], str]

@@ -8,9 +8,9 @@ import zlib
 import pytest
 from drawing_examples import example
 
-from holdfast.drawing import draw_features, draw_fixture, render, svg_to_png
-from holdfast.drawing.fonts import FOLDER, advance_widths, text_width
-from holdfast.errors import InputError
+from workhold.drawing import draw_features, draw_fixture, render, svg_to_png
+from workhold.drawing.fonts import FOLDER, advance_widths, text_width
+from workhold.errors import InputError
 
 
 def pixels(png: bytes) -> bytes:

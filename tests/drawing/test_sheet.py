@@ -13,11 +13,11 @@ from sheet_reading import collisions, distance, page_of, words_of
 from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
-from holdfast.drawing.length_unit import LengthUnit
-from holdfast.drawing.scene import UNITS_PER_MM, Box
-from holdfast.drawing.sheet import draw_sheet
-from holdfast.drawing.sheet_details import PAPERS, SheetDetails
-from holdfast.drawing.sheet_facts import (
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import UNITS_PER_MM, Box
+from workhold.drawing.sheet import draw_sheet
+from workhold.drawing.sheet_details import PAPERS, SheetDetails
+from workhold.drawing.sheet_facts import (
     LARGE_AMPLIFICATION,
     NEAR_END,
     WEAK_CLOSURE,
@@ -26,15 +26,15 @@ from holdfast.drawing.sheet_facts import (
     edge_distances,
     same_holes,
 )
-from holdfast.drawing.sheet_scale import standard_scale
-from holdfast.model.fixture import Fixture, Peg
-from holdfast.model.holes import Holes
-from holdfast.model.load import Load
-from holdfast.model.result import hole_position
-from holdfast.model.units import INCH, MILLIMETRE, Unit
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
-from holdfast.statics.loads import load_cases
+from workhold.drawing.sheet_scale import standard_scale
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.holes import Holes
+from workhold.model.load import Load
+from workhold.model.result import hole_position
+from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.statics.loads import load_cases
 
 Held = tuple[Fixture, Workpiece, Vise]
 
@@ -127,7 +127,7 @@ def test_all_a_machinist_needs_is_written(size: float) -> None:
         workpiece.name,
         "2026-03-31",
         "0123456789ab…",
-        "holdfast 1.2.3",
+        "workhold 1.2.3",
         "Fixture 3 of 70",
         lengths.words(fixture.jaw_separation),
         lengths.words(pose.x),

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from svg_reading import by_class, matrix, texts
 
-from holdfast.drawing import draw_thumbnails
-from holdfast.errors import InputError
-from holdfast.model.fixture import Fixture
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.drawing import draw_thumbnails
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 Many = tuple[list[Fixture], Workpiece, Vise]
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import ezdxf
 
-from holdfast.files.load import Loaded, read_workpiece
-from holdfast.geometry.loop import signed_area
-from holdfast.model.workpiece import Workpiece
+from workhold.files.load import Loaded, read_workpiece
+from workhold.geometry.loop import signed_area
+from workhold.model.workpiece import Workpiece
 
 RECTANGLE = [(0, 0), (60, 0), (60, 40), (0, 40)]
 

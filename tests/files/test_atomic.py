@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from holdfast.errors import InputError
-from holdfast.files.atomic import refuse_unwritable, refuse_unwritable_folder, text_file, write_bytes
+from workhold.errors import InputError
+from workhold.files.atomic import refuse_unwritable, refuse_unwritable_folder, text_file, write_bytes
 
 
 def test_text_replaces_the_earlier_file_at_the_end(tmp_path: Path) -> None:

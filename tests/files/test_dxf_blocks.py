@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, new_dxf, perimeter, read_dxf, rectangle
 
-from holdfast.errors import InputError
-from holdfast.files.load import load, read_workpiece
-from holdfast.model.workpiece import Workpiece
+from workhold.errors import InputError
+from workhold.files.load import load, read_workpiece
+from workhold.model.workpiece import Workpiece
 
 # A part without any symmetry, of lines, a convex and a concave arc; its arcs bulge by known amounts.
 ROWS = [(0, 0, 0), (30, 0, 0.5), (30, 12, 0), (18, 20, -0.3), (8, 16, 0), (0, 16, 0.2)]
@@ -193,7 +193,7 @@ def test_blocks_that_cannot_be_placed_are_refused(tmp_path: Path) -> None:
 
 def test_blocks_that_multiply_without_end_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten levels of ten INSERTs would be ten thousand million lines; the walk stops at its limit."""
-    monkeypatch.setattr("holdfast.files.dxf_walk.MOST_ENTITIES", 1000)
+    monkeypatch.setattr("workhold.files.dxf_walk.MOST_ENTITIES", 1000)
     document, space = new_dxf()
     rectangle(document.blocks.new("B0"))
     for level in range(1, 11):

@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, read_dxf, rectangle
 
-from holdfast.errors import InputError
-from holdfast.files.chain import Chain, rebulged
-from holdfast.files.joining import join
-from holdfast.files.near import close_pairs, groups
-from holdfast.geometry.loop import loop_segments, signed_area
-from holdfast.geometry.segment import Arc, segment_from_bulge
+from workhold.errors import InputError
+from workhold.files.chain import Chain, rebulged
+from workhold.files.joining import join
+from workhold.files.near import close_pairs, groups
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import Arc, segment_from_bulge
 
 
 def exploded(rows: np.ndarray[Any, Any]) -> list[Chain]:

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from reading_helpers import RECTANGLE, area
 
-from holdfast.errors import InputError
-from holdfast.files.load import builtin_parts, load, read_workpiece
+from workhold.errors import InputError
+from workhold.files.load import builtin_parts, load, read_workpiece
 
 PLATE: dict[str, Any] = {"name": "plate", "units": "mm", "loops": [[[x, y, 0] for x, y in RECTANGLE]]}
 
@@ -67,7 +67,7 @@ def test_json_loops_may_run_in_either_direction(tmp_path: Path) -> None:
 
 def test_a_result_file_gives_its_workpiece(tmp_path: Path) -> None:
     """The ``workpiece`` of a result file is a workpiece file."""
-    result = {"format": "holdfast-result/1", "workpiece": PLATE, "fixtures": []}
+    result = {"format": "workhold-result/1", "workpiece": PLATE, "fixtures": []}
     assert load(write(tmp_path, result)).name == "plate"
 
 
@@ -82,7 +82,7 @@ def test_a_result_file_gives_its_workpiece(tmp_path: Path) -> None:
         ("3", "holds no workpiece"),
         ("[" * 200_000, "nested too deeply|not valid JSON"),
         ("1" * 5000, "too many digits|holds no workpiece"),
-        ('{"format": "holdfast-result/1"}', "holds no workpiece"),
+        ('{"format": "workhold-result/1"}', "holds no workpiece"),
         ({"loops": PLATE["loops"]}, 'no units.*"units": "mm"'),
         ({**PLATE, "units": "furlong"}, 'units "furlong" are not known'),
         ({**PLATE, "units": 3}, "no units"),
@@ -165,7 +165,7 @@ def test_files_without_an_ending_are_told_apart_by_their_bytes(tmp_path: Path) -
 def test_loading_json_imports_no_drawing_library() -> None:
     """A JSON part loads without ezdxf and svgelements, whose imports are slow."""
     code = (
-        "import sys; from holdfast import load; load('widget'); "
+        "import sys; from workhold import load; load('widget'); "
         "print([m for m in ('ezdxf', 'svgelements') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

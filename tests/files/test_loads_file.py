@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from holdfast.errors import InputError
-from holdfast.files.loads_file import POUND_FORCE, read_loads
-from holdfast.model.load import Load
+from workhold.errors import InputError
+from workhold.files.loads_file import POUND_FORCE, read_loads
+from workhold.model.load import Load
 
 TOML = """
 [[load]]

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, read_dxf, rectangle
 
-from holdfast.errors import InputError
-from holdfast.files.joining import Loop
-from holdfast.files.nesting import nest
+from workhold.errors import InputError
+from workhold.files.joining import Loop
+from workhold.files.nesting import nest
 
 
 def ring(x: float, y: float, radius: float) -> Loop:
@@ -109,6 +109,6 @@ def test_trouble_in_other_parts_does_not_matter(tmp_path: Path) -> None:
 
 def test_too_many_segments_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A scan of short chords is refused before anything slow begins."""
-    monkeypatch.setattr("holdfast.files.load.MOST_SEGMENTS", 3)
+    monkeypatch.setattr("workhold.files.load.MOST_SEGMENTS", 3)
     with pytest.raises(InputError, match="the part has 4 segments, more than the 3"):
         read_dxf(tmp_path, rectangle)

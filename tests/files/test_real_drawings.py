@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from reading_helpers import area
 
-from holdfast.errors import InputError
-from holdfast.files.load import load, read_workpiece
-from holdfast.geometry.loop import signed_area as loop_area
-from holdfast.geometry.segment import Arc
+from workhold.errors import InputError
+from workhold.files.load import load, read_workpiece
+from workhold.geometry.loop import signed_area as loop_area
+from workhold.geometry.segment import Arc
 
 ROOT = Path(__file__).parents[2]
 DRAWINGS = ROOT / "tests" / "data" / "drawings"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fakes import fake_result
-from holdfast.files.result_csv import write_result_csv
+from workhold.files.result_csv import write_result_csv
 
 
 def test_every_row_is_a_fixture(tmp_path: Path) -> None:

@@ -16,13 +16,13 @@ import pytest
 
 import check_result
 from fakes import fake_proof, fake_result
-from holdfast import Vise, design, load
-from holdfast.errors import InputError
-from holdfast.files import result_file
-from holdfast.files.result_file import write_result, write_result_to
-from holdfast.files.result_reader import read_result
-from holdfast.model.proof import Undecided
-from holdfast.model.result import FixtureTable
+from workhold import Vise, design, load
+from workhold.errors import InputError
+from workhold.files import result_file
+from workhold.files.result_file import write_result, write_result_to
+from workhold.files.result_reader import read_result
+from workhold.model.proof import Undecided
+from workhold.model.result import FixtureTable
 
 
 @pytest.fixture
@@ -152,7 +152,7 @@ Damage = Callable[[dict[str, Any]], object]
 DAMAGED: list[tuple[Damage, str]] = [
     (lambda d: d.pop("vise"), "the key vise is missing"),
     (lambda d: d.pop("format"), "the key format is missing"),
-    (lambda d: d.update(format="holdfast-result/9"), "format cannot be used"),
+    (lambda d: d.update(format="workhold-result/9"), "format cannot be used"),
     (lambda d: d.pop("fixtures"), "no list of fixtures"),
     (lambda d: d.update(fixtures={}), "no list of fixtures"),
     (lambda d: d["workpiece"].update(units="inch"), "workpiece.units cannot be used"),

@@ -14,10 +14,10 @@ from drawing_examples import PART_AREA, diamond, example, hole_area
 from ezdxf import options
 from ezdxf.document import Drawing
 
-from holdfast.files.setup_dxf import LAYERS, setup_dxf, write_setup_dxf
-from holdfast.model.fixture import Fixture
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.files.setup_dxf import LAYERS, setup_dxf, write_setup_dxf
+from workhold.model.fixture import Fixture
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]
 

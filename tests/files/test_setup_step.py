@@ -17,13 +17,13 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.gp import gp_Pnt
 
-from holdfast.errors import InputError
-from holdfast.files.setup_step import plate_of, setup_step, write_setup_step
-from holdfast.files.step_solids import Solid, read_solids
-from holdfast.model.fixture import Fixture, Peg, Pose
-from holdfast.model.result import LEFT, RIGHT, hole_position
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
+from workhold.errors import InputError
+from workhold.files.setup_step import plate_of, setup_step, write_setup_step
+from workhold.files.step_solids import Solid, read_solids
+from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.result import LEFT, RIGHT, hole_position
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
 # A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise; with a

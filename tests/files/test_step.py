@@ -36,12 +36,12 @@ from step_shapes import (
     write_step,
 )
 
-from holdfast.errors import InputError
-from holdfast.files.load import Loaded, read_workpiece
-from holdfast.files.step import refuse_missing_volume
-from holdfast.files.step_regions import edge_piece
-from holdfast.geometry.segment import Arc, Line
-from holdfast.model.workpiece import Workpiece
+from workhold.errors import InputError
+from workhold.files.load import Loaded, read_workpiece
+from workhold.files.step import refuse_missing_volume
+from workhold.files.step_regions import edge_piece
+from workhold.geometry.segment import Arc, Line
+from workhold.model.workpiece import Workpiece
 
 
 def read(tmp_path: Path, *shapes: Any, **options: Any) -> Loaded:
@@ -418,13 +418,13 @@ def test_the_command_line_reads_step_files(tmp_path: Path) -> None:
     """Remarks go to stderr, faces to stdout, and nothing else."""
     path = write_step(tmp_path / "part.stp", cut(plate(), cylinder(4, 30, (45, 20, 12))))
     done = subprocess.run(
-        [sys.executable, "-m", "holdfast", "features", str(path), "--axis", "z"],
+        [sys.executable, "-m", "workhold", "features", str(path), "--axis", "z"],
         capture_output=True,
         text=True,
         check=True,
     )
     assert "60.000 x 40.000 mm, 8 faces" in done.stdout
-    assert [line.split(":")[0] for line in done.stderr.splitlines()] == ["holdfast", "holdfast"]
+    assert [line.split(":")[0] for line in done.stderr.splitlines()] == ["workhold", "workhold"]
 
 
 def test_all_outlines_are_plain_numbers(tmp_path: Path) -> None:

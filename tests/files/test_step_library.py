@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from fakes import fake_result
-from holdfast.errors import InputError
-from holdfast.files.load import read_workpiece
-from holdfast.files.setup_step import write_setup_step
+from workhold.errors import InputError
+from workhold.files.load import read_workpiece
+from workhold.files.setup_step import write_setup_step
 
 STEP = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"
-NO_EXTRA = "the extra 'step', which is not installed: pip install 'holdfast[step]'."
+NO_EXTRA = "the extra 'step', which is not installed: pip install 'workhold[step]'."
 
 
 class Blocked:
@@ -87,7 +87,7 @@ def test_the_command_line_ends_with_code_2_without_the_extra(tmp_path: Path) -> 
     """A folder with an OCP that cannot be imported stands for a machine without it."""
     (tmp_path / "OCP.py").write_text("raise ModuleNotFoundError(\"No module named 'OCP'\", name='OCP')\n")
     (tmp_path / "part.stp").write_text(STEP)
-    script = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from holdfast.cli.main import run; run()"
+    script = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from workhold.cli.main import run; run()"
     done = subprocess.run(
         [sys.executable, "-c", script, "features", str(tmp_path / "part.stp")],
         capture_output=True,
@@ -100,7 +100,7 @@ def test_the_command_line_ends_with_code_2_without_the_extra(tmp_path: Path) -> 
 
 def test_other_files_do_not_load_the_library(tmp_path: Path) -> None:
     """Reading a built-in part imports nothing of OCP, which takes a second."""
-    script = "import sys, holdfast; holdfast.load('widget'); sys.exit(any(m.startswith('OCP') for m in sys.modules))"
+    script = "import sys, workhold; workhold.load('widget'); sys.exit(any(m.startswith('OCP') for m in sys.modules))"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 

@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, perimeter, read_svg
 
-from holdfast.errors import InputError
-from holdfast.files.load import load
+from workhold.errors import InputError
+from workhold.files.load import load
 
 MM = 'width="100mm" height="50mm" viewBox="0 0 100 50"'
 D = '<path id="d" d="M 0 0 h 40 a 10 10 0 0 1 0 20 h -40 z"/>'
@@ -267,7 +267,7 @@ def test_broken_and_hostile_files(tmp_path: Path, content: str, words: str) -> N
 
 def test_use_bombs_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten levels of ten <use> elements stop at the limit."""
-    monkeypatch.setattr("holdfast.files.svg.MOST_ELEMENTS", 1000)
+    monkeypatch.setattr("workhold.files.svg.MOST_ELEMENTS", 1000)
     levels = '<g id="g0"><rect width="1" height="1"/></g>'
     for k in range(1, 11):
         levels += f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * 10 + "</g>"

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-from holdfast.errors import InputError
-from holdfast.files.dowels import dowel_series, dowel_size
-from holdfast.files.vise_form import checked
-from holdfast.files.vise_presets import load_vise, preset_names
-from holdfast.model.holes import holes_named
-from holdfast.model.tolerance import Tolerance
+from workhold.errors import InputError
+from workhold.files.dowels import dowel_series, dowel_size
+from workhold.files.vise_form import checked
+from workhold.files.vise_presets import load_vise, preset_names
+from workhold.model.holes import holes_named
+from workhold.model.tolerance import Tolerance
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 
@@ -35,7 +35,7 @@ def test_presets_are_vises_with_a_source(name: str) -> None:
     assert loaded.name == name
     assert loaded.title and loaded.source
     assert loaded.vise.rows is None
-    content = tomllib.loads((files("holdfast") / "data" / "vises" / f"{name}.toml").read_text())
+    content = tomllib.loads((files("workhold") / "data" / "vises" / f"{name}.toml").read_text())
     assert checked(content) == content
     assert 0 < loaded.tolerance.peg < 0.2
     assert loaded.tolerance.face == Tolerance().face

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from holdfast.geometry.segment import Arc, Line
-from holdfast.model.workpiece import Workpiece
 from strategies import outlines
+from workhold.geometry.segment import Arc, Line
+from workhold.model.workpiece import Workpiece
 
 
 def faces(*loops):

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from holdfast.geometry.intersect import carrier_intersections, common_points, contains_parameter
-from holdfast.geometry.loop import loop_segments, reversed_vertices, signed_area
-from holdfast.geometry.segment import Arc, Line, segment_from_bulge
 from strategies import outlines
+from workhold.geometry.intersect import carrier_intersections, common_points, contains_parameter
+from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.segment import Arc, Line, segment_from_bulge
 
 places = st.tuples(st.floats(-50, 50), st.floats(-50, 50)).map(lambda p: (round(p[0], 2), round(p[1], 2)))
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from holdfast.geometry.intersect import bounding_box
-from holdfast.geometry.segment import Arc, Line, segment_from_bulge, segment_rows
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.segment import Arc, Line, segment_from_bulge, segment_rows
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (round(p[0], 3), round(p[1], 3)))
 bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))

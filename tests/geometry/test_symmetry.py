@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-import holdfast
-from holdfast.geometry.symmetry import rotations_onto_itself
-from holdfast.model.workpiece import Workpiece
+import workhold
 from strategies import outlines
+from workhold.geometry.symmetry import rotations_onto_itself
+from workhold.model.workpiece import Workpiece
 
 
 def group(*loops):
@@ -63,7 +63,7 @@ def test_parallelograms_turn_but_kites_do_not():
 )
 def test_built_in_parts(name, order):
     """The handles turn onto themselves as their names say, the widget does not."""
-    part = holdfast.load(name)
+    part = workhold.load(name)
     assert len(rotations_onto_itself([face.segment for face in part.faces])) == order
 
 

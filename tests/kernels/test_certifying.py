@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from exact_chords import exact_solution, exactly
-from holdfast.kernels import certifying as kernel
-from holdfast.kernels.contacts import UNKNOWNS, WORK_LENGTH, touch
 from strategies import seeds
+from workhold.kernels import certifying as kernel
+from workhold.kernels.contacts import UNKNOWNS, WORK_LENGTH, touch
 
 LENGTH = 30.0
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from chord_examples import PAIRS, arc_row, curve_row, line_row, off_carrier, random_ranges, turn_at
-from holdfast.kernels.chord import HEIGHT, POSITION, chord, chord_state, curve_value
-from holdfast.kernels.chord_bounds import center_motion
-from holdfast.kernels.curve_columns import COINCIDENCE
-from holdfast.kernels.through_motion import NONE, are_one_chord_apart
+from workhold.kernels.chord import HEIGHT, POSITION, chord, chord_state, curve_value
+from workhold.kernels.chord_bounds import center_motion
+from workhold.kernels.curve_columns import COINCIDENCE
+from workhold.kernels.through_motion import NONE, are_one_chord_apart
 
 
 def difference(values: np.ndarray, step: float) -> float:

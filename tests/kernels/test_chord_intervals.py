@@ -19,8 +19,8 @@ from chord_examples import (
     solutions,
     turn_at,
 )
-from holdfast.kernels.chord import chord
-from holdfast.kernels.chord_intervals import NARROW, chord_intervals
+from workhold.kernels.chord import chord
+from workhold.kernels.chord_intervals import NARROW, chord_intervals
 
 
 def covering(ranges: np.ndarray, alphas: np.ndarray) -> np.ndarray:

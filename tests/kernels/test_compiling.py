@@ -11,19 +11,19 @@ from pathlib import Path
 
 import pytest
 
-import holdfast
-from holdfast.kernels import compiling
+import workhold
+from workhold.kernels import compiling
 
 PROGRAM = """
 import numpy as np
-from holdfast.kernels.distance import outline_distance
+from workhold.kernels.distance import outline_distance
 print(outline_distance(3.0, 4.0, np.array([[0.0, 0, 0, 1, 0, 1e-9, 0, 1]])))
 """
 
 
 def run(root: Path, cache: Path) -> float:
     """Distance from (3, 4) to a point-like segment at (0, 0), by the package in a folder with a cache elsewhere."""
-    environment = os.environ | {"PYTHONPATH": str(root), "HOLDFAST_CACHE_DIR": str(cache)}
+    environment = os.environ | {"PYTHONPATH": str(root), "WORKHOLD_CACHE_DIR": str(cache)}
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM], env=environment, cwd=root, capture_output=True, text=True, check=True
     )
@@ -33,8 +33,8 @@ def run(root: Path, cache: Path) -> float:
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A folder with just enough of the package to compile the distance kernels."""
-    source = Path(holdfast.__file__).parent
-    package = tmp_path / "source" / "holdfast"
+    source = Path(workhold.__file__).parent
+    package = tmp_path / "source" / "workhold"
     (package / "kernels").mkdir(parents=True)
     for name in ("__init__.py", "kernels/__init__.py", "kernels/compiling.py"):
         shutil.copy(source / name, package / name)
@@ -43,7 +43,7 @@ def copy(tmp_path: Path) -> Path:
     callee, caller = callee.split("@inner\ndef outline_distance(", 1)
     # The callee moves to a file of its own, so that the caller's file stays as it is when the callee changes.
     (package / "kernels" / "callee.py").write_text(head + "@inner\ndef segment_distance" + callee)
-    bridge = "from holdfast.kernels.callee import segment_distance\n\n\n@inner\ndef outline_distance("
+    bridge = "from workhold.kernels.callee import segment_distance\n\n\n@inner\ndef outline_distance("
     (package / "kernels" / "distance.py").write_text(head + bridge + caller)
     return tmp_path / "source"
 
@@ -52,7 +52,7 @@ def test_a_changed_callee_gives_the_new_answer_though_its_caller_is_unchanged(co
     """Numba alone would serve the caller's old code; the hash of all sources starts a new folder."""
     cache = tmp_path / "cache"
     assert run(copy, cache) == pytest.approx(5.0, abs=1e-8)
-    callee = copy / "holdfast" / "kernels" / "callee.py"
+    callee = copy / "workhold" / "kernels" / "callee.py"
     changed = callee.read_text().replace("return hypot(beyond,", "return 10.0 * hypot(beyond,")
     assert changed != callee.read_text()
     callee.write_text(changed)
@@ -102,17 +102,17 @@ def test_old_folders_are_dropped_and_the_newest_kept(tmp_path):
 
 
 def test_the_cache_is_named_by_the_environment(monkeypatch, tmp_path):
-    """HOLDFAST_CACHE_DIR comes first, then XDG_CACHE_HOME, then the home folder."""
-    monkeypatch.setenv("HOLDFAST_CACHE_DIR", str(tmp_path / "own"))
+    """WORKHOLD_CACHE_DIR comes first, then XDG_CACHE_HOME, then the home folder."""
+    monkeypatch.setenv("WORKHOLD_CACHE_DIR", str(tmp_path / "own"))
     assert compiling.user_cache() == tmp_path / "own"
-    monkeypatch.delenv("HOLDFAST_CACHE_DIR")
+    monkeypatch.delenv("WORKHOLD_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert compiling.user_cache() == tmp_path / "holdfast"
+    assert compiling.user_cache() == tmp_path / "workhold"
     monkeypatch.delenv("XDG_CACHE_HOME")
-    assert compiling.user_cache() == Path("~/.cache/holdfast").expanduser()
+    assert compiling.user_cache() == Path("~/.cache/workhold").expanduser()
 
 
 def test_the_kernel_by_which_a_first_run_is_told_exists():
     """A first run is told by the stored code of one kernel: one of that name is there, and its code is stored."""
     module, name = compiling.LONGEST_KERNEL
-    assert hasattr(import_module(f"holdfast.kernels.{module}"), name)
+    assert hasattr(import_module(f"workhold.kernels.{module}"), name)

@@ -12,13 +12,13 @@ from flint import arb
 from chord_examples import arc_row, line_row
 from curve_examples import HEIGHT, POSITION, cross, lattice, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
-from holdfast.contact.curves import curve_table
-from holdfast.kernels.chord_discs import value_disc
-from holdfast.kernels.crossing import MULTIPLE, PSI, RADIUS
-from holdfast.kernels.curve_columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
-from holdfast.kernels.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
-from holdfast.kernels.through_motion import NONE, coincidence
 from strategies import random_row
+from workhold.contact.curves import curve_table
+from workhold.kernels.chord_discs import value_disc
+from workhold.kernels.crossing import MULTIPLE, PSI, RADIUS
+from workhold.kernels.curve_columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
+from workhold.kernels.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
+from workhold.kernels.through_motion import NONE, coincidence
 
 
 def sample_places(low: float, high: float, count: int) -> np.ndarray:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given, settings
 
-from holdfast.geometry.segment import segment_rows
-from holdfast.kernels.distance import is_inside, outline_distance, outline_distances, segment_distance
 from strategies import outlines, seeds
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.distance import is_inside, outline_distance, outline_distances, segment_distance
 
 STEPS = 400
 

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 
 from chord_examples import KINDS, SPECIAL, arc_row, curve_row, is_rounded_coincidence, line_row, random_ranges, turn_at
 from exact_chords import ExactChord, dot, exact_chord, exact_distance, exactly, minus, within
-from holdfast.kernels.chord import HEIGHT, POSITION, chord_state, curve_value
-from holdfast.kernels.chord_discs import chord_tail, tail_disc, tail_radius, value_disc
-from holdfast.kernels.chord_intervals import chord_intervals
-from holdfast.kernels.curve_columns import BLUR, COINCIDENCE
-from holdfast.kernels.through_motion import CONCENTRIC, EXACT, NONE, is_regular
 from strategies import seeds
+from workhold.kernels.chord import HEIGHT, POSITION, chord_state, curve_value
+from workhold.kernels.chord_discs import chord_tail, tail_disc, tail_radius, value_disc
+from workhold.kernels.chord_intervals import chord_intervals
+from workhold.kernels.curve_columns import BLUR, COINCIDENCE
+from workhold.kernels.through_motion import CONCENTRIC, EXACT, NONE, is_regular
 
 kinds = st.tuples(st.sampled_from(KINDS), st.sampled_from(KINDS))
 positions = kinds | st.sampled_from(SPECIAL)

@@ -9,7 +9,7 @@ from random import Random
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.kernels.interval import (
+from workhold.kernels.interval import (
     iadd,
     icos,
     icross,

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 import ladders
 from exact_chords import exactly
-from holdfast.kernels import drifts, narrowing
-from holdfast.kernels.certifying import DISCARDED, OPEN
-from holdfast.kernels.vise_checks import APART, PSI, RADIUS, RECORD_LENGTH, TAIL_X, TAIL_Y
-from holdfast.listing.settling import Box, Limits, settle
+from workhold.kernels import drifts, narrowing
+from workhold.kernels.certifying import DISCARDED, OPEN
+from workhold.kernels.vise_checks import APART, PSI, RADIUS, RECORD_LENGTH, TAIL_X, TAIL_Y
+from workhold.listing.settling import Box, Limits, settle
 
 LENGTH = 20.0
 MIN_GAP = -100.0

@@ -16,12 +16,13 @@ from hypothesis import given, settings
 from stress_parts import bracket_with_fillet, disc, lug, ring, two_bumps
 
 from curve_examples import sampled
-from holdfast import Vise, Workpiece
-from holdfast.kernels.chord import HEIGHT, POSITION, chord_state
-from holdfast.kernels.closure import minors, outward_normal
-from holdfast.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
-from holdfast.kernels.curve_columns import CENTER, HEAD, TAIL
-from holdfast.kernels.piece_columns import (
+from strategies import random_outline, seeds
+from workhold import Vise, Workpiece
+from workhold.kernels.chord import HEIGHT, POSITION, chord_state
+from workhold.kernels.closure import minors, outward_normal
+from workhold.kernels.crossing import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
+from workhold.kernels.curve_columns import CENTER, HEAD, TAIL
+from workhold.kernels.piece_columns import (
     CURVE,
     HIGH,
     LOW,
@@ -35,8 +36,8 @@ from holdfast.kernels.piece_columns import (
     X_LEFT,
     X_RIGHT,
 )
-from holdfast.kernels.pieces import cell_pieces
-from holdfast.kernels.type_one import (
+from workhold.kernels.pieces import cell_pieces
+from workhold.kernels.type_one import (
     HAIR,
     ROLE_LENGTH,
     ROLE_X,
@@ -46,7 +47,7 @@ from holdfast.kernels.type_one import (
     sort_roles,
     write_roles,
 )
-from holdfast.kernels.type_two import (
+from workhold.kernels.type_two import (
     TRIPLE_ROWS,
     farthest_right,
     height_range,
@@ -55,7 +56,7 @@ from holdfast.kernels.type_two import (
     row_meets,
     write_triple,
 )
-from holdfast.kernels.vise_checks import (
+from workhold.kernels.vise_checks import (
     GAP_SLACK,
     MIN_GAP,
     PEG_LENGTH,
@@ -64,10 +65,9 @@ from holdfast.kernels.vise_checks import (
     place_peg,
     share_a_jaw,
 )
-from holdfast.listing.problem import Problem
-from holdfast.search.cells import FIRST_ORIENTATION
-from holdfast.search.vise_search import ViseSearch
-from strategies import random_outline, seeds
+from workhold.listing.problem import Problem
+from workhold.search.cells import FIRST_ORIENTATION
+from workhold.search.vise_search import ViseSearch
 
 CELL = pi / 96
 # Columns of what the trials of pairs of pieces return, one row for each root.

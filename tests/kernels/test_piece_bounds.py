@@ -13,10 +13,11 @@ from hypothesis import given
 from chord_examples import SPECIAL, is_rounded_coincidence
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, special_table, steps_of
 from exact_chords import dot, exact_chord, exact_speed, exactly, plus
-from holdfast.contact.curves import curve_table
-from holdfast.kernels.between_ends import slope_range
-from holdfast.kernels.chord import chord_state
-from holdfast.kernels.curve_columns import (
+from strategies import seeds
+from workhold.contact.curves import curve_table
+from workhold.kernels.between_ends import slope_range
+from workhold.kernels.chord import chord_state
+from workhold.kernels.curve_columns import (
     BRANCH,
     COLUMN_STEP,
     FROM,
@@ -28,7 +29,7 @@ from holdfast.kernels.curve_columns import (
     TANGENT_TO,
     TO,
 )
-from holdfast.kernels.piece_columns import (
+from workhold.kernels.piece_columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
     BEND_HIGH,
@@ -56,9 +57,8 @@ from holdfast.kernels.piece_columns import (
     X_LEFT,
     X_RIGHT,
 )
-from holdfast.kernels.pieces import largest_part
-from holdfast.kernels.pushes import push_range, write_pushes
-from strategies import seeds
+from workhold.kernels.pieces import largest_part
+from workhold.kernels.pushes import push_range, write_pushes
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
 EXACT_TO = 1e-15

@@ -12,10 +12,10 @@ from flint import arb
 from chord_examples import arc_row
 from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
-from holdfast.contact.curves import LatticeSteps, curve_table
-from holdfast.kernels.between_ends import slope_range
-from holdfast.kernels.curve_columns import BRANCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TANGENT_FROM, TANGENT_TO, TO
-from holdfast.kernels.piece_columns import (
+from workhold.contact.curves import LatticeSteps, curve_table
+from workhold.kernels.between_ends import slope_range
+from workhold.kernels.curve_columns import BRANCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TANGENT_FROM, TANGENT_TO, TO
+from workhold.kernels.piece_columns import (
     BEND_HIGH,
     BEND_LOW,
     CURVE,
@@ -30,7 +30,7 @@ from holdfast.kernels.piece_columns import (
     VALUE_HIGH,
     VALUE_LOW,
 )
-from holdfast.kernels.through_motion import NONE, coincidence
+from workhold.kernels.through_motion import NONE, coincidence
 
 
 def parts_in_cell(reals: np.ndarray, low: float, high: float) -> list[tuple[float, float]]:

@@ -12,10 +12,11 @@ from hypothesis import given
 
 from chord_examples import SPECIAL, any_ranges, curve_row, is_rounded_coincidence, random_ranges, turn_at
 from exact_chords import cross, dot, exact_chord, exact_speed, exactly
-from holdfast.kernels.chord_bounds import center_motion, turn_size
-from holdfast.kernels.chord_intervals import chord_intervals
-from holdfast.kernels.curve_columns import BRANCH, COINCIDENCE, FROM, LENGTH, TO
-from holdfast.kernels.stretches import (
+from strategies import seeds
+from workhold.kernels.chord_bounds import center_motion, turn_size
+from workhold.kernels.chord_intervals import chord_intervals
+from workhold.kernels.curve_columns import BRANCH, COINCIDENCE, FROM, LENGTH, TO
+from workhold.kernels.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
     HIGH,
@@ -33,8 +34,7 @@ from holdfast.kernels.stretches import (
     add_stretches,
     write_stretch,
 )
-from holdfast.kernels.through_motion import NONE
-from strategies import seeds
+from workhold.kernels.through_motion import NONE
 
 # The step of a central difference is not exact.
 EXACT_TO = 1e-15

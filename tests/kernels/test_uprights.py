@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot
-from holdfast.kernels.chord_intervals import point_on
-from holdfast.kernels.uprights import uprights_between
+from workhold.kernels.chord_intervals import point_on
+from workhold.kernels.uprights import uprights_between
 
 
 def random_upright(random: Random) -> tuple[np.ndarray, np.ndarray, float]:

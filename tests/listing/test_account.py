@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from holdfast import Vise, Workpiece, design, load
-from holdfast.algebra.engine import design_by_algebra
-from holdfast.model.result import Result
+from workhold import Vise, Workpiece, design, load
+from workhold.algebra.engine import design_by_algebra
+from workhold.model.result import Result
 
 PARTS = [
     ("widget", Vise(pitch=8, columns=2, peg_radius=3)),

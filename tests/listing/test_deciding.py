@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from holdfast import Vise, load
-from holdfast.listing import deciding, settling
-from holdfast.listing import finish as finish_module
-from holdfast.listing.deciding import Course, decided, merged
-from holdfast.listing.listed import Work, listed_result
-from holdfast.listing.problem import TYPES, Problem
-from holdfast.listing.ranking import Preference
-from holdfast.model.result import Result
-from holdfast.search import design as design_module
+from workhold import Vise, load
+from workhold.listing import deciding, settling
+from workhold.listing import finish as finish_module
+from workhold.listing.deciding import Course, decided, merged
+from workhold.listing.listed import Work, listed_result
+from workhold.listing.problem import TYPES, Problem
+from workhold.listing.ranking import Preference
+from workhold.model.result import Result
+from workhold.search import design as design_module
 
 
 @pytest.fixture(scope="module")

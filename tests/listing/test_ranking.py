@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast import InputError
-from holdfast.listing.ranking import DEFAULT_RANKING, best_marked, preference_of, rank
-from holdfast.model.load import Load
-from holdfast.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
+from workhold import InputError
+from workhold.listing.ranking import DEFAULT_RANKING, best_marked, preference_of, rank
+from workhold.model.load import Load
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
 
 
 def figures(count: int, **columns: list[float]) -> np.ndarray:

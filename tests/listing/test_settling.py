@@ -7,8 +7,8 @@ import pytest
 
 import ladders
 from exact_chords import exactly
-from holdfast.listing import settling
-from holdfast.listing.settling import Box, Limits, Settled, settle
+from workhold.listing import settling
+from workhold.listing.settling import Box, Limits, Settled, settle
 
 # The ladders' right pegs stand among the left ones: any gap will do here.
 LIMITS = Limits(0.0, -100.0, 20.0)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.model.dowel import peg_error, refuse_limits
+from workhold.errors import InputError
+from workhold.model.dowel import peg_error, refuse_limits
 
 DEVIATION = st.floats(-0.05, 0.05)
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.model.load import ANY_DIRECTION, Load
+from workhold.errors import InputError
+from workhold.model.load import ANY_DIRECTION, Load
 
 ANGLES = st.floats(-1000, 1000)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
-from holdfast.model.fixture import Fixture
-from holdfast.model.result import FixtureTable, hole_position
+from workhold.model.fixture import Fixture
+from workhold.model.result import FixtureTable, hole_position
 
 
 def test_a_result_is_a_sequence():

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.model.units import INCH, MILLIMETRE, unit_named
+from workhold.errors import InputError
+from workhold.model.units import INCH, MILLIMETRE, unit_named
 
 
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name)

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.model.fixture import Peg
-from holdfast.model.holes import column_letters
-from holdfast.model.result import hole_position
-from holdfast.model.vise import Vise
 from strategies import vises
+from workhold.errors import InputError
+from workhold.model.fixture import Peg
+from workhold.model.holes import column_letters
+from workhold.model.result import hole_position
+from workhold.model.vise import Vise
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from holdfast.errors import InputError
-from holdfast.geometry.loop import signed_area
-from holdfast.model.workpiece import Workpiece
 from strategies import outlines
+from workhold.errors import InputError
+from workhold.geometry.loop import signed_area
+from workhold.model.workpiece import Workpiece
 
 SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
 HOLE = [[10, 10, 0], [20, 10, 0], [20, 20, 0], [10, 20, 0]]

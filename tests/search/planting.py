@@ -9,7 +9,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from holdfast import InputError, Vise, Workpiece
+from workhold import InputError, Vise, Workpiece
 
 Array = NDArray[np.float64]
 

@@ -10,16 +10,16 @@ from attrs import evolve, frozen
 from flint import arb, ctx
 
 from fixture_sets import Listed
-from holdfast import Vise, Workpiece
-from holdfast.model.fixture import Fixture, Pose
-from holdfast.verification.balls import dot
-from holdfast.verification.closure import minors
-from holdfast.verification.contacts import Contact, contact_system
-from holdfast.verification.contacts import Pose as Balls
-from holdfast.verification.fixture_proof import Judge
-from holdfast.verification.holes import hole_place
-from holdfast.verification.krawczyk import certified_zero
-from holdfast.verification.outline import Outline
+from workhold import Vise, Workpiece
+from workhold.model.fixture import Fixture, Pose
+from workhold.verification.balls import dot
+from workhold.verification.closure import minors
+from workhold.verification.contacts import Contact, contact_system
+from workhold.verification.contacts import Pose as Balls
+from workhold.verification.fixture_proof import Judge
+from workhold.verification.holes import hole_place
+from workhold.verification.krawczyk import certified_zero
+from workhold.verification.outline import Outline
 
 __all__ = [
     "Carried",

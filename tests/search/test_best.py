@@ -8,10 +8,10 @@ from threading import Event
 import numpy as np
 import pytest
 
-from holdfast import Vise, Workpiece, count_contacts, design, load
-from holdfast.files.result_file import write_result
-from holdfast.listing.best import BestFixtures
-from holdfast.search.vise_search import ViseSearch
+from workhold import Vise, Workpiece, count_contacts, design, load
+from workhold.files.result_file import write_result
+from workhold.listing.best import BestFixtures
+from workhold.search.vise_search import ViseSearch
 
 # Parts with ties, twins, uprights and coincidences; how many to keep.
 CASES = [

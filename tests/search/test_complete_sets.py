@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fixture_sets import Judge, listed, near_an_end
-from holdfast import Vise, Workpiece, design
+from workhold import Vise, Workpiece, design
 
 COMPLETE = sorted((Path(__file__).parent.parent / "data" / "complete").glob("*.json"))
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from fixture_sets import Judge, assert_same, listed, missing, turned
-from holdfast import InputError, Vise, Workpiece, design, load
-from holdfast.algebra.engine import design_by_algebra
-from holdfast.geometry import face
+from workhold import InputError, Vise, Workpiece, design, load
+from workhold.algebra.engine import design_by_algebra
+from workhold.geometry import face
 
 DRAWINGS = Path(__file__).parent.parent / "data" / "drawings"
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from holdfast import Vise, Workpiece, design, load
-from holdfast.listing.problem import Problem
-from holdfast.model.explanation import Explanation
-from holdfast.model.holes import holes_named
-from holdfast.model.restrictions import Restrictions, circle_zone
-from holdfast.search import explaining
-from holdfast.search.contacts import count_contacts
-from holdfast.search.explaining import explain
+from workhold import Vise, Workpiece, design, load
+from workhold.listing.problem import Problem
+from workhold.model.explanation import Explanation
+from workhold.model.holes import holes_named
+from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.search import explaining
+from workhold.search.contacts import count_contacts
+from workhold.search.explaining import explain
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 

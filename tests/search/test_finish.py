@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from holdfast.listing.candidates import Candidates, changes, listed_once, packed, standing, twins
+from workhold.listing.candidates import Candidates, changes, listed_once, packed, standing, twins
 
 
 def candidates(count: int) -> Candidates:

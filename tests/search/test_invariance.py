@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fixture_sets import Judge, assert_same, listed, mirrored, turned
-from holdfast import Vise, Workpiece, design
 from strategies import outlines
+from workhold import Vise, Workpiece, design
 
 EXAMPLES = 8
 pitches = st.sampled_from([9.0, 12.0, 16.0])
@@ -156,7 +156,7 @@ def test_every_listed_fixture_passes_the_independent_checker(workpiece: Workpiec
 @pytest.mark.parametrize("name", ["widget", "small4Handle"])
 def test_number_of_threads_changes_nothing(name: str) -> None:
     """Any number of threads gives the same arrays, bit for bit."""
-    from holdfast import load
+    from workhold import load
 
     vise = Vise(pitch=10, columns=3, peg_radius=3)
     one, three = (design(load(name), vise, threads=threads).table for threads in (1, 3))

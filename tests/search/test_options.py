@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fixture_sets import Judge, listed
-from holdfast import InputError, Result, Vise, design, load
+from workhold import InputError, Result, Vise, design, load
 
 
 def keys(result: Result) -> list[object]:

@@ -9,7 +9,7 @@ import pytest
 from planting import Plant, plant
 
 from fixture_sets import Judge, listed, missing
-from holdfast import design
+from workhold import design
 
 
 def valid_plants(first_seed: int) -> Iterator[tuple[Plant, Judge]]:

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from holdfast.files.load import load
-from holdfast.files.result_file import write_result_to
-from holdfast.model.result import Result
-from holdfast.model.vise import Vise
-from holdfast.search import preview
-from holdfast.search.design import design
+from workhold.files.load import load
+from workhold.files.result_file import write_result_to
+from workhold.model.result import Result
+from workhold.model.vise import Vise
+from workhold.search import preview
+from workhold.search.design import design
 
 
 def identity(fixture: Any) -> tuple[Any, ...]:

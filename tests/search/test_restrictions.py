@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fixture_sets import Judge, listed
-from holdfast import InputError, Result, Vise, Workpiece, design, load
-from holdfast.algebra.engine import design_by_algebra
-from holdfast.model.fixture import Fixture
-from holdfast.model.holes import holes_named
-from holdfast.model.restrictions import Restrictions, circle_zone, polygon_zone
+from workhold import InputError, Result, Vise, Workpiece, design, load
+from workhold.algebra.engine import design_by_algebra
+from workhold.model.fixture import Fixture
+from workhold.model.holes import holes_named
+from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
 
 Key = tuple[object, float]
 

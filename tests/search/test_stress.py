@@ -16,11 +16,11 @@ import pytest
 import stress_parts as parts
 
 from fixture_sets import Judge, assert_same, listed, mirrored, missing, near_an_end, turned
-from holdfast import Result, Vise, Workpiece, design
-from holdfast.algebra.engine import design_by_algebra
-from holdfast.contact.features import contact_features
-from holdfast.model.fixture import Fixture
-from holdfast.verification import verify
+from workhold import Result, Vise, Workpiece, design
+from workhold.algebra.engine import design_by_algebra
+from workhold.contact.features import contact_features
+from workhold.model.fixture import Fixture
+from workhold.verification import verify
 
 Family = Callable[[float], Workpiece]
 HAIRS = [1e-6, 1e-9, 1e-12]

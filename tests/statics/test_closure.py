@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from closing_forces import clamping_force, null_vectors
-from holdfast.kernels.closure import minors
-from holdfast.kernels.vise_checks import LEAST_SPAN
-from holdfast.statics.wrenches import outward_normals
+from workhold.kernels.closure import minors
+from workhold.kernels.vise_checks import LEAST_SPAN
+from workhold.statics.wrenches import outward_normals
 
 
 def contacts(random: Random) -> tuple[np.ndarray, np.ndarray]:

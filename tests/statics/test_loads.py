@@ -11,17 +11,17 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-import holdfast
+import workhold
 from held import held, load_wrench, pushes
-from holdfast.errors import InputError
-from holdfast.model.fixture import Fixture, Peg, Pose
-from holdfast.model.load import Load
-from holdfast.model.quality import CLAMP_AMPLIFICATION, CLOSURE_MARGIN, END_DISTANCE, LOAD_REACTION, LOCATION_ERROR
-from holdfast.model.result import FixtureTable, Result
-from holdfast.model.vise import Vise
-from holdfast.model.workpiece import Workpiece
-from holdfast.statics.loads import load_cases
-from holdfast.statics.quality import quality_of
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.load import Load
+from workhold.model.quality import CLAMP_AMPLIFICATION, CLOSURE_MARGIN, END_DISTANCE, LOAD_REACTION, LOCATION_ERROR
+from workhold.model.result import FixtureTable, Result
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.statics.loads import load_cases
+from workhold.statics.quality import quality_of
 
 Array = NDArray[np.float64]
 PAGE = Path(__file__).parents[2] / "docs" / "quality.md"
@@ -135,7 +135,7 @@ def plate_fixture() -> tuple[Workpiece, Vise, Fixture]:
 
 def table_of(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> FixtureTable:
     """The one row of the search's own table with a fixture's holes and orientation."""
-    result = holdfast.design(workpiece, vise)
+    result = workhold.design(workpiece, vise)
     holes = [peg.hole for peg in fixture.pegs]
     (k,) = (
         k

@@ -12,12 +12,12 @@ from scipy.optimize import linprog, root
 from scipy.spatial import ConvexHull
 
 from held import contacts, held, load_wrench, pushes
-from holdfast.geometry.segment import Arc, segment_rows
-from holdfast.kernels.distance import outline_distances
-from holdfast.model.diameter import outline_diameter
-from holdfast.model.fixture import Fixture
-from holdfast.model.load import Load
-from holdfast.model.quality import (
+from workhold.geometry.segment import Arc, segment_rows
+from workhold.kernels.distance import outline_distances
+from workhold.model.diameter import outline_diameter
+from workhold.model.fixture import Fixture
+from workhold.model.load import Load
+from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
     END_DISTANCE,
@@ -25,11 +25,11 @@ from holdfast.model.quality import (
     LOCATION_ERROR,
     WRENCH_RADIUS,
 )
-from holdfast.model.result import FixtureTable, Result
-from holdfast.model.tolerance import Tolerance
-from holdfast.model.workpiece import Workpiece
-from holdfast.statics.loads import load_cases
-from holdfast.statics.quality import quality_of
+from workhold.model.result import FixtureTable, Result
+from workhold.model.tolerance import Tolerance
+from workhold.model.workpiece import Workpiece
+from workhold.statics.loads import load_cases
+from workhold.statics.quality import quality_of
 
 Array = NDArray[np.float64]
 
@@ -227,7 +227,7 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
     result = held("widget", 8, 1, 3, 50)
     loads = [Load(points=[(3, 4)], force=10)]
     whole = quality_of(result.table, result.workpiece, result.vise, loads=loads)
-    monkeypatch.setattr("holdfast.statics.quality.BLOCK", 7)
+    monkeypatch.setattr("workhold.statics.quality.BLOCK", 7)
     assert np.array_equal(quality_of(result.table, result.workpiece, result.vise, loads=loads), whole)
 
 

@@ -13,9 +13,9 @@ import attrs
 import numpy as np
 import pytest
 
-from holdfast import Result, Vise, design, load
-from holdfast.files.result_file import write_result_to
-from holdfast.verification import Verification, verify_file
+from workhold import Result, Vise, design, load
+from workhold.files.result_file import write_result_to
+from workhold.verification import Verification, verify_file
 
 Data = dict[str, Any]
 

@@ -8,12 +8,12 @@ from typing import Any
 import attrs
 import pytest
 
-from holdfast import Result, Vise, design, load
-from holdfast.model.holes import holes_named
-from holdfast.model.load import Load
-from holdfast.model.quality import FIGURES
-from holdfast.model.restrictions import Restrictions, circle_zone
-from holdfast.verification import Verification, verify
+from workhold import Result, Vise, design, load
+from workhold.model.holes import holes_named
+from workhold.model.load import Load
+from workhold.model.quality import FIGURES
+from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.verification import Verification, verify
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
 

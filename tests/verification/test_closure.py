@@ -10,8 +10,8 @@ from flint import arb
 from hypothesis import given
 
 from closing_forces import null_vectors
-from holdfast.verification.closure import minors
 from strategies import seeds
+from workhold.verification.closure import minors
 
 
 def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:

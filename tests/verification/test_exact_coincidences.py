@@ -12,8 +12,8 @@ import attrs
 import pytest
 
 from fixture_sets import Judge, listed
-from holdfast import Fixture, Peg, Pose, Vise, Workpiece, design
-from holdfast.verification import Ruling, verify_fixture
+from workhold import Fixture, Peg, Pose, Vise, Workpiece, design
+from workhold.verification import Ruling, verify_fixture
 
 Loop = list[list[float]]
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from holdfast import InputError
-from holdfast.verification import verify_file
-from holdfast.verification.listing import read_listing
+from workhold import InputError
+from workhold.verification import verify_file
+from workhold.verification.listing import read_listing
 
 Data = dict[str, Any]
 
@@ -23,7 +23,7 @@ Data = dict[str, Any]
         (b"", "cannot be verified: Expecting value"),
         (b"{", "cannot be verified"),
         (b"[1, 2]", "not a result file"),
-        (b'{"format": "holdfast-result/9"}', "not a result file of the form holdfast-result/1"),
+        (b'{"format": "workhold-result/9"}', "not a result file of the form workhold-result/1"),
         (b"\xff\xfe\x00", "it is not text"),
         (b"[" * 100_000, "nested too deeply"),
         (b'{"format": NaN}', "NaN is not a number"),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import attrs
 import pytest
 
-from holdfast import Fixture, Pose, Result
-from holdfast.verification.repeats import Seen
+from workhold import Fixture, Pose, Result
+from workhold.verification.repeats import Seen
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:

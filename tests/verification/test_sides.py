@@ -9,13 +9,13 @@ import pytest
 from flint import arb
 from hypothesis import given
 
-from holdfast import Workpiece
-from holdfast.geometry.intersect import distance_to_segment
-from holdfast.geometry.segment import Arc, Line
-from holdfast.verification.balls import exact_point
-from holdfast.verification.outline import Outline
-from holdfast.verification.sides import ArcSide, arc_side, line_side
 from strategies import outlines, seeds
+from workhold import Workpiece
+from workhold.geometry.intersect import distance_to_segment
+from workhold.geometry.segment import Arc, Line
+from workhold.verification.balls import exact_point
+from workhold.verification.outline import Outline
+from workhold.verification.sides import ArcSide, arc_side, line_side
 
 
 def holds(ball: arb, value: float, tolerance: float = 1e-9) -> bool:

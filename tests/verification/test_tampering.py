@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from holdfast.verification import Verification
+from workhold.verification import Verification
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
 

@@ -11,10 +11,10 @@ import pytest
 from flint import ctx
 from hypothesis import given, settings
 
-from holdfast import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
-from holdfast.files.result_file import write_result
-from holdfast.verification import fixture_proof, verify, verify_file, verify_fixture
 from strategies import outlines, vises
+from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
+from workhold.files.result_file import write_result
+from workhold.verification import fixture_proof, verify, verify_file, verify_fixture
 
 RING = [
     [[30.0, 0.0, 1.0], [-30.0, 0.0, 1.0]],

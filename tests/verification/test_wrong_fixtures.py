@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from closing_forces import clamping_force, null_vectors
 from fixture_sets import Judge, listed, near_an_end
-from holdfast import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
-from holdfast.geometry.segment import Line
-from holdfast.model.result import hole_position
-from holdfast.verification import verify_fixture
+from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
+from workhold.geometry.segment import Line
+from workhold.model.result import hole_position
+from workhold.verification import verify_fixture
 
 Array = NDArray[np.float64]
 Hole = tuple[str, int, int, int]

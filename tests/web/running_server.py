@@ -11,11 +11,11 @@ from typing import Any
 import httpx
 from attrs import define
 
-from holdfast.files.load import load
-from holdfast.web.guard import Hosts
-from holdfast.web.limits import Limits
-from holdfast.web.serve import Server, bound_socket, make_server
-from holdfast.web.state import ServerState
+from workhold.files.load import load
+from workhold.web.guard import Hosts
+from workhold.web.limits import Limits
+from workhold.web.serve import Server, bound_socket, make_server
+from workhold.web.state import ServerState
 
 PATIENCE = 60.0
 # Kernels may have to be compiled first.

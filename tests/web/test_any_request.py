@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from running_server import RunningServer, request
 
-from holdfast.web.app import create_app
+from workhold.web.app import create_app
 
 OPERATIONS = {
     f"{operation.ok().method} {operation.ok().path}".upper(): operation.ok()

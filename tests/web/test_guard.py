@@ -10,8 +10,8 @@ import pytest
 from running_server import RunningServer, request
 from test_parts import refused
 
-from holdfast.web.guard import Hosts
-from holdfast.web.serve import hosts_of
+from workhold.web.guard import Hosts
+from workhold.web.serve import hosts_of
 
 
 @pytest.mark.parametrize(

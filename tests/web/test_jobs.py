@@ -12,16 +12,16 @@ import pytest
 from running_server import LONG, SQUARE, VISE, WIDGET, RunningServer, request
 from test_parts import refused
 
-from holdfast.files.load import load
-from holdfast.files.result_csv import write_result_csv_to
-from holdfast.files.result_file import write_result_to
-from holdfast.model.load import Load
-from holdfast.model.quality import FIGURES
-from holdfast.model.result import Result
-from holdfast.model.tolerance import Tolerance
-from holdfast.model.vise import Vise
-from holdfast.search.design import design
-from holdfast.statics.loads import load_cases
+from workhold.files.load import load
+from workhold.files.result_csv import write_result_csv_to
+from workhold.files.result_file import write_result_to
+from workhold.model.load import Load
+from workhold.model.quality import FIGURES
+from workhold.model.result import Result
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+from workhold.search.design import design
+from workhold.statics.loads import load_cases
 
 LOAD = {"points": [[10, 5]], "force": 200, "directions": [-30, 30]}
 

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from running_server import SQUARE, WIDGET, RunningServer
 
-from holdfast.files.load import builtin_parts, read_workpiece
-from holdfast.files.vise_presets import load_vise, preset_names
-from holdfast.model.quality import FIGURES
-from holdfast.model.vise import Vise
+from workhold.files.load import builtin_parts, read_workpiece
+from workhold.files.vise_presets import load_vise, preset_names
+from workhold.model.quality import FIGURES
+from workhold.model.vise import Vise
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
 

@@ -1,4 +1,4 @@
-"""``holdfast serve`` as a process."""
+"""``workhold serve`` as a process."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pathlib import Path
 import httpx
 import pytest
 
-from holdfast.cli.main import app
+from workhold.cli.main import app
 
-COMMAND = [sys.executable, "-m", "holdfast", "serve"]
+COMMAND = [sys.executable, "-m", "workhold", "serve"]
 
 
 def is_alive(pid: int) -> bool:
@@ -29,7 +29,7 @@ def is_alive(pid: int) -> bool:
 
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGKILL])
 def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
-    environment = {**os.environ, "HOLDFAST_SECONDS": "77"}
+    environment = {**os.environ, "WORKHOLD_SECONDS": "77"}
     process = subprocess.Popen(
         [*COMMAND, "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
     )
@@ -66,7 +66,7 @@ def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
 def test_options_that_cannot_be_are_refused(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert app(["serve", *arguments], standalone_mode=False) == 2
     error = capsys.readouterr().err
-    assert error.startswith("holdfast: error: ") and error.count("\n") == 1
+    assert error.startswith("workhold: error: ") and error.count("\n") == 1
 
 
 def test_a_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from running_server import RunningServer
 from walking import Walk
 
 AXE = Path(__file__).parent / "data" / "axe.min.js"
-STATIC = files("holdfast.web") / "static"
+STATIC = files("workhold.web") / "static"
 CHECK = """async () => {
   const found = await axe.run(document, { resultTypes: ["violations", "passes"] });
   const words = (rule) => `${rule.id} (${rule.impact}): ${rule.nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`;

@@ -1,5 +1,0 @@
-"""``python -m holdfast``: the command line."""
-
-from holdfast.cli.main import run
-
-run()

@@ -1,7 +1,0 @@
-"""The paper's polynomials: a second engine, independent of the chord-curve search."""
-
-from __future__ import annotations
-
-from holdfast.algebra.engine import design_by_algebra
-
-__all__ = ["design_by_algebra"]

@@ -1,9 +1,0 @@
-"""Proof of results after the fact, in ball arithmetic and without anything of the search.
-
-:func:`verify` and :func:`verify_file` say of every fixture of a result: proven, refuted or undecided.
-"""
-
-from holdfast.verification.fixture_proof import Ruling, verify_fixture
-from holdfast.verification.verify import Unproven, Verification, verify, verify_file
-
-__all__ = ["Ruling", "Unproven", "Verification", "verify", "verify_file", "verify_fixture"]

@@ -1,0 +1,203 @@
+"""From simultaneous contacts to fixtures: ends of features, jaws apart, force closure, clamping (paper, section 3, test).
+
+The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that the closing steps
+would not exclude. What passes is written as records, in the layout of the compiled kernels, for those steps, which both
+engines share and which decide.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.algebra.constraints import Complex
+from workhold.kernels import vise_checks as record
+from workhold.model.vise import Vise
+from workhold.statics.wrenches import outward_normals, wrench_minors
+
+__all__ = ["Held", "fourth_pegs", "joined", "records_of", "row_points"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Rows this near, in pitches, to the reach of a feature are looked at.
+ROUNDING = 1e-9
+# Where a horizontal nearly touches a circle, the contact moves this much more than the orientation, at most.
+STEEPEST = 1e6
+
+
+@define(frozen=True, eq=False)
+class Held:
+    """N parts touched by four pegs, lengths in mm.
+
+    Parameters
+    ----------
+    lefts : how many pegs, the first ones, are on the left jaw.
+    feature, column, row : (N, 4), see ``Systems``.
+    psi : (N,) orientation of the pegs in radians.
+    reach : (N,) how far psi may be off in radians, and the centres in parts of the part's size.
+    center : (N, 4) peg centres in the workpiece's frame as complex numbers.
+    """
+
+    lefts: int
+    feature: IntArray
+    column: IntArray
+    row: IntArray
+    psi: Array
+    reach: Array
+    center: Complex
+
+    def take(self, which: BoolArray | IntArray) -> Held:
+        """The parts of an index array or mask."""
+        return Held(self.lefts, *(getattr(self, name)[which] for name in HELD_FIELDS))
+
+
+HELD_FIELDS = ("feature", "column", "row", "psi", "reach", "center")
+
+
+def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
+    """Whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
+
+    Parameters
+    ----------
+    rows : (..., 10) feature rows, the last two entries how far in mm a contact may lie past the low and the high end.
+    center, radius : (...) peg centres and how far they may be off in mm.
+    """
+    off = (center - rows[..., 1] - 1j * rows[..., 2]) * (rows[..., 3] - 1j * rows[..., 4])
+    straight = rows[..., 0] == 0.0
+    parameter = np.where(straight, off.real, np.angle(off))
+    inside = (rows[..., 5] - np.abs(parameter)) * np.where(straight, 1.0, rows[..., 6])
+    whole = ~straight & (rows[..., 5] >= pi)
+    slack = np.where(parameter > 0.0, rows[..., 9], rows[..., 8])
+    return np.asarray(whole | (inside >= margin - slack - 2.0 * radius))
+
+
+def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float) -> Array:
+    """What may be fixtures among parts touched by four pegs, as records (``kernels.vise_checks``).
+
+    Parameters
+    ----------
+    rows : (F, 10) features about the centre of the part with the slack of their ends.
+    margin : smallest distance in mm from a contact to the end of its feature.
+    length : L of the wrenches in mm, half the part's size.
+    """
+    radius = 4.0 * length * held.reach
+    inside = within_ends(rows[held.feature], held.center, margin, radius[:, None])
+    held = held.take(np.asarray(inside.all(axis=1)))
+    along = (held.center * np.exp(-1j * held.psi)[:, None]).real
+    gap = along[:, held.lefts :].min(axis=1, initial=np.inf) - along[:, : held.lefts].max(axis=1, initial=-np.inf)
+    apart = np.asarray(gap >= vise.min_gap - record.GAP_SLACK - 8.0 * length * held.reach)
+    held, along = held.take(apart), along[apart]
+    points = np.stack([held.center.real, held.center.imag], axis=-1)
+    held_rows = rows[held.feature][..., :8]
+    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length)
+    out = np.zeros((len(held.psi), record.RECORD_LENGTH))
+    out[:, record.KIND] = 1.0 if held.lefts == 2 else 2.0
+    out[:, record.FEATURES : record.FEATURES + 4] = held.feature
+    out[:, record.COLUMNS : record.COLUMNS + 4] = held.column
+    out[:, record.ROWS : record.ROWS + 4] = held.row
+    out[:, record.PSI] = held.psi
+    out[:, record.TAIL_X : record.TAIL_Y + 1] = points[:, 0]
+    out[:, record.APART] = along[:, held.lefts] - along[:, 0]
+    out[:, record.REACH] = held.reach
+    out[:, record.RADIUS] = 4.0 * length * held.reach
+    return np.asarray(out[good])
+
+
+def may_close(held: Held, held_rows: Array, normals: Array, points: Array, length: float) -> BoolArray:
+    """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
+
+    Normals on arcs of radius R are off by at most radius / R, and every minor by a few times that.
+    """
+    radius = 4.0 * length * held.reach
+    curvature = np.where(
+        held_rows[..., 0] == 0.0, 0.0, 1.0 / np.where(held_rows[..., 6] == 0.0, 1.0, held_rows[..., 6])
+    )
+    swing = radius * curvature.max(axis=1, initial=0.0)
+    band = 20.0 * swing + 4.0 * radius / length + record.ROUNDING
+    minors = wrench_minors(points, normals, length)
+    minors = minors * np.where(minors.max(axis=1) >= -minors.min(axis=1), 1.0, -1.0)[:, None]
+    size = np.abs(minors).sum(axis=1)
+    facing = normals[..., 0] * np.cos(held.psi)[:, None] + normals[..., 1] * np.sin(held.psi)[:, None]
+    clamp = -(minors * facing)[:, : held.lefts].sum(axis=1)
+    return np.asarray(
+        (minors.min(axis=1) + band > record.LEAST_CLOSURE * (size - 4.0 * band))
+        & (size + 4.0 * band > record.LEAST_SPAN)
+        & (clamp + 4.0 * band + size * (swing + held.reach) > record.LEAST_CLAMPING * (size - 4.0 * band))
+    )
+
+
+def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
+    """Where a feature's line or circle meets horizontals of the vise.
+
+    Parameters
+    ----------
+    row : (8,) feature row.
+    psi, height : (N,) orientation of the pegs in radians, and height along the vise's y axis in mm.
+
+    Returns
+    -------
+    (indices of horizontals, points in the workpiece's frame, how much they move when height and psi do)
+    """
+    z = np.exp(1j * psi)
+    middle = (row[1] + 1j * row[2]) / z
+    rise = height - middle.imag
+    if row[0] == 0.0:
+        tangent = (row[3] + 1j * row[4]) / z
+        index = np.flatnonzero(np.abs(tangent.imag) > 1e-12)
+        along = rise[index] / tangent.imag[index]
+        slope = np.minimum(3.0 / np.abs(tangent.imag[index]), STEEPEST)
+        return index, (middle[index] + along * tangent[index]) * z[index], slope
+    index = np.flatnonzero(np.abs(rise) < row[6])
+    half = np.sqrt((row[6] - rise[index]) * (row[6] + rise[index]))
+    both = [(middle[index] + sign * half + 1j * rise[index]) * z[index] for sign in (1.0, -1.0)]
+    slope = np.minimum(3.0 * row[6] / np.maximum(half, row[6] / STEEPEST), STEEPEST)
+    return np.concatenate([index, index]), np.concatenate(both), np.concatenate([slope, slope])
+
+
+def fourth_pegs(triples: Held, rows: Array, vise: Vise, margin: float, length: float) -> Held:
+    """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
+
+    Parameters
+    ----------
+    triples : three left pegs each, ``center`` and the others of shape (N, 3).
+    rows, margin, length : see :func:`records_of`.
+    """
+    radius = 4.0 * length * triples.reach
+    inside = within_ends(rows[triples.feature], triples.center, margin, radius[:, None])
+    triples = triples.take(np.asarray(inside.all(axis=1)))
+    turn = np.exp(-1j * triples.psi)
+    base = (triples.center[:, 0] * turn).imag + vise.row_offset
+    found = []
+    for e, row in enumerate(rows):
+        middle = ((row[1] + 1j * row[2]) * turn).imag - base
+        tangent = ((row[3] + 1j * row[4]) * turn).imag
+        half = np.abs(row[5] * tangent) if row[0] == 0.0 else np.full(len(middle), row[6])
+        lowest = np.ceil((middle - half) / vise.pitch[1] - ROUNDING).astype(np.int64)
+        highest = np.floor((middle + half) / vise.pitch[1] + ROUNDING).astype(np.int64)
+        steps = np.arange(int((highest - lowest).max(initial=-1)) + 1)
+        owner, step = np.nonzero(lowest[:, None] + steps <= highest[:, None])
+        line = lowest[owner] + step
+        index, point, slope = row_points(row, triples.psi[owner], base[owner] + line * vise.pitch[1])
+        chosen, line = triples.take(owner[index]), line[index]
+        found.append(
+            Held(
+                3,
+                np.column_stack([chosen.feature, np.full(len(index), e)]),
+                np.column_stack([chosen.column, np.zeros(len(index), np.int64)]),
+                np.column_stack([chosen.row, line]),
+                chosen.psi,
+                chosen.reach * slope,
+                np.column_stack([chosen.center, point]),
+            )
+        )
+    return joined(found)
+
+
+def joined(parts: list[Held]) -> Held:
+    """Several sets, at least one, as one."""
+    return Held(parts[0].lefts, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS))

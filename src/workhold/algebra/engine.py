@@ -1,0 +1,225 @@
+"""The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (paper, section 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from threading import Event
+
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
+
+from workhold.algebra.conditions import Held, fourth_pegs, records_of
+from workhold.algebra.conditions import joined as together
+from workhold.algebra.constraints import Contacts
+from workhold.algebra.poses import peg_centers, poses_at
+from workhold.algebra.quartets import Systems, are_parallel, type_one_systems, type_two_systems
+from workhold.algebra.roots import orientations
+from workhold.algebra.slides import alike, alike_orientations, slides_of, type_one_slides, type_two_slides
+from workhold.algebra.undecided import undecided_notes
+from workhold.algebra.wedges import peg_pairs
+from workhold.listing.listed import Work, listed_result
+from workhold.listing.problem import TYPES, Problem, Progress, check_options
+from workhold.listing.ranking import preference_of
+from workhold.model.load import Load
+from workhold.model.restrictions import Restrictions
+from workhold.model.result import Result
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["design_by_algebra"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Case = tuple[int, int]
+
+# Systems are solved this many at a time.
+BATCH = 4096
+
+
+@define(eq=False)
+class Solver:
+    """Solves systems of one workpiece in one vise.
+
+    Parameters
+    ----------
+    rows : (F, 10) features about the centre of the part, with the slack of their ends.
+    vise : the vise.
+    margin : smallest distance in mm from a contact to the end of its feature.
+    diameter : largest distance in mm between two peg centres: lengths are measured in it.
+    counts : how many systems, orientations and simultaneous contacts there were.
+    undecided : systems that their resultants leave undecided.
+    """
+
+    rows: Array
+    vise: Vise
+    margin: float
+    diameter: float
+    counts: dict[str, int] = field(
+        factory=lambda: dict.fromkeys(("systems", "orientations", "simultaneous_contacts"), 0)
+    )
+    undecided: list[Systems] = field(factory=list)
+
+    def offsets(self, systems: Systems) -> NDArray[np.complex128]:
+        """Pegs from the first peg, right pegs with the jaw separation left out, in mm, (N, K)."""
+        right = (np.arange(systems.feature.shape[1]) >= 2) * (systems.feature.shape[1] == 4)
+        height = systems.row * self.vise.pitch[1] + right * self.vise.row_offset
+        return np.asarray(systems.column * self.vise.pitch[0] + 1j * height)
+
+    def solve(self, systems: Systems, case: Case) -> Held:
+        """Simultaneous contacts of systems of one case (section 4): three or four pegs."""
+        scaled = np.array(self.rows[:, :8])
+        scaled[:, 1:3] /= self.diameter
+        scaled[:, 6] /= self.diameter
+        scaled[scaled[:, 0] == 0.0, 5] /= self.diameter
+        contacts = Contacts(scaled[systems.feature], self.offsets(systems) / self.diameter)
+        owner, psi = self.orientations(contacts, case, systems)
+        poses = poses_at(contacts, case, owner, psi)
+        self.counts["systems"] += len(systems)
+        self.counts["orientations"] += len(psi)
+        chosen = systems.take(poses.owner)
+        lefts = 2 if systems.feature.shape[1] == 4 else 3
+        center = peg_centers(contacts, poses) * self.diameter
+        return Held(lefts, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
+
+    def orientations(self, contacts: Contacts, case: Case, systems: Systems) -> tuple[IntArray, Array]:
+        """Indices of systems and their orientations in radians."""
+        special = alike(contacts) if contacts.rows.shape[1] == 4 else np.zeros(len(systems), np.bool_)
+        plain, other = np.flatnonzero(~special), np.flatnonzero(special)
+        owner, psi, undecided = orientations(contacts.take(plain), case, systems.sectors[plain])
+        mirrored, level = alike_orientations(contacts.take(other))
+        self.undecided.append(systems.take(plain[undecided]))
+        return np.concatenate([plain[owner], other[mirrored]]), np.concatenate([psi, level])
+
+    def fixtures(self, held: Held) -> Array:
+        """Records of the fixtures among simultaneous contacts; three pegs are completed by a fourth first."""
+        if held.feature.shape[1] == 3:
+            held = fourth_pegs(held, self.rows, self.vise, self.margin, self.diameter / 2)
+        self.counts["simultaneous_contacts"] += len(held.psi)
+        return records_of(held, self.rows, self.vise, self.margin, self.diameter / 2)
+
+
+def arcs_first(systems: Systems, rows: Array) -> Systems:
+    """Pegs of each jaw reordered so that arcs come before lines; the first peg is the characteristic point."""
+    line = (rows[systems.feature, 0] == 0.0).astype(np.int64)
+    jaw = (np.arange(line.shape[1]) >= 2) * (line.shape[1] == 4)
+    order = np.argsort(2 * jaw + line, axis=1, kind="stable")
+    feature, column, row = (
+        np.take_along_axis(v, order, axis=1) for v in (systems.feature, systems.column, systems.row)
+    )
+    first = column[:, :1] if line.shape[1] == 3 else np.repeat(column[:, ::2], 2, axis=1)
+    return Systems(feature, column - first, row - row[:, :1], systems.sectors)
+
+
+def three_meet_in_a_point(systems: Systems, rows: Array) -> NDArray[np.bool_]:
+    """Which systems have three concentric arcs: their normals meet, and never close."""
+    center = rows[systems.feature, 1] + 1j * rows[systems.feature, 2]
+    arc = rows[systems.feature, 0] != 0.0
+    same = (np.abs(center[:, :, None] - center[:, None, :]) <= 1e-9) & arc[:, :, None] & arc[:, None, :]
+    return np.asarray((same.sum(axis=2) >= 3).any(axis=1))
+
+
+def generic(systems: Systems, rows: Array) -> Systems:
+    """The systems that their resultant decides."""
+    keep = ~three_meet_in_a_point(systems, rows)
+    if systems.feature.shape[1] == 3:
+        for k, m in ((0, 1), (0, 2), (1, 2)):
+            keep &= ~are_parallel(rows, systems.feature[:, k], systems.feature[:, m])
+    return arcs_first(systems.take(keep), rows)
+
+
+def by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, Case]]:
+    """Systems gathered into batches of one case."""
+    waiting: dict[Case, list[Systems]] = {}
+    for systems in stream:
+        chosen = generic(systems, rows)
+        arcs = rows[chosen.feature, 0] != 0.0
+        left = arcs[:, :2].sum(axis=1) if arcs.shape[1] == 4 else arcs.sum(axis=1)
+        right = arcs[:, 2:].sum(axis=1) if arcs.shape[1] == 4 else np.full(len(arcs), -1)
+        for case in sorted(set(zip(left.tolist(), right.tolist(), strict=True))):
+            held = waiting.setdefault(case, [])
+            held.append(chosen.take((left == case[0]) & (right == case[1])))
+            if sum(map(len, held)) >= BATCH:
+                yield joined(waiting.pop(case)), case
+    for case, held in waiting.items():
+        yield joined(held), case
+
+
+def joined(parts: list[Systems]) -> Systems:
+    """Several sets of systems as one."""
+    return Systems(*(np.concatenate([getattr(p, n) for p in parts]) for n in ("feature", "column", "row", "sectors")))
+
+
+def stages(solver: Solver, types: Sequence[str]) -> Iterator[Array]:
+    """Records of fixtures, a batch at a time."""
+    rows, vise = solver.rows, solver.vise
+    pairs = peg_pairs(rows[:, :8], vise, solver.diameter)
+    slides = slides_of(pairs, rows, vise)
+    for name, systems, sliding in (
+        ("I", type_one_systems, type_one_slides),
+        ("II", type_two_systems, type_two_slides),
+    ):
+        if name not in types:
+            continue
+        held = sliding(pairs, slides, rows, vise)
+        if held:
+            yield solver.fixtures(together(held))
+        for batch, case in by_case(systems(pairs, rows[:, :8], vise), rows):
+            yield solver.fixtures(solver.solve(batch, case))
+
+
+def design_by_algebra(
+    workpiece: Workpiece,
+    vise: Vise,
+    *,
+    types: Sequence[str] = TYPES,
+    contact_margin: float = 0.0,
+    restrictions: Restrictions | None = None,
+    rank_by: Sequence[str] | None = None,
+    tolerance: Tolerance | None = None,
+    loads: Sequence[Load] = (),
+    best: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+) -> Result:
+    """Find every fixture of a workpiece in a vise as the paper does, by resultants.
+
+    Parameters
+    ----------
+    workpiece, vise : what to hold and what to hold it in.
+    types : "I" (two pegs on each jaw), "II" (three and one), or both.
+    contact_margin : smallest distance in mm between a contact and the end of its feature.
+    restrictions, rank_by, tolerance, loads : as for ``workhold.design``.
+    best : list only this many, the best ones; None lists all.
+    progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
+    cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
+
+    Returns
+    -------
+    Result
+        As ``workhold.design`` lists them; ``statistics`` counts features, systems solved, orientations, simultaneous
+        contacts, and systems that their resultants leave undecided (none in any part tried). Of these, ``notes`` name
+        faces and holes.
+
+    Raises
+    ------
+    InputError
+        As ``workhold.design``.
+    """
+    check_options(types, contact_margin, best)
+    preference = preference_of(rank_by, tolerance, loads)
+    problem = Problem.of(workpiece, vise, contact_margin, restrictions)
+    solver = Solver(problem.rows, vise, contact_margin, problem.diameter)
+    records: list[Array] = []
+    complete = True
+    for found in stages(solver, types):
+        records.append(found)
+        if progress is not None:
+            progress(1.0 - 0.9 ** len(records), sum(map(len, records)))
+        if cancel is not None and cancel.is_set():
+            complete = False
+            break
+    statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
+    result = listed_result(problem, preference, records, Work(complete, statistics), best=best, cancel=cancel)
+    return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

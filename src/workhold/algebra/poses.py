@@ -1,0 +1,175 @@
+"""Simultaneous contact poses: from orientations back to phi, sigma and the place (paper, section 4).
+
+For each orientation the constraint of the second peg, a ring, gives up to two phi, and a right peg's constraint up to two
+sigma. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
+themselves, and stays if it meets them to the last digits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.algebra.constraints import Complex, Contacts, Ring, circle_constraint, line_constraint, pair_constraint
+
+__all__ = ["Poses", "poses_at", "refined", "residuals"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Starting values may miss a contact by this part of the part's size.
+NEARLY = 0.02
+# Refined poses meet every contact to this many mm, for a part of size 1.
+MET = 1e-10
+ROUNDS = 24
+# At a double solution the Jacobian vanishes: its determinant is the clamping force times the span of the wrenches, so
+# nothing clamps there. Rounding moves such a pose by some 1e-8, and leaves a determinant of that order.
+DOUBLE = 1e-7
+# A refined pose may be off by this many of the last steps, and by this much at least. At a double solution steps halve and
+# are all that is left; elsewhere the last ones are rounding.
+LAST_STEPS = 16.0
+LEAST_REACH = 1e-11
+
+
+@define(frozen=True, eq=False)
+class Poses:
+    """N poses.
+
+    Parameters
+    ----------
+    owner : (N,) index of the system that a pose solves.
+    psi : (N,) orientation in radians.
+    place : (N,) where the first peg is in the workpiece's frame, a complex number in mm.
+    sigma : (N,) x distance in mm from the first left to the first right peg (0 for three left pegs).
+    reach : (N,) how far off the others may be, in radians and in parts of the part's size.
+    """
+
+    owner: IntArray
+    psi: Array
+    place: Complex
+    sigma: Array
+    reach: Array
+
+    def take(self, which: NDArray[np.bool_] | IntArray) -> Poses:
+        """The poses of an index array or mask."""
+        return Poses(self.owner[which], self.psi[which], self.place[which], self.sigma[which], self.reach[which])
+
+
+def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
+    """Peg centres (N, K) in the workpiece's frame."""
+    slides = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
+    reach = contacts.point[poses.owner] + poses.sigma[:, None] * slides
+    return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
+
+
+def distances(contacts: Contacts, poses: Poses) -> tuple[Array, Complex, Complex]:
+    """Signed distances (N, K) of the pegs from their lines or circles, the directions across, and the peg centres."""
+    center = peg_centers(contacts, poses)
+    off = center - contacts.middle[poses.owner]
+    straight = contacts.rows[poses.owner][..., 0] == 0.0
+    size = np.abs(off)
+    across = np.where(straight, contacts.normal[poses.owner], off / np.where(size == 0.0, 1.0, size))
+    along = np.where(straight, (np.conj(across) * off).real, size - contacts.radius[poses.owner])
+    return along, across, center
+
+
+def residuals(contacts: Contacts, poses: Poses) -> Array:
+    """Largest distance in mm of a peg's centre from its line or circle, (N,)."""
+    return np.asarray(np.abs(distances(contacts, poses)[0]).max(axis=1, initial=0.0))
+
+
+def refined(contacts: Contacts, poses: Poses) -> Poses:
+    """Newton's method on the contact equations; poses that do not settle, and double solutions, are dropped.
+
+    Lengths are in parts of the part's size.
+    """
+    pegs = contacts.rows.shape[1]
+    for _ in range(ROUNDS):
+        off, matrix = linearized(contacts, poses)
+        regular = np.abs(np.linalg.det(matrix)) > 1e-13
+        poses, off, matrix = poses.take(regular), off[regular], matrix[regular]
+        step = np.linalg.solve(matrix, off[..., None])[..., 0]
+        step = np.clip(step, -0.25, 0.25)
+        sigma = poses.sigma - step[:, 3] if pegs == 4 else poses.sigma
+        place = poses.place - step[:, 1] - 1j * step[:, 2]
+        reach = LAST_STEPS * np.abs(step).max(axis=1, initial=0.0) + LEAST_REACH
+        poses = Poses(poses.owner, poses.psi - step[:, 0], place, sigma, reach)
+    off, matrix = linearized(contacts, poses)
+    return poses.take((np.abs(off).max(axis=1, initial=0.0) <= MET) & (np.abs(np.linalg.det(matrix)) > DOUBLE))
+
+
+def linearized(contacts: Contacts, poses: Poses) -> tuple[Array, Array]:
+    """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, the place, and sigma."""
+    pegs = contacts.rows.shape[1]
+    off, across, center = distances(contacts, poses)
+    columns = [(np.conj(across) * 1j * (center - poses.place[:, None])).real, across.real, across.imag]
+    if pegs == 4:
+        columns.append((np.conj(across) * np.exp(1j * poses.psi)[:, None]).real * (np.arange(4) >= 2))
+    return off, np.stack(columns, axis=-1)
+
+
+def angles_of(ring: Ring) -> tuple[Complex, Complex]:
+    """The two points w of the unit circle where rings vanish or come nearest to it."""
+    size = 2.0 * np.abs(ring.first)
+    cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
+    spread = np.arccos(np.clip(cosine, -1.0, 1.0))
+    turn = -np.angle(ring.first)
+    return np.exp(1j * (turn + spread)), np.exp(1j * (turn - spread))
+
+
+def separations(contacts: Contacts, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
+    """The values sigma may have at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
+    if case[1] == -1:
+        return [np.zeros(w.shape)]
+    if case[1] == 0:
+        (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
+        steep = np.abs(one) >= np.abs(two)
+        factor = np.where(steep, one, two)
+        return [-np.where(steep, rest_one.at(w), rest_two.at(w)) / np.where(factor == 0.0, 1.0, factor)]
+    linear, constant = (ring.at(w) for ring in circle_constraint(contacts, 2, psi))
+    root = np.sqrt(np.maximum(linear**2 / 4.0 - constant, 0.0))
+    return [-linear / 2.0 + root, -linear / 2.0 - root]
+
+
+def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
+    """Poses on lines alone: at an orientation the place and sigma solve linear equations (straight-line form)."""
+    pegs = contacts.rows.shape[1]
+    normal = contacts.normal[owner]
+    z = np.exp(1j * psi)[:, None]
+    rest = (np.conj(normal) * (z * contacts.point[owner] - contacts.middle[owner])).real
+    columns = [normal.real, normal.imag]
+    if pegs == 4:
+        columns.append((np.conj(normal) * z).real * (np.arange(4) >= 2))
+    matrix = np.stack(columns, axis=-1)
+    solution = -(np.linalg.pinv(matrix) @ rest[..., None])[..., 0]
+    sigma = solution[:, 2] if pegs == 4 else np.zeros(len(owner))
+    return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], sigma, np.zeros(len(owner)))
+
+
+def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
+    """All poses of systems at, or very near to, orientations.
+
+    Parameters
+    ----------
+    contacts : systems of one case, lengths in parts of the part's size.
+    owner, psi : (M,) which system and which orientation in radians.
+    """
+    if len(owner) == 0:
+        return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0))
+    if case[0] == 0:
+        return refined(contacts, straight_poses(contacts, owner, psi))
+    chosen, column = contacts.take(owner), psi[:, None]
+    found = []
+    for w in angles_of(pair_constraint(chosen, 1, column)):
+        place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
+        for sigma in separations(chosen, case, column, w):
+            found.append(Poses(owner, psi, place[:, 0], sigma[:, 0], np.zeros(len(owner))))
+    everything = Poses(
+        np.concatenate([p.owner for p in found]),
+        np.concatenate([p.psi for p in found]),
+        np.concatenate([p.place for p in found]),
+        np.concatenate([p.sigma for p in found]),
+        np.concatenate([p.reach for p in found]),
+    )
+    return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY))

@@ -1,0 +1,194 @@
+r"""Eliminating sigma and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
+
+A resultant is never written out as a polynomial of symbols. It is evaluated at as many orientations as it has
+coefficients, from closed formulas for the small resultants in w, and its coefficients follow by a discrete Fourier
+transform: a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
+
+Ranges of the exponents of z, from the constraints' formulas, bound d (Newton polygons; D. Bernstein 1975). They give
+the numbers of complex solutions of general systems, below the degrees of the paper's Table 2:
+
+    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16;
+    three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
+"""
+
+from __future__ import annotations
+
+from math import tau
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.algebra.constraints import (
+    COINCIDENT,
+    Complex,
+    Contacts,
+    Ring,
+    circle_constraint,
+    circle_difference,
+    line_constraint,
+    pair_constraint,
+)
+
+__all__ = ["PAPER_DEGREES", "TRUE_DEGREES", "coefficients", "degree_bound", "have_no_sigma", "resultant"]
+
+Array = NDArray[np.float64]
+
+# (arcs on the left, arcs on the right) of Type I; (arcs on the left, -1) of Type II.
+PAPER_DEGREES = {
+    (0, 0): 4,
+    (1, 0): 12,
+    (2, 0): 12,
+    (1, 1): 24,
+    (2, 1): 24,
+    (2, 2): 24,
+    (0, -1): 2,
+    (1, -1): 4,
+    (2, -1): 6,
+    (3, -1): 8,
+}
+TRUE_DEGREES = PAPER_DEGREES | {(1, 0): 8, (2, 0): 10, (1, 1): 14, (2, 1): 16, (2, 2): 16, (3, -1): 6}
+
+# The grid of orientations starts here, away from the symmetric ones.
+GRID_START = 0.1234
+
+
+def degree_bound(case: tuple[int, int]) -> int:
+    """d, half the largest degree in t of a case's resultant."""
+    return TRUE_DEGREES[case] // 2
+
+
+def resultant_of_rings(one: Ring, two: Ring) -> tuple[Array, Array]:
+    """Resultant in w of two rings, and the sum of the sizes of its terms.
+
+    For a w + b + a* / w and c w + d + c* / w it is \\|a d - c b\\|^2 - 4 Im(a c*)^2.
+    """
+    left, right = one.first * two.middle, two.first * one.middle
+    across = one.first * np.conj(two.first)
+    value = np.abs(left - right) ** 2 - 4.0 * across.imag**2
+    return value, (np.abs(left) + np.abs(right)) ** 2 + 4.0 * np.abs(across) ** 2
+
+
+def product(one: Ring, two: Ring) -> tuple[Array, Complex, Complex]:
+    """Product of two rings: c0 + 2 Re(c1 w + c2 w^2)."""
+    return (
+        one.middle * two.middle + 2.0 * (one.first * np.conj(two.first)).real,
+        one.middle * two.first + two.middle * one.first,
+        one.first * two.first,
+    )
+
+
+def without_sigma(factor: Array, rest: Ring, linear: Ring, constant: Ring) -> tuple[Array, Complex, Complex]:
+    """Resultant in sigma of factor sigma + rest and sigma^2 + linear sigma + constant, of degree two in w.
+
+    It is rest^2 - factor rest linear + factor^2 constant.
+    """
+    a, b = product(rest, rest), product(rest, linear)
+    square = factor**2
+    return (
+        a[0] - factor * b[0] + square * constant.middle,
+        a[1] - factor * b[1] + square * constant.first,
+        a[2] - factor * b[2],
+    )
+
+
+def resultant_with_square(ring: Ring, double: tuple[Array, Complex, Complex]) -> tuple[Array, Array]:
+    """Resultant in w of a ring and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
+
+    \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, written without division:
+    the roots' product is a* / a and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
+    """
+    a, b = ring.first, ring.middle
+    low = np.conj(a)
+    both = a * low
+    powers = [
+        None,
+        -b,
+        b**2 - 2.0 * both,
+        -(b**3) + 3.0 * b * both,
+        b**4 - 4.0 * b**2 * both + 2.0 * both**2,
+    ]
+    c = {0: double[0], 1: double[1], 2: double[2], -1: np.conj(double[1]), -2: np.conj(double[2])}
+    value = np.zeros(a.shape, np.complex128)
+    size = np.zeros(a.shape)
+    for j in range(-2, 3):
+        for k in range(-2, j + 1):
+            term = c[j] * c[k] * a ** (2 - j) * low ** (2 + k)
+            if j == k:
+                term = c[j] ** 2 * a ** (2 - j) * low ** (2 + j)
+            else:
+                term = term * powers[j - k]
+            value += term
+            size += np.abs(term)
+    return value.real, size
+
+
+def straight_line_form(contacts: Contacts, psi: Array) -> tuple[Array, Array]:
+    """The determinant of the contacts' equations, linear in the place and sigma.
+
+    Rows (normal, factor of sigma on the right jaw, rest); three rows without sigma for Type II.
+    """
+    z = np.exp(1j * psi)[..., None]
+    normal = np.broadcast_to(contacts.normal[:, None, :], (*psi.shape, contacts.rows.shape[1]))
+    rest = (np.conj(normal) * (z * contacts.point[:, None, :] - contacts.middle[:, None, :])).real
+    columns = [normal.real, normal.imag, rest]
+    if contacts.rows.shape[1] == 4:
+        factor = (np.conj(normal) * z).real * (np.arange(4) >= 2)
+        columns.insert(2, factor)
+    matrix = np.stack(columns, axis=-1)
+    return np.linalg.det(matrix), np.abs(rest).max(axis=-1)
+
+
+def resultant(contacts: Contacts, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
+    """The resultant of N systems of one case at (N, M) orientations, and the size of its terms.
+
+    Parameters
+    ----------
+    contacts : arcs before lines on each jaw, the left jaw with no fewer arcs than the right one.
+    case : (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type II.
+    psi : in radians.
+    """
+    left, right = case
+    if left == 0:
+        return straight_line_form(contacts, psi)
+    second = pair_constraint(contacts, 1, psi)
+    if right == -1:
+        return triple_resultant(contacts, second, psi)
+    if right == 0:
+        return resultant_of_rings(second, sigma_between_lines(contacts, psi))
+    factor, rest = circle_difference(contacts, 2, 3, psi) if right == 2 else line_constraint(contacts, 3, psi)
+    value, size = resultant_with_square(second, without_sigma(factor, rest, *circle_constraint(contacts, 2, psi)))
+    free = have_no_sigma(contacts)[:, None] & (right == 2)
+    # Where sigma is not in the difference at all, the difference alone takes the place of the resultant in sigma.
+    plain_value, plain_size = resultant_of_rings(second, rest)
+    return np.where(free, plain_value, value), np.where(free, plain_size, size)
+
+
+def triple_resultant(contacts: Contacts, second: Ring, psi: Array) -> tuple[Array, Array]:
+    """Resultant of three left pegs; where the second and third arc slide, that factor is divided out."""
+    value, size = resultant_of_rings(second, pair_constraint(contacts, 2, psi))
+    slides = contacts.slides(1, 2)[:, None]
+    length = np.where(slides, contacts.centers_apart(1, 2, psi)[0], 1.0)
+    return value / length**2, size / length**2
+
+
+def sigma_between_lines(contacts: Contacts, psi: Array) -> Ring:
+    """h_sigma of pegs 3 and 4 with sigma eliminated."""
+    (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
+    return Ring(one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first)
+
+
+def have_no_sigma(contacts: Contacts) -> NDArray[np.bool_]:
+    """Which systems have concentric arcs under right pegs that stand one above the other, (N,)."""
+    concentric = np.abs(contacts.middle[:, 2] - contacts.middle[:, 3]) <= COINCIDENT
+    return np.asarray(concentric & (np.abs((contacts.point[:, 2] - contacts.point[:, 3]).real) <= COINCIDENT))
+
+
+def coefficients(contacts: Contacts, case: tuple[int, int], bound: int | None = None) -> tuple[Complex, Array]:
+    """Coefficients of the resultants: (N, 2 d + 1) of z^-d ... z^d, and (N,) the size of the terms they come from."""
+    bound = degree_bound(case) if bound is None else bound
+    count = 2 * bound + 1
+    psi = GRID_START + tau * np.arange(count) / count
+    value, size = resultant(contacts, case, np.broadcast_to(psi, (len(contacts.rows), count)))
+    exponents = np.arange(-bound, bound + 1)
+    transform = np.exp(-1j * psi[:, None] * exponents[None, :]) / count
+    return value @ transform, size.max(axis=1)

@@ -1,0 +1,124 @@
+"""The paper's Table 2: degrees of the resultants, found on random data, beside the paper's and the least possible.
+
+The degree in t = tan(psi / 2) is read off the coefficients themselves, which are taken over a longer span than the formulas
+can fill. A resultant whose degree equals the number of complex solutions of a general system has no spurious root: no
+elimination can be of lower degree. Those numbers (``resultants.TRUE_DEGREES``) are known from Groebner bases over finite
+fields. Every complex root is isolated in ball arithmetic, and every real one must lead to one pose.
+"""
+
+from __future__ import annotations
+
+from math import tau
+
+import numpy as np
+from attrs import frozen
+
+from workhold.algebra.constraints import Contacts
+from workhold.algebra.poses import Poses, poses_at
+from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
+from workhold.algebra.roots import hard_roots
+
+__all__ = ["Row", "random_contacts", "table_two"]
+
+# Spans of coefficients, and what of the largest counts as nothing.
+SPAN = 12
+NOTHING = 1e-11
+# Roots this near to the unit circle are real.
+REAL = 1e-9
+# Poses nearer than this are one.
+SAME = 1e-6
+
+
+@frozen
+class Row:
+    """One row of the table.
+
+    Parameters
+    ----------
+    type : "I" or "II".
+    left, right : arcs on each jaw, of two and two pegs, or of three (right is 0).
+    paper : the paper's degree.
+    ours : the largest degree found.
+    general : number of complex solutions of general systems.
+    systems : how many random systems were looked at; in all of them together there are
+    roots : isolated complex roots of the resultants,
+    real : real roots among them,
+    poses : poses that the real roots lead to.
+    """
+
+    type: str
+    left: int
+    right: int
+    paper: int
+    ours: int
+    general: int
+    systems: int
+    roots: int
+    real: int
+    poses: int
+
+
+def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
+    """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, with a real pose each."""
+    random = np.random.default_rng(seed)
+    left, right = case
+    pegs = 3 if right < 0 else 4
+    arcs = np.array([1.0] * left + [0.0] * ((3 if right < 0 else 2) - left) + [1.0] * right + [0.0] * (2 - right))[
+        :pegs
+    ]
+    rows = np.zeros((count, pegs, 8))
+    angle = random.uniform(0.0, tau, (count, pegs))
+    rows[..., 0], rows[..., 5], rows[..., 7] = arcs, 1.0, 1.0
+    rows[..., 3], rows[..., 4] = np.cos(angle), np.sin(angle)
+    rows[..., 6] = arcs * random.uniform(0.2, 1.0, (count, pegs))
+    point = random.normal(size=(count, pegs)) + 1j * random.normal(size=(count, pegs))
+    point[:, 0] = 0.0
+    turn = np.exp(1j * random.uniform(0.0, tau, (count, 1)))
+    place = random.normal(size=(count, 1)) + 1j * random.normal(size=(count, 1))
+    touch = place + turn * (point + random.normal(size=(count, 1)) * (np.arange(pegs) >= 2) * (pegs == 4))
+    # A circle passes through its peg at the drawn angle; a line through it in the drawn direction.
+    middle = touch - rows[..., 6] * np.exp(1j * angle)
+    rows[..., 1], rows[..., 2] = middle.real, middle.imag
+    return Contacts(rows, point)
+
+
+def distinct_poses(poses: Poses) -> int:
+    """How many poses there are, those counted once that several starting values lead to."""
+    place = [poses.place.real, poses.place.imag, poses.sigma]
+    values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
+    same = (np.abs(values[:, None] - values[None]) <= SAME).all(axis=2)
+    return int((same.argmax(axis=1) == np.arange(len(values))).sum())
+
+
+def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
+    """Degrees and numbers of roots for every row of the table.
+
+    Parameters
+    ----------
+    count : random systems for each row.
+    """
+    rows = []
+    for case in PAPER_DEGREES:
+        contacts = random_contacts(case, count, seed)
+        wide = np.abs(coefficients(contacts, case, SPAN)[0])
+        filled = (wide > NOTHING * wide.max(axis=1, keepdims=True)).any(axis=0)
+        values = coefficients(contacts, case)[0]
+        found = [hard_roots(contacts.take(np.array([k])), case, values[k]) for k in range(count)]
+        roots = [np.zeros(0, np.complex128) if several is None else several for several in found]
+        root, owner = np.concatenate(roots), np.repeat(np.arange(count), [len(several) for several in roots])
+        real = np.abs(np.abs(root) - 1.0) <= REAL
+        rows.append(
+            Row(
+                type="II" if case[1] < 0 else "I",
+                left=case[0],
+                right=max(case[1], 0),
+                paper=PAPER_DEGREES[case],
+                ours=int(np.flatnonzero(filled).max() - np.flatnonzero(filled).min()),
+                general=TRUE_DEGREES[case],
+                systems=count,
+                roots=len(root),
+                real=int(real.sum()),
+                poses=distinct_poses(poses_at(contacts, case, owner[real], np.angle(root[real]))),
+            )
+        )
+    return rows

@@ -1,0 +1,104 @@
+"""What workhold's commands have in common: a plain help in sections, and words handed on as they were typed.
+
+Typer would format the help with Rich and check every value with pydantic. Both take longer to import than most commands
+take to run; the help needs no boxes, and :mod:`workhold.cli.values` reads the words anyway.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from inspect import cleandoc
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+__all__ = ["PlainCommand", "PlainGroup"]
+
+BAD_INPUT = 2
+ARGUMENTS, OPTIONS, COMMANDS = "Arguments", "Options", "Commands"
+# Columns of a help's left side; longer entries have a line of their own.
+WIDEST_ENTRY = 27
+
+
+class PlainCommand(TyperCommand):
+    """A subcommand whose parameters are words."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """The parameters and the help option, whose words are not checked here."""
+        return as_typed(super().get_params(ctx))
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Usage, text, and the parameters by their sections."""
+        self.format_usage(ctx, formatter)
+        self.format_help_text(ctx, formatter)
+        write_sections(self, ctx, formatter)
+
+
+class PlainGroup(TyperGroup):
+    """A group of subcommands; without any word it shows the help."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """The parameters and the help option, whose words are not checked here."""
+        return as_typed(super().get_params(ctx))
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the words in front of the subcommand, or show the help where there is none.
+
+        Raises
+        ------
+        typer.Exit
+            Without any word.
+        """
+        if not args:
+            typer.echo(ctx.get_help())
+            raise typer.Exit(BAD_INPUT)
+        return super().parse_args(ctx, args)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Usage, text, options, subcommands with the first paragraph of their texts, and the epilog as it is."""
+        self.format_usage(ctx, formatter)
+        self.format_help_text(ctx, formatter)
+        write_sections(self, ctx, formatter)
+        commands = [(name, cleandoc(command.help or "").split("\n\n")[0]) for name, command in self.commands.items()]
+        with formatter.section(heading(COMMANDS)):
+            formatter.write_dl(commands, col_max=WIDEST_ENTRY)
+        formatter.write(f"\n{cleandoc(self.epilog or '')}\n")
+
+
+def as_typed(parameters: list[Any]) -> list[Any]:
+    """The same parameters, which from now on hand on a word, or None for an option not given, without a check."""
+    for parameter in parameters:
+        if "process_value" not in vars(parameter):
+            parameter.process_value = partial(taken, parameter, parameter.process_value)
+    return parameters
+
+
+def taken(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
+    """The value of a parameter; what is neither a word nor missing by right is for Typer to check."""
+    if isinstance(value, str) or (value is None and not parameter.required):
+        return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
+    return checked(ctx, value)
+
+
+def heading(words: str) -> str:
+    """A heading of the help, bold on a terminal."""
+    return typer.style(words, bold=True)
+
+
+def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
+    """Write a command's parameters, each in the section named by its panel; the options without one come last."""
+    sections: dict[str, list[tuple[str, str]]] = {}
+    for parameter in command.get_params(ctx):
+        entry = parameter.get_help_record(ctx)
+        if entry is None:
+            continue
+        others = OPTIONS
+        if parameter.param_type_name == "argument":
+            # Typer would add the type of the value, which is text for all of them.
+            others, entry = ARGUMENTS, (parameter.metavar, entry[1])
+        sections.setdefault(getattr(parameter, "rich_help_panel", None) or others, []).append(entry)
+    for name in sorted(sections, key=lambda name: name == OPTIONS):
+        with formatter.section(heading(name)):
+            formatter.write_dl(sections[name], col_max=WIDEST_ENTRY)

@@ -1,0 +1,318 @@
+"""``workhold design``: every fixture of a part in a vise."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from workhold.cli.explanations import explain_none
+from workhold.cli.options import (
+    JOIN_TOLERANCE,
+    AxisOption,
+    DrawingUnitOption,
+    JoinToleranceOption,
+    LayerOption,
+    PartArgument,
+    PartNumberOption,
+    SectionOption,
+    UnitOption,
+    load_part,
+)
+from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
+from workhold.cli.search_options import (
+    RULING_OUT,
+    AngleOption,
+    AvoidOption,
+    KeepOutOption,
+    LoadOption,
+    LoadsOption,
+    RankByOption,
+    RestrictionWords,
+    ToleranceOption,
+    asked_loads,
+    asked_ranking,
+    asked_tolerance,
+)
+from workhold.cli.values import choice, counting_number, length, length_unit, whole_number
+from workhold.cli.vise_options import (
+    BlockedOption,
+    BodyRadiusOption,
+    ColumnsOption,
+    MaxOpeningOption,
+    MinGapOption,
+    MinOpeningOption,
+    PegRadiusOption,
+    PitchOption,
+    RowOffsetOption,
+    RowsOption,
+    ViseOption,
+    ViseWords,
+)
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.result import Result
+    from workhold.model.units import Unit
+
+__all__ = ["design"]
+
+SEARCH, OUTPUT = "The search", "Results"
+STANDARD_OUTPUT = "-"
+
+
+TYPES: dict[str, tuple[Literal["I", "II"], ...]] = {"I": ("I",), "II": ("II",), "both": ("I", "II")}
+FORMATS = ("json", "csv")
+ENGINES = ("curves", "algebra")
+
+
+def design(
+    part: PartArgument,
+    vise: ViseOption = None,
+    pitch: PitchOption = None,
+    columns: ColumnsOption = None,
+    peg_radius: PegRadiusOption = None,
+    body_radius: BodyRadiusOption = None,
+    rows: RowsOption = None,
+    blocked: BlockedOption = None,
+    min_gap: MinGapOption = None,
+    min_opening: MinOpeningOption = None,
+    max_opening: MaxOpeningOption = None,
+    row_offset: RowOffsetOption = None,
+    avoid: AvoidOption = None,
+    keep_out: KeepOutOption = None,
+    angle: AngleOption = None,
+    contact_margin: Annotated[
+        str,
+        typer.Option(
+            metavar="LENGTH",
+            help="Smallest distance from a contact to the end of its face.",
+            rich_help_panel=RULING_OUT,
+        ),
+    ] = "0",
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    rank_by: RankByOption = None,
+    tolerance: ToleranceOption = None,
+    type_: Annotated[
+        str,
+        typer.Option(
+            "--type",
+            metavar="I|II|both",
+            help="I: two pegs on each jaw; II: three on the left, one on the right.",
+            rich_help_panel=SEARCH,
+        ),
+    ] = "both",
+    best: Annotated[
+        str | None,
+        typer.Option(metavar="K", help="Keep only the best K.", rich_help_panel=SEARCH),
+    ] = None,
+    threads: Annotated[
+        str | None,
+        typer.Option(metavar="N", help="Threads to use; all processors if not given.", rich_help_panel=SEARCH),
+    ] = None,
+    engine: Annotated[
+        str,
+        typer.Option(
+            metavar="curves|algebra",
+            help="curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
+            rich_help_panel=SEARCH,
+        ),
+    ] = "curves",
+    out: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="Write all fixtures to this file; - is the terminal.", rich_help_panel=OUTPUT
+        ),
+    ] = None,
+    format_: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="json|csv",
+            help="Form of the file; csv is for a spreadsheet. If not given, the file's name decides.",
+            rich_help_panel=OUTPUT,
+        ),
+    ] = None,
+    draw: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR",
+            help="Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss.",
+            rich_help_panel=OUTPUT,
+        ),
+    ] = None,
+    list_: Annotated[
+        str, typer.Option("--list", metavar="N", help="How many to list on the terminal.", rich_help_panel=OUTPUT)
+    ] = "5",
+    unit: UnitOption = None,
+    layer: LayerOption = None,
+    part_number: PartNumberOption = None,
+    drawing_unit: DrawingUnitOption = None,
+    axis: AxisOption = None,
+    section: SectionOption = None,
+    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
+) -> None:
+    """Find every way to hold PART in a vise.
+
+    Four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type II).
+    Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
+
+    Example: workhold design part.dxf --vise plate-20mm --out part.json
+    """
+    # Everything cheap is checked before anything is read, and everything is checked before the search.
+    shown = length_unit(unit)
+    vise_words = ViseWords(
+        vise, pitch, columns, peg_radius, body_radius, rows, blocked, min_gap, min_opening, max_opening, row_offset
+    )
+    margin = length("--contact-margin", contact_margin, shown)
+    if margin < 0:
+        raise InputError(f"--contact-margin {contact_margin} is negative: give 0 or more.")
+    kept = counting_number("--best", best, "fixtures to keep")
+    workers = counting_number("--threads", threads, "threads")
+    engine = choice("--engine", engine, ENGINES)
+    find_fixtures = search_of(engine, workers)
+    types = TYPES[choice("--type", type_, tuple(TYPES))]
+    listed = whole_number("--list", list_)
+    form = output_format(out, format_)
+    folder = None if draw is None else Path(draw)
+    refuse_outputs(out, folder)
+    in_vise, of_vise = vise_words.asked(shown)
+    restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
+    ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
+    off = asked_tolerance(tolerance, shown, of_vise)
+    from workhold.kernels.compiling import is_first_run
+    from workhold.listing.ranking import preference_of
+
+    preference_of(ranking, off, forces)
+    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
+    first_run = is_first_run()
+    start = perf_counter()
+    with ask_to_stop() as cancel, search_progress(first_run) as progress:
+        if first_run and engine == "curves":
+            from workhold.cli.warming import compile_kernels
+
+            compile_kernels(cancel)
+        result = find_fixtures(
+            workpiece,
+            in_vise,
+            types=types,
+            contact_margin=margin,
+            restrictions=restrictions,
+            rank_by=ranking,
+            tolerance=off,
+            loads=forces,
+            best=kept,
+            progress=progress,
+            cancel=cancel,
+        )
+    spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
+    report(result, spent, out, form, listed, shown)
+    if not result.complete:
+        raise typer.Exit(INTERRUPTED)
+    if not any(result.found.values()) and engine == "curves":
+        explain_none(result, types, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
+    elif folder is not None:
+        draw_pictures(result, folder, out, shown)
+
+
+def search_of(engine: str, threads: int | None) -> Callable[..., Result]:
+    """The search of an engine; it is imported only when it is called."""
+
+    def search(*arguments: Any, **options: Any) -> Result:
+        if engine == "algebra":
+            from workhold.algebra.engine import design_by_algebra
+
+            return design_by_algebra(*arguments, **options)
+        from workhold.search.design import design
+
+        return design(*arguments, threads=threads, **options)
+
+    return search
+
+
+def refuse_outputs(out: str | None, draw: Path | None) -> None:
+    """Refuse outputs that could not be written in the end.
+
+    Raises
+    ------
+    InputError
+        Naming the file or folder.
+    """
+    from workhold.files.atomic import refuse_unwritable, refuse_unwritable_folder
+
+    if out is not None and out != STANDARD_OUTPUT:
+        refuse_unwritable(out)
+    if draw is not None:
+        refuse_unwritable_folder(draw)
+
+
+def output_format(out: str | None, asked: str | None) -> str:
+    """The form of the result file: the one asked for, or the one that its name suggests.
+
+    Raises
+    ------
+    InputError
+        For a form that is not known.
+    """
+    if asked is not None:
+        return choice("--format", asked, FORMATS)
+    return "csv" if out is not None and out.lower().endswith(".csv") else "json"
+
+
+def write_output(result: Result, out: str, form: str) -> None:
+    """Write the result to a file or to the terminal."""
+    if form == "csv":
+        from workhold.files.result_csv import write_result_csv as write
+        from workhold.files.result_csv import write_result_csv_to as write_to
+    else:
+        from workhold.files.result_file import write_result as write
+        from workhold.files.result_file import write_result_to as write_to
+
+    if out == STANDARD_OUTPUT:
+        write_to(result, sys.stdout)
+        sys.stdout.flush()
+    else:
+        write(result, out)
+
+
+def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit) -> None:
+    """Write the result and tell about it; the words go to stderr where stdout carries the file."""
+    from workhold.cli.tables import counts_sentence, print_tables, proof_sentences, result_table
+
+    if out is not None:
+        write_output(result, out, form)
+    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
+    for note in result.notes:
+        typer.echo(f"workhold: {note}", err=True)
+    if len(result) and listed > 0:
+        print_tables(result_table(result, listed, unit), stream=stream)
+    sentence = counts_sentence(result)
+    if not sum(result.found.values()):
+        found = "exists" if result.complete else "was found before the interruption"
+        sentence = f"No fixture {found} for {result.workpiece.name} in this vise: the count is 0"
+    written = out is not None and out != STANDARD_OUTPUT
+    proof = proof_sentences(result, out if written and form == "json" else None)
+    print_tables(f"{sentence}; {spent}.", *proof, stream=stream)
+    if written:
+        print_tables(f"Written to {out}.", stream=stream)
+    if not result.complete:
+        marked = f", and {out} is marked so" if written else ""
+        typer.echo(f"workhold: interrupted: this is a part of the fixtures only{marked}.", err=True)
+
+
+def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
+    """Draw the best fixtures and say where they are."""
+    from workhold.cli.pictures import draw_best
+    from workhold.cli.tables import plural, print_tables
+
+    written = draw_best(result, folder, unit)
+    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
+    if written:
+        print_tables(f"Drawn: {plural(len(written), 'picture')} in {folder}.", stream=stream)
+    else:
+        print_tables("Nothing to draw.", stream=stream)

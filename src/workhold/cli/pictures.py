@@ -1,0 +1,84 @@
+"""The pictures of a design: the best fixtures one by one, and a sheet of thumbnails."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+    from workhold.model.units import Unit
+
+__all__ = ["BEST_DRAWN", "draw_best", "draw_one"]
+
+BEST_DRAWN = 12
+ENDINGS = (".svg", ".png")
+
+
+def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
+    """Draw one fixture of a result's part and vise into a folder, as SVG and PNG; returns the files written.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from workhold.drawing.fixture_picture import draw_fixture
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    svg = draw_fixture(fixture, result.workpiece, result.vise, title=title, unit=unit)
+    return write_pictures({name: svg}, folder)
+
+
+def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
+    """Write pictures, by name, as SVG and PNG; returns the files written."""
+    from workhold.drawing.render import render
+    from workhold.files.atomic import write_bytes
+
+    written = []
+    for name, svg in pictures.items():
+        for ending in ENDINGS:
+            path = folder / f"{name}{ending}"
+            write_bytes(path, render(svg, ending))
+            written.append(path)
+    return written
+
+
+def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
+    """Draw the best twelve fixtures and the thumbnails into a folder, as SVG and PNG; returns the files written.
+
+    The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
+    fewer fixtures; nothing else in the folder is touched.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from workhold.drawing.fixture_picture import draw_fixture
+    from workhold.drawing.thumbnails import draw_thumbnails
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in ["thumbnails", *(f"fixture-{rank:02d}" for rank in range(1, BEST_DRAWN + 1))]:
+            for ending in ENDINGS:
+                (folder / f"{old}{ending}").unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    fixtures = result[:BEST_DRAWN]
+    if not fixtures:
+        return []
+    pictures = {}
+    for rank, fixture in enumerate(fixtures, 1):
+        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=unit)
+        pictures[f"fixture-{rank:02d}"] = svg
+    titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
+    pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles, unit=unit)
+    return write_pictures(pictures, folder)

@@ -1,0 +1,101 @@
+"""``workhold serve``: the page, on this machine or for others."""
+
+from __future__ import annotations
+
+from threading import Event
+from typing import Annotated, Any
+
+import typer
+
+from workhold.cli.values import positive_number, whole_number
+from workhold.errors import InputError
+
+__all__ = ["serve"]
+
+LIMITS = "Limits"
+HIGHEST_PORT = 65_535
+
+
+def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
+    """An option that is a limit and can come from the environment."""
+    option: typer.models.OptionInfo = typer.Option(
+        metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
+    )
+    return option
+
+
+def serve(
+    host: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Where to listen; 0.0.0.0 lets other machines in.")
+    ] = "127.0.0.1",
+    port: Annotated[str, typer.Option(metavar="PORT", help="Port to listen at; 0 takes a free one.")] = "8000",
+    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Another name that the server may be called by. May be repeated."),
+    ] = None,
+    upload_size: Annotated[str, limit("MB", "UPLOAD_SIZE", "Largest file with a part.")] = "20",
+    searches: Annotated[str, limit("N", "SEARCHES", "Searches at the same time.")] = "2",
+    seconds: Annotated[str, limit("S", "SECONDS", "Longest search; what was found by then is shown.")] = "120",
+    memory: Annotated[str, limit("MB", "MEMORY", "Most memory of each search.")] = "4096",
+    fixtures: Annotated[str, limit("N", "FIXTURES", "Most fixtures kept of a search, the best ones.")] = "300000",
+    life: Annotated[str, limit("MINUTES", "LIFE", "How long a search is kept after its last use.")] = "60",
+) -> None:
+    """Serve the page: from a drawing to a setup sheet in the browser.
+
+    It can be used from this machine only, unless --host says otherwise. The same is there for programs: see
+    /api/openapi.json. Ctrl-C stops it.
+
+    Example: workhold serve --open
+    """
+    at = whole_number("--port", port)
+    if not 0 <= at <= HIGHEST_PORT:
+        raise InputError(f"--port {port} is no port: give a number from 0 to {HIGHEST_PORT}.")
+    figures: dict[str, Any] = {
+        "upload_bytes": int(1e6 * limit_value("--upload-size", upload_size)),
+        "searches": int(limit_value("--searches", searches)),
+        "seconds": limit_value("--seconds", seconds),
+        "memory_bytes": int(limit_value("--memory", memory)) << 20,
+        "fixtures": int(limit_value("--fixtures", fixtures)),
+        "life_seconds": 60 * limit_value("--life", life),
+    }
+    if figures["searches"] < 1 or figures["fixtures"] < 1:
+        raise InputError("--searches and --fixtures are counts: give 1 or more.")
+    from workhold.web.limits import Limits
+    from workhold.web.serve import run_server
+
+    prepare()
+
+    def listening(address: str) -> None:
+        typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
+        if open_:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    run_server(host, at, Limits(**figures), allow_host or (), listening)
+
+
+def limit_value(option: str, text: str) -> float:
+    """A positive number.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    value = positive_number(option, text)
+    if not value:
+        raise InputError(f"{option} {text!r} leaves nothing: give a positive number.")
+    return value
+
+
+def prepare() -> None:
+    """Compile the kernels on a first run, before workers would do so one after the other."""
+    from workhold.kernels.compiling import is_first_run
+
+    if is_first_run():
+        from workhold.cli.warming import compile_kernels
+
+        typer.echo("workhold: compiling for this machine, which takes about 20 seconds the first time.", err=True)
+        compile_kernels(Event())

@@ -1,0 +1,184 @@
+"""``workhold sheet``: one fixture of a result file on paper, or as a drawing for the CAM system."""
+
+from __future__ import annotations
+
+from datetime import date
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from workhold.cli.options import ShownUnitOption
+from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
+from workhold.cli.values import choice, length_unit, positive_number, whole_number
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.load import Load
+    from workhold.model.result import Result
+
+__all__ = ["sheet"]
+
+PAPER_ENDINGS = (".pdf", ".svg", ".png")
+MODEL_ENDINGS = (".dxf", ".step", ".stp")
+# A PNG is so many pixels wide; a second page makes it higher.
+PNG_WIDTH = 2400
+
+ON_PAPER = "On the paper"
+
+
+def sheet(
+    result_file: Annotated[
+        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
+    ],
+    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    out: Annotated[
+        str,
+        typer.Option(
+            "--out", "-o", metavar="FILE", help="The file to write; its name ends in .pdf, .svg, .png, .dxf or .step."
+        ),
+    ],
+    paper: Annotated[str, typer.Option(metavar="SIZE", help="a4 or letter.", rich_help_panel=ON_PAPER)] = "a4",
+    unit: ShownUnitOption = None,
+    part_name: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="What to call the part; its own name if not given.", rich_help_panel=ON_PAPER
+        ),
+    ] = None,
+    day: Annotated[
+        str | None,
+        typer.Option(
+            "--date", metavar="YYYY-MM-DD", help="The date of the sheet; today if not given.", rich_help_panel=ON_PAPER
+        ),
+    ] = None,
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    jaw_force: JawForceOption = None,
+    friction: FrictionOption = None,
+) -> None:
+    """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
+
+    Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. A .dxf or .step file holds
+    the set-up itself, in mm, for a CAM system.
+
+    Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
+    """
+    from workhold.files.atomic import refuse_unwritable
+
+    rank = whole_number("fixture", number)
+    if rank < 1:
+        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    path = Path(out)
+    ending = path.suffix.lower()
+    if ending not in PAPER_ENDINGS + MODEL_ENDINGS:
+        raise InputError(
+            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf or .step."
+        )
+    shown_unit = length_unit(unit)
+    settings = {
+        "paper": choice("--paper", paper, ("a4", "letter")),
+        "unit": shown_unit,
+        "day": date.today() if day is None else day_of(day),
+        "part_name": part_name,
+        "jaw_force": positive_number("--jaw-force", jaw_force),
+        "friction": positive_number("--friction", friction),
+    }
+    given = asked_loads(load, loads, shown_unit)
+    refuse_unwritable(path)
+    from workhold.files.result_reader import read_result
+
+    result = read_result(result_file)
+    if rank > len(result):
+        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    if ending in MODEL_ENDINGS:
+        write_model(path, ending, result, rank)
+    else:
+        write_paper(path, ending, result, rank, given or result.loads, result_file, settings)
+    typer.echo(f"Written to {path}.")
+
+
+def day_of(text: str) -> date:
+    """A date typed as YYYY-MM-DD.
+
+    Raises
+    ------
+    InputError
+        When it is none.
+    """
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        raise InputError(f"--date {text!r} is not a date: give it as YYYY-MM-DD, such as 2026-03-31.") from None
+
+
+def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
+    """Write the set-up for a CAM system."""
+    setup = (result[rank - 1], result.workpiece, result.vise, path)
+    if ending == ".dxf":
+        from workhold.files.setup_dxf import write_setup_dxf
+
+        write_setup_dxf(*setup)
+        return
+    from workhold.files.setup_step import write_setup_step
+
+    write_setup_step(*setup)
+
+
+def write_paper(
+    path: Path,
+    ending: str,
+    result: Result,
+    rank: int,
+    loads: tuple[Load, ...],
+    result_file: str,
+    settings: dict[str, Any],
+) -> None:
+    """Write the sheet."""
+    from hashlib import sha256
+
+    from workhold import __version__
+    from workhold.drawing.render import svg_to_png
+    from workhold.drawing.scene import stacked
+    from workhold.drawing.sheet import draw_sheet
+    from workhold.drawing.sheet_details import SheetDetails
+    from workhold.drawing.sheet_facts import same_holes
+    from workhold.files.atomic import write_bytes
+    from workhold.statics.loads import load_cases
+
+    fixture = with_quality(result, rank, loads)
+    jaw_force, friction = settings["jaw_force"], settings["friction"]
+    details = SheetDetails(
+        number=rank,
+        count=len(result),
+        result_hash=sha256(Path(result_file).read_bytes()).hexdigest(),
+        version=__version__,
+        tolerance=result.tolerance,
+        loads=load_cases(fixture, result.workpiece, result.vise, loads, jaw_force, friction),
+        others=same_holes(result.table, rank - 1, result.twins),
+        **settings,
+    )
+    pages = draw_sheet(fixture, result.workpiece, result.vise, details)
+    if ending == ".pdf":
+        from workhold.drawing.pdf import svg_to_pdf
+
+        write_bytes(path, svg_to_pdf(pages, details.day))
+    elif ending == ".svg":
+        write_bytes(path, stacked(pages).encode("utf-8"))
+    else:
+        write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))
+
+
+def with_quality(result: Result, rank: int, loads: tuple[Load, ...]) -> Fixture:
+    """A fixture of a result with all figures of quality that can be known, for the loads of the sheet."""
+    import numpy as np
+    from attrs import evolve
+
+    from workhold.model.quality import FIGURES
+    from workhold.statics.quality import quality_of
+
+    row = result.table.take(slice(rank - 1, rank))
+    figures = quality_of(row, result.workpiece, result.vise, result.tolerance, loads)[0]
+    known = {figure.key: float(value) for figure, value in zip(FIGURES, figures, strict=True) if not np.isnan(value)}
+    return evolve(result[rank - 1], quality=known)

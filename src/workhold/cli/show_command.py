@@ -1,0 +1,76 @@
+"""``workhold show``: how to set up one fixture of a result file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from workhold.cli.options import ShownUnitOption
+from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
+from workhold.cli.values import length_unit, picture_ending, positive_number, whole_number
+from workhold.errors import InputError
+
+__all__ = ["show"]
+
+
+def show(
+    result_file: Annotated[
+        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
+    ],
+    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    draw: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
+    ] = None,
+    load: LoadOption = None,
+    loads: LoadsOption = None,
+    jaw_force: JawForceOption = None,
+    friction: FrictionOption = None,
+    unit: ShownUnitOption = None,
+) -> None:
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its quality, and what
+    loads do to it (those of the result, if none are given here).
+
+    A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
+
+    Example: workhold show part.json 1 --draw setup.png
+    """
+    from workhold.files.atomic import refuse_unwritable, write_bytes
+    from workhold.files.result_reader import read_result
+
+    rank = whole_number("fixture", number)
+    if rank < 1:
+        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    shown_unit = length_unit(unit)
+    force = positive_number("--jaw-force", jaw_force)
+    coefficient = positive_number("--friction", friction)
+    asked = asked_loads(load, loads, shown_unit)
+    picture = None if draw is None else Path(draw)
+    ending = None
+    if picture is not None:
+        ending = picture_ending(picture)
+        refuse_unwritable(picture)
+    result = read_result(result_file)
+    if rank > len(result):
+        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    fixture = result[rank - 1]
+
+    from workhold.cli.load_tables import load_tables
+    from workhold.cli.tables import fixture_tables, print_tables, quality_table
+
+    print_tables(*fixture_tables(fixture, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit))
+    if asked or result.loads:
+        from workhold.statics.loads import load_cases
+
+        cases = load_cases(fixture, result.workpiece, result.vise, asked or result.loads, force, coefficient)
+        print_tables(*load_tables(cases, fixture, shown_unit))
+    if not result.complete:
+        typer.echo("workhold: the search for this result was interrupted; there may be better fixtures.", err=True)
+    if picture is not None and ending is not None:
+        from workhold.drawing.fixture_picture import draw_fixture
+        from workhold.drawing.render import render
+
+        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=shown_unit)
+        write_bytes(picture, render(svg, ending))
+        print_tables(f"Drawn in {picture}.")

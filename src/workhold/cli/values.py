@@ -1,0 +1,199 @@
+"""Numbers typed by a user, turned into numbers or into one plain sentence."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import inf, isfinite, nan
+from pathlib import Path
+
+from workhold.errors import InputError
+from workhold.model.units import MILLIMETRE, Unit, unit_named
+
+__all__ = [
+    "choice",
+    "counting_number",
+    "length",
+    "length_unit",
+    "number",
+    "optional_length",
+    "picture_ending",
+    "positive_number",
+    "pitches",
+    "whole_number",
+]
+
+PICTURE_ENDINGS = (".svg", ".png")
+# A number and perhaps its unit: 12.5, 0.5in, 1/2", 1-1/4 inch. The units are those of workhold.model.units.
+LENGTH = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>mm|cm|m|inch|in|\")?\s*", re.IGNORECASE | re.DOTALL)
+FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]+)/(?P<below>[0-9]+)")
+
+
+def length_unit(name: str | None) -> Unit:
+    """The unit of lengths given and shown, millimetres where none is asked for.
+
+    Raises
+    ------
+    InputError
+        For a unit that is not known.
+    """
+    return MILLIMETRE if name is None else unit_named(name)
+
+
+def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
+    """A finite length in mm; whether its sign fits is for the vise to say.
+
+    Parameters
+    ----------
+    option : what to call it in a message.
+    text : a number or a fraction, which may carry a unit of its own.
+    unit : of a number without one.
+
+    Raises
+    ------
+    InputError
+        For anything that is not one finite number.
+
+    Examples
+    --------
+    >>> length("--min-gap", "12.7"), length("--min-gap", "0.5in"), length("--min-gap", '1-1/2"')
+    (12.7, 12.7, 38.1)
+    """
+    match = LENGTH.fullmatch(text)
+    value = nan
+    if match is not None:
+        own = match["unit"]
+        value = (unit if own is None else unit_named(own)).length(number(match["number"]))
+    if not isfinite(value):
+        raise InputError(
+            f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, or one with "
+            "its unit, such as 0.5in."
+        )
+    return value
+
+
+def number(text: str) -> float:
+    """A number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
+    fraction = FRACTION.fullmatch(text)
+    if fraction is None:
+        try:
+            return nan if "_" in text else float(text)
+        except ValueError:
+            return nan
+    below = float(fraction["below"])
+    value = float(fraction["above"]) / below + float(fraction["whole"] or 0) if below else inf
+    return -value if fraction["sign"] == "-" else value
+
+
+def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
+    """A finite length in mm, or None where the option is not given."""
+    return None if text is None else length(option, text, unit)
+
+
+def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
+    """The x and y pitch in mm, from one length or two.
+
+    Parameters
+    ----------
+    unit : of numbers that carry none.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> pitches("10"), pitches("10,12.5"), pitches("1/2in,1in")
+    ((10.0, 10.0), (10.0, 12.5), (12.7, 25.4))
+    """
+    parts = text.split(",")
+    if len(parts) > 2:
+        raise InputError(f"--pitch {text!r} has {len(parts)} numbers: give one for both directions, or X,Y.")
+    try:
+        numbers = [length("--pitch", part, unit) for part in parts]
+    except InputError as error:
+        raise InputError(
+            f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, or as X,Y, "
+            "such as 10,12.5."
+        ) from error
+    return numbers[0], numbers[-1]
+
+
+def whole_number(option: str, text: str) -> int:
+    """A whole number; whether its sign fits is for others to say.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(f"{option} {text!r} is not a whole number.") from None
+
+
+def counting_number(option: str, text: str | None, what: str) -> int | None:
+    """A number of things, from 1, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        Below 1, or when it is no whole number.
+    """
+    if text is None:
+        return None
+    value = whole_number(option, text)
+    if value < 1:
+        raise InputError(f"{option} {text} is not a number of {what}: give 1 or more.")
+    return value
+
+
+def positive_number(option: str, text: str | None) -> float | None:
+    """A finite number above zero, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return None
+    value = number(text.strip())
+    if not (isfinite(value) and value > 0):
+        raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
+    return value
+
+
+def choice(option: str, text: str, among: Sequence[str]) -> str:
+    """One of several words, in any mixture of capitals.
+
+    Raises
+    ------
+    InputError
+        For any other word.
+
+    Examples
+    --------
+    >>> choice("--type", "ii", ("I", "II", "both"))
+    'II'
+    """
+    for word in among:
+        if word.lower() == text.strip().lower():
+            return word
+    raise InputError(f"{option} {text!r} is not known: give {', '.join(among[:-1])} or {among[-1]}.")
+
+
+def picture_ending(path: Path) -> str:
+    """The ending of a picture's name, ``.svg`` or ``.png``.
+
+    Raises
+    ------
+    InputError
+        For any other.
+    """
+    ending = path.suffix.lower()
+    if ending not in PICTURE_ENDINGS:
+        raise InputError(f"--draw {path} names no kind of picture: let the name end in .svg or .png.")
+    return ending

@@ -1,0 +1,126 @@
+"""Contact features: where a peg's centre may lie while the peg touches a face (paper, section 2.3).
+
+Glossary
+--------
+peg-centre locus : boundary of (part + disc of the peg radius).
+contact feature : a straight or circular piece of the locus that faces a face; one face may leave several.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.geometry.offset import clear_parts, trimmed_offsets
+from workhold.geometry.segment import Segment, segment_rows
+from workhold.model.restrictions import Restrictions, Zone
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["ContactFeature", "allowed_features", "contact_features", "end_slacks", "face_of_segment", "feature_rows"]
+
+# A contact this near to the end of its feature, in mm, is at the end.
+ROUNDING = 1e-9
+# Ends this near, in mm, with normals this near, are a tangent joint.
+JOINT = 1e-6
+TANGENT = 1e-5
+
+
+@frozen
+class ContactFeature:
+    """A piece of the peg-centre locus.
+
+    Parameters
+    ----------
+    face : number of the face that the peg touches.
+    segment : where the peg's centre may lie; its normals are those of the contact.
+    """
+
+    face: int
+    segment: Segment
+
+
+def contact_features(workpiece: Workpiece, peg_radius: float) -> list[ContactFeature]:
+    """The contact features of a workpiece for pegs of a radius in mm, ordered by face."""
+    faces = workpiece.faces
+    pieces = trimmed_offsets([face.segment for face in faces], peg_radius)
+    return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
+
+
+def allowed_features(
+    features: list[ContactFeature], workpiece: Workpiece, restrictions: Restrictions, body_radius: float
+) -> list[ContactFeature]:
+    """What is left of contact features when faces are avoided and no body of a peg may stand over a keep-out zone.
+
+    Parameters
+    ----------
+    body_radius : of the pegs' bodies, in mm.
+
+    Raises
+    ------
+    InputError
+        For a face that does not exist, and when nothing is left.
+    """
+    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid}
+    touched = [feature for feature in features if feature.face not in avoided]
+    if not touched:
+        raise InputError(
+            f"every face of {workpiece.name} that a peg could touch is to be avoided: leave some faces to hold it by."
+        )
+    left = touched
+    for zone in restrictions.zones:
+        left = [kept for feature in left for kept in clear_of(feature, zone, body_radius)]
+    if not left:
+        raise InputError(
+            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them smaller."
+        )
+    return left
+
+
+def face_of_segment(workpiece: Workpiece, number: int) -> int:
+    """The number of the face that a segment belongs to.
+
+    Raises
+    ------
+    InputError
+        When there is no such segment.
+    """
+    for face in workpiece.faces:
+        if number in face.segments:
+            return face.number
+    last = len(workpiece.segments) - 1
+    raise InputError(
+        f"{workpiece.name} has no face {number}: its segments are numbered from 0 to {last}; see workhold features."
+    )
+
+
+def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
+    """The parts of a contact feature on which a peg's body stays clear of a zone."""
+    return [ContactFeature(feature.face, part) for part in clear_parts(feature.segment, zone.segments, body_radius)]
+
+
+def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
+    """Kernel rows (N, 8) of contact features."""
+    return segment_rows([feature.segment for feature in features])
+
+
+def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:
+    """How far in mm a contact may lie past each feature's low and high end, shape (F, 2).
+
+    Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once), so rounding
+    is forgiven. Any other end does not count: there the peg also touches a second face or stands on a corner.
+    """
+    ends = np.array([[f.segment.at(-f.segment.half_extent), f.segment.at(f.segment.half_extent)] for f in features])
+    normals = np.array(
+        [[f.segment.normal(-f.segment.half_extent), f.segment.normal(f.segment.half_extent)] for f in features]
+    )
+    points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
+    owner = np.repeat(np.arange(len(features)), 2)
+    slack = np.full(len(points), -ROUNDING)
+    for k in range(len(points)):
+        near = np.abs(points - points[k]).max(axis=1) <= JOINT
+        smooth = np.abs(directions - directions[k]).max(axis=1) <= TANGENT
+        if (near & smooth & (owner != owner[k])).any():
+            slack[k] = ROUNDING
+    return slack.reshape(-1, 2)

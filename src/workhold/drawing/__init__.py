@@ -1,0 +1,23 @@
+"""Pictures of parts and fixtures: SVG text, and PNG rendered from the same SVG.
+
+The map from millimetres to the page is kept in the pictures: groups that show the model carry it in the attribute
+``data-model-to-page`` as an SVG matrix.
+"""
+
+from workhold.drawing.features_picture import draw_features
+from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.render import render, svg_to_png
+from workhold.drawing.sheet import draw_sheet
+from workhold.drawing.sheet_details import SheetDetails
+from workhold.drawing.thumbnails import MOST_THUMBNAILS, draw_thumbnails
+
+__all__ = [
+    "MOST_THUMBNAILS",
+    "SheetDetails",
+    "draw_features",
+    "draw_fixture",
+    "draw_sheet",
+    "draw_thumbnails",
+    "render",
+    "svg_to_png",
+]

@@ -1,0 +1,160 @@
+"""A fixture as it lies in the vise: jaws, part, pegs and contact forces, without any lettering."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.drawing.jaws import JawView, draw_holes, draw_plate, hole_radius, jaw_views
+from workhold.drawing.part import (
+    contact_of,
+    extent,
+    face_of,
+    outline_path,
+    placed,
+    placed_loops,
+    sampled_loop,
+    segment_path,
+)
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.geometry.segment import Point, Segment
+from workhold.model.fixture import Fixture
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["ARROW", "PART_FILL", "PEG_FILL", "TOUCHED", "Bench", "bench_of", "draw_bench", "force_arrow", "peg_radius"]
+
+PART_FILL = "#fff7d1"
+PEG_FILL = "#b3122a"
+TOUCHED = "#e59a00"
+ARROW = "#0b3a82"
+
+# Pegs thinner than this on the page, in page units, are drawn this thick.
+THINNEST_PEG = 3.5
+
+
+@frozen
+class Bench:
+    """What there is to draw, in mm in the vise frame.
+
+    Parameters
+    ----------
+    loops : the placed outline and holes of the part.
+    faces : the placed faces the four pegs touch.
+    contacts : contact point and outward normal of each peg.
+    part : the part's extent.
+    jaws : both jaws as far as they show.
+    extent : everything together.
+    """
+
+    fixture: Fixture
+    vise: Vise
+    loops: list[list[Segment]]
+    faces: list[Segment]
+    contacts: list[tuple[Point, Point]]
+    part: Box
+    jaws: tuple[JawView, JawView]
+    extent: Box
+
+    def outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
+        """(N, 2) page points around each loop of the part, about ``step`` page units apart."""
+        return [sampled_loop(loop, view, step) for loop in self.loops]
+
+
+def bench_of(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> Bench:
+    """Put everything in its place."""
+    loops = placed_loops(workpiece, fixture.pose)
+    part = extent(loops[0])
+    faces = [placed(face_of(workpiece, peg.segment), fixture.pose) for peg in fixture.pegs]
+    contacts = [contact_of(peg, face) for peg, face in zip(fixture.pegs, faces, strict=True)]
+    jaws = jaw_views(fixture, vise, part)
+    whole = part.union(jaws[0].plate).union(jaws[1].plate)
+    return Bench(fixture, vise, loops, faces, contacts, part, jaws, whole)
+
+
+def peg_radius(vise: Vise, scale: float) -> float:
+    """Radius of a peg on the page."""
+    return max(vise.peg_radius * scale, THINNEST_PEG)
+
+
+def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
+    """Tail (the contact) and tip on the page of a contact force; the largest force is ``longest`` page units long.
+
+    A force that would have to pull points away from the part.
+    """
+    contact, (nx, ny) = bench.contacts[index]
+    forces = [abs(peg.force) for peg in bench.fixture.pegs]
+    length = max(0.36, forces[index] / max([*forces, 1e-300])) * longest
+    length = -length if bench.fixture.pegs[index].force < 0 else length
+    x, y = view(contact)
+    return (x, y), (x - length * nx, y + length * ny)
+
+
+def draw_bench(
+    scene: Scene, bench: Bench, view: View, weight: float = 1.0, longest: float = 62.0, axes: bool = True
+) -> None:
+    """Draw jaws, holes, part, touched faces, forces and pegs.
+
+    Parameters
+    ----------
+    weight : factor on line widths.
+    longest : length of the longest force arrow in page units.
+    axes : draw the axes of the two columns at the opening as well.
+    """
+    plates = scene.group("jaws")
+    for jaw in bench.jaws:
+        draw_plate(plates, jaw, view, 5.0 * weight)
+    holes = scene.group("holes")
+    for jaw in bench.jaws:
+        draw_holes(holes, jaw, view, bench.fixture, bench.vise)
+    if axes:
+        draw_axes(scene, bench, view, weight)
+    draw_part(scene, bench, view, weight)
+    arrows = scene.group("forces")
+    for index in range(4):
+        tail, tip = force_arrow(bench, index, view, longest)
+        if hypot(tip[0] - tail[0], tip[1] - tail[1]) > 0:
+            arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
+            arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
+    draw_pegs(scene, bench, view, weight)
+    if peg_radius(bench.vise, view.scale) > 7.0 * weight:
+        contacts = scene.group("contacts")
+        for contact, _ in bench.contacts:
+            contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
+
+
+def draw_axes(scene: Scene, bench: Bench, view: View, weight: float) -> None:
+    """Draw the axes of the columns that the jaw separation is measured between."""
+    group = scene.group("axes")
+    for x, jaw in ((bench.jaws[0].x[-1], bench.jaws[0]), (bench.jaws[1].x[0], bench.jaws[1])):
+        ends = [view((x, jaw.plate.y1)), view((x, jaw.plate.y0))]
+        group.line(ends, GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
+
+
+def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
+    """Draw the part: its faces, those touched underlaid, and the holes of the jaws faintly visible through it."""
+    part = scene.group("part", view)
+    d = outline_path(bench.loops, view)
+    part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
+    for face in dict.fromkeys(bench.faces):
+        part.path(segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"})
+    part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
+
+
+def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
+    """Draw the four pegs with their centres marked."""
+    pegs = scene.group("pegs", view)
+    radius = peg_radius(bench.vise, view.scale)
+    cross = min(0.55 * radius, 6.0 * weight)
+    for peg in bench.fixture.pegs:
+        x, y = view((peg.x, peg.y))
+        hole = hole_radius(bench.vise, view.scale)
+        if bench.vise.peg_radius == 0 and hole > radius:
+            pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
+        pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+        if cross > 2.0 * weight:
+            pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
+            pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)

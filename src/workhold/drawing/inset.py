@@ -1,0 +1,66 @@
+"""A small picture of the part as it was drawn, so that the turn in the vise can be told from it."""
+
+from __future__ import annotations
+
+from workhold.drawing.bench import ARROW, PART_FILL, TOUCHED
+from workhold.drawing.part import contact_of, extent, face_of, outline_path, placed, placed_point, segment_path
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.geometry.segment import Point
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["draw_inset", "draw_zero"]
+
+# Flatter than this, in page units, there is no room for a picture.
+LOWEST = 90.0
+
+
+def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, zero: bool = False) -> None:
+    """Draw the unturned part with its touched faces and contacts into a page box.
+
+    Parameters
+    ----------
+    zero : mark the part's zero point too, where it lies within the part's extent.
+    """
+    if box.height < LOWEST:
+        return
+    group = scene.group("part-as-drawn")
+    group.text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
+    room = Box(box.x0 + 40, box.y0 + 30, box.x1 - 10, box.y1 - 24)
+    bounds = extent(workpiece.loop_segments[0])
+    view = View.fitting(bounds, room)
+    d = outline_path(workpiece.loop_segments, view)
+    group.path(d, fill=PART_FILL, fill_rule="evenodd")
+    for face in dict.fromkeys(peg.segment for peg in fixture.pegs):
+        group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
+    group.path(d, BLACK, 1.4)
+    for point in contacts(workpiece, fixture):
+        group.circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
+    if zero and bounds.contains(Box(0.0, 0.0, 0.0, 0.0)):
+        draw_zero(group, view((0.0, 0.0)))
+    corner = (box.x0 + 4, box.y1 - 4)
+    group.arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
+    group.arrow(corner, (corner[0], corner[1] - 30), GREY, 1.2, 8)
+    group.text((corner[0] + 34, corner[1] - 1), "x", 12, fill=GREY)
+    group.text((corner[0] + 5, corner[1] - 33), "y", 12, fill=GREY)
+
+
+def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
+    """Draw the sign of a zero point, a disc with two black quarters."""
+    x, y = at
+    r = number(radius)
+    scene.circle(at, radius, "#ffffff", BLACK, 1.0)
+    for way in (1, -1):
+        start, end = f"{number(x + way * radius)} {number(y)}", f"{number(x)} {number(y - way * radius)}"
+        scene.path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
+
+
+def contacts(workpiece: Workpiece, fixture: Fixture) -> list[Point]:
+    """The four contact points in the workpiece's own frame, mm."""
+    pose = fixture.pose
+    back = Pose(-pose.theta_deg, 0.0, 0.0)
+    points = []
+    for peg in fixture.pegs:
+        (x, y), _ = contact_of(peg, placed(face_of(workpiece, peg.segment), pose))
+        points.append(placed_point((x - pose.x, y - pose.y), back))
+    return points

@@ -1,0 +1,145 @@
+"""The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
+from workhold.drawing.fonts import shortened, text_width, wrapped
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.model.fixture import Fixture
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["TYPE_WORDS", "Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
+
+# Size of the name of a fact, and the least room between it and the value.
+FACT_NAME, FACT_GAP = 13.0, 8.0
+TYPE_WORDS = {"I": "Type I: two pegs on each jaw", "II": "Type II: three pegs left, one right"}
+
+
+class Column:
+    """Writes line after line down a page.
+
+    Parameters
+    ----------
+    scene : what to write on.
+    x, y : upper left corner, page units.
+    width : page units.
+    """
+
+    def __init__(self, scene: Scene, x: float, y: float, width: float) -> None:
+        self.scene, self.x, self.y, self.width = scene, x, y, width
+
+    def words(self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55) -> None:
+        """Write one line, shortened to fit, and leave ``gap`` ems below it."""
+        self.y += 0.75 * size
+        content = shortened(content, size, self.width, bold)
+        self.scene.text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
+        self.y += gap * size
+
+    def paragraph(self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0) -> None:
+        """Write as many lines as it takes, ``indent`` page units further in."""
+        for line in wrapped(content, size, self.width - indent, bold):
+            self.y += 0.75 * size
+            self.scene.text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
+            self.y += 0.55 * size
+
+    def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
+        """Write a name at the left and its value at the right of one line, smaller where it would reach the name."""
+        self.y += 0.75 * size
+        self.scene.text((self.x, self.y), name, FACT_NAME, fill=GREY, middle=False)
+        room = self.width - text_width(name, FACT_NAME) - FACT_GAP
+        fitting = min(size, size * room / text_width(value, size, bold))
+        self.scene.text((self.x + self.width, self.y), value, fitting, "end", bold=bold, middle=False)
+        self.y += 0.62 * size
+
+    def rule(self, width: float = 1.0) -> None:
+        """Draw a line across."""
+        self.y += 4
+        self.scene.line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
+        self.y += 9
+
+    def row(self, cells: Sequence[str], ends: Sequence[float], size: float, bold: bool = False) -> None:
+        """Write one row of a table: the first cell at the left, the others ending at shares ``ends`` of the width."""
+        self.y += 0.75 * size
+        self.scene.text((self.x, self.y), cells[0], size, bold=True, middle=False)
+        for cell, end in zip(cells[1:], ends, strict=True):
+            self.scene.text((self.x + end * self.width, self.y), cell, size, "end", bold=bold, middle=False)
+        self.y += 0.7 * size
+
+
+def closure_margin(fixture: Fixture) -> str:
+    """The closure margin in words for a picture, or a dash when it is not known."""
+    margin = fixture.quality.get("closure_margin")
+    if margin is None:
+        return "–"
+    return f"{margin:.4f}" if margin >= 0.001 else f"{margin:.2e}".replace("-", "−")
+
+
+def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, title: str | None) -> None:
+    """Write the part's name, the fixture's and its type."""
+    fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
+    column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
+    column.words(title or "Fixture", 18, gap=0.5)
+    column.words(TYPE_WORDS[fixture.type], 14, fill=GREY)
+    column.rule(2.0)
+
+
+def draw_settings(column: Column, fixture: Fixture, vise: Vise, lengths: LengthUnit) -> None:
+    """Write what to set, with the jaw separation first."""
+    column.words("Jaw separation S", 13, fill=GREY, gap=0.8)
+    column.words(lengths.words(fixture.jaw_separation), 32, bold=True, gap=0.4)
+    column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
+    column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
+    column.fact("Closure margin", closure_margin(fixture))
+    column.rule()
+    count = f"{vise.columns} column{'s' if vise.columns > 1 else ''}"
+    column.fact("Each jaw", f"{count}, pitch {lengths.plain_number(vise.pitch[0])} × {lengths.plain(vise.pitch[1])}")
+    column.fact("Pegs", f"Ø {lengths.plain(2 * vise.peg_radius)}" if vise.peg_radius else "points, no diameter")
+    if vise.row_offset:
+        word = "above" if vise.row_offset > 0 else "below"
+        column.fact("R rows over L rows", f"{lengths.words(abs(vise.row_offset))} {word}")
+    column.rule()
+
+
+def draw_peg_table(column: Column, fixture: Fixture, lengths: LengthUnit) -> None:
+    """Write the four pegs: hole, face, place and force."""
+    ends = (0.32, 0.575, 0.82, 1.0)
+    places = [(lengths.number(peg.x), lengths.number(peg.y)) for peg in fixture.pegs]
+    widest = max(text_width(cell, 14) for place in places for cell in place)
+    size = 14 if widest < 0.24 * column.width else 11
+    column.row(["Peg in", "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
+    for peg, place in zip(fixture.pegs, places, strict=True):
+        force = f"{peg.force:z.3f}".replace("-", "−")
+        column.row([peg.hole, str(peg.segment), *place, force], ends, size)
+    column.y += 2
+    column.words("x, y: peg centre, from the centre of hole L-A1.", 11, fill=GREY)
+    column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
+    column.rule()
+
+
+def draw_legend(column: Column, fill: str = GREY) -> None:
+    """Explain the signs; ``fill`` is the colour of the words."""
+    scene, x = column.scene, column.x + 16
+    words = [
+        "peg to place, with its hole: jaw, column, row",
+        "hole, left empty",
+        "force of the peg on the part, longer if larger",
+        "face touched, with its number",
+    ]
+    for k, line in enumerate(words):
+        y = column.y + 8
+        if k == 0:
+            scene.circle((x, y), 7, PEG_FILL, BLACK, 1.2)
+        elif k == 1:
+            scene.circle((x, y), 7, "#ffffff", GREY, 0.9)
+        elif k == 2:
+            scene.circle((x - 14, y), 2.8, ARROW)
+            scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
+        else:
+            scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
+            scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
+        scene.text((x + 28, y), line, 11.5, fill=fill)
+        column.y += 21

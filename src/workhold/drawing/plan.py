@@ -1,0 +1,292 @@
+"""The plan of a fixture with its lettering: hole names, jaw separation, labels of pegs and faces, the part's turn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, cos, hypot, pi, radians, sin
+
+import numpy as np
+
+from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow, peg_radius
+from workhold.drawing.dimensions import angle_mark, dimension
+from workhold.drawing.fonts import text_width
+from workhold.drawing.inset import draw_zero
+from workhold.drawing.jaws import JawView, labelled
+from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.part import placed_point
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.geometry.segment import Point
+from workhold.model.holes import column_letters
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["BOTTOM", "LEFT", "RIGHT", "TOP", "draw_plan"]
+
+# Room around jaws and part for row numbers, column letters, the dimension and captions, page units.
+LEFT, TOP, RIGHT, BOTTOM = 48.0, 84.0, 48.0, 82.0
+LONGEST_ARROW = 62.0
+
+LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
+TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
+ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
+MARK_RADIUS = 5.0
+RIM_WORD = 10.0
+
+# In denser lattices labels cannot help covering holes.
+MOST_HOLES_AVOIDED = 2000
+
+
+def draw_plan(
+    scene: Scene,
+    bench: Bench,
+    view: View,
+    workpiece: Workpiece,
+    bounds: Box,
+    lengths: LengthUnit,
+    marks: Sequence[tuple[Point, str]] = (),
+    angle: str | None = None,
+) -> None:
+    """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
+
+    Parameters
+    ----------
+    angle : what to write at the part's turn; its size if not given.
+    marks : points in the vise frame (mm) to mark, each with its name; those outside the picture are left out.
+    """
+    frame = view.box(bench.extent)
+    names = draw_hole_names(scene, bench, view, frame)
+    draw_bench(scene, bench, view, longest=LONGEST_ARROW)
+    draw_separation(scene, bench, view, frame, lengths)
+    names += draw_captions(scene, bench, view, frame, bounds)
+    center = view(placed_point(workpiece.center, bench.fixture.pose))
+    angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
+    marks = [(view(point), name) for point, name in marks if bench.extent.contains(Box(*point, *point))]
+    angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
+    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle)
+
+
+def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
+    """Write column letters above and below the jaws and row numbers at their outer sides, as on the rim of a map.
+
+    Returns where they stand.
+    """
+    group, boxes = scene.group("hole-names"), []
+    for jaw in bench.jaws:
+        plate = view.box(jaw.plate)
+        pegs = [peg for peg in bench.fixture.pegs if peg.jaw == jaw.jaw]
+        rows = [(row, view((0.0, y))[1]) for row, y in zip(jaw.rows, jaw.y, strict=True)]
+        for row, y, used in labelled(rows, {peg.row for peg in pegs}, 15.0):
+            rim, inner, way = (frame.x0, plate.x0, -1) if jaw.jaw == "left" else (frame.x1, plate.x1, 1)
+            ruling(group, (rim, y), (inner, y))
+            anchor = "end" if way < 0 else "start"
+            boxes.append(write_name(group, (rim + 10 * way, y), str(row + 1), used, anchor))
+        columns = [(column, view((x, 0.0))[0]) for column, x in zip(jaw.columns, jaw.x, strict=True)]
+        for column, x, used in labelled(columns, {peg.column for peg in pegs}, 17.0):
+            anchor = inner_anchor(jaw, column, bench.fixture.jaw_separation * view.scale)
+            for rim, inner, way in ((frame.y0, plate.y0, -1), (frame.y1, plate.y1, 1)):
+                ruling(group, (x, rim), (x, inner))
+                boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
+    return boxes + write_rim_words(group, frame, boxes)
+
+
+def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
+    """Say at the left rim which names are rows and which are columns, where no name stands, and return the room taken."""
+    boxes = []
+    for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
+        right = frame.x0 - 5
+        box = Box(right - text_width(word, RIM_WORD), y - RIM_WORD / 2, right, y + RIM_WORD / 2)
+        if all(box.grown(2.0).overlap(name) == 0 for name in names):
+            scene.text((right, y), word, RIM_WORD, "end", fill=GREY)
+            boxes.append(box)
+    return boxes
+
+
+def inner_anchor(jaw: JawView, column: int, gap: float) -> str:
+    """How the letter of a column stands: beside its column when the jaws all but meet, else on it."""
+    if gap >= 20:
+        return "middle"
+    if jaw.jaw == "left" and column == jaw.columns[-1]:
+        return "end"
+    return "start" if jaw.jaw == "right" and column == 0 else "middle"
+
+
+def ruling(scene: Scene, rim: Point, plate: Point) -> None:
+    """Draw a faint line that leads from a name at the rim to a plate that lies further in."""
+    if abs(rim[0] - plate[0]) + abs(rim[1] - plate[1]) > 12:
+        scene.line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
+
+
+def write_name(scene: Scene, at: Point, name: str, used: bool, anchor: str) -> Box:
+    """Write a column letter or row number, bold when a peg stands there, and return its box."""
+    size = 14.0 if used else 12.0
+    scene.text(at, name, size, anchor, bold=used, fill=BLACK if used else GREY)
+    width = text_width(name, size, used)
+    left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
+    return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
+
+
+def draw_separation(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> None:
+    """Dimension the jaw separation from the left jaw's last column to the right jaw's first."""
+    group = scene.group("jaw-separation")
+    left, right = bench.jaws[0].x[-1], bench.jaws[1].x[0]
+    y = frame.y0 - 42
+    for x in (left, right):
+        page_x = view((x, 0.0))[0]
+        group.line([(page_x, frame.y0 - 23), (page_x, y - 3)], BLACK, 0.7)
+    text = f"S = {lengths.words(bench.fixture.jaw_separation)}"
+    dimension(group, (view((left, 0.0))[0], y), (view((right, 0.0))[0], y), text, 17, bold=True)
+
+
+def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
+    """Name the jaws below them and show with an arrow which way the right one closes.
+
+    Returns the room this takes.
+    """
+    group = scene.group("captions")
+    y = frame.y1 + 40
+    fixed, sliding, closing = "fixed jaw (L)", "sliding jaw (R)", "closing"
+    left, right = view.box(bench.jaws[0].plate).x1 - 6, view.box(bench.jaws[1].plate).x0 + 6
+    if right - left < 16:  # the jaws all but meet
+        left, right = (left + right) / 2 - 8, (left + right) / 2 + 8
+    left = max(left, bounds.x0 + text_width(fixed, 14))
+    right = min(right, bounds.x1 - text_width(sliding, 14))
+    group.text((left, y), fixed, 14, "end")
+    group.text((right, y), sliding, 14)
+    tip = min(right, bounds.x1 - 66 - text_width(closing, 13))
+    outline = [(0, 0), (18, -11), (18, -5), (58, -5), (58, 5), (18, 5), (18, 11)]
+    group.polygon([(tip + x, y + 24 + dy) for x, dy in outline], "#ffffff", BLACK, 1.4)
+    group.text((tip + 66, y + 24), closing, 13)
+    return [
+        Box(left - text_width(fixed, 14), y - 8, left, y + 8),
+        Box(min(right, tip), y - 8, max(right + text_width(sliding, 14), tip + 66 + text_width(closing, 13)), y + 38),
+    ]
+
+
+def draw_labels(
+    scene: Scene,
+    bench: Bench,
+    view: View,
+    workpiece: Workpiece,
+    bounds: Box,
+    names: list[Box],
+    marks: Sequence[tuple[Point, str]],
+    angle: str,
+) -> None:
+    """Label pegs by their holes, touched faces by their numbers, the part's turn and marked page points, where the labels
+    hide nothing."""
+    center = view(placed_point(workpiece.center, bench.fixture.pose))
+    placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
+    avoid_drawing(placer, bench, view, center)
+    for box in names:
+        placer.avoid_box(box)
+    for (x, y), _ in marks:
+        placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
+    pegs = bench.fixture.pegs
+    numbers = list(dict.fromkeys(peg.segment for peg in pegs))
+    direction = -radians(bench.fixture.pose.theta_deg) / 2
+    places = placer.place(
+        [
+            *(peg_label(bench, index, view) for index in range(4)),
+            *(face_tag(bench, face, view) for face in numbers),
+            around(center, direction, (text_width(angle, 13) + 4, 16), (26, 32, 40, 50, 64), spread(24), turn_cost=4),
+            *(mark_label(point, name) for point, name in marks),
+        ]
+    )
+    group = scene.group("labels")
+    radius = peg_radius(bench.vise, view.scale)
+    for peg, place in zip(pegs, places, strict=False):
+        draw_flag(group, place, radius, peg.hole)
+    for face, place in zip(numbers, places[4:], strict=False):
+        draw_tag(group, place, str(face))
+    group.text(places[4 + len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
+    for (_, name), place in zip(marks, places[5 + len(numbers) :], strict=True):
+        draw_mark(group, place, name)
+
+
+def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
+    """Tell where the drawing is, so that labels keep off; the part's turn is drawn around ``center``."""
+    for outline in bench.outlines(view, 4.0):
+        placer.avoid_ink(outline, 3.0)
+        placer.avoid_walls(outline[::3])
+    radius = peg_radius(bench.vise, view.scale)
+    for index, peg in enumerate(bench.fixture.pegs):
+        x, y = view((peg.x, peg.y))
+        placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
+        placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
+    turn = radians(bench.fixture.pose.theta_deg)
+    x, y = center
+    placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
+    placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
+    arc = np.linspace(0.0, turn, 24)
+    placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
+    for jaw in bench.jaws:
+        # The columns between which the jaw separation is measured.
+        column = jaw.x[-1] if jaw.jaw == "left" else jaw.x[0]
+        placer.avoid_line(view((column, jaw.plate.y0)), view((column, jaw.plate.y1)), 0.5)
+        if len(jaw.x) * len(jaw.y) < MOST_HOLES_AVOIDED:
+            placer.avoid_ink([view((hole_x, hole_y)) for hole_x in jaw.x for hole_y in jaw.y], 2.0)
+
+
+def spread(count: int) -> list[float]:
+    """Turns all around, the small ones first, radians."""
+    turns = [2 * pi * k / count for k in range(-count // 2 + 1, count // 2 + 1)]
+    return sorted(turns, key=lambda turn: (abs(turn), turn))
+
+
+def peg_label(bench: Bench, index: int, view: View) -> Label:
+    """Candidates for the label of a peg: best away from the part, close by."""
+    peg = bench.fixture.pegs[index]
+    nx, ny = bench.contacts[index][1]
+    size = (text_width(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
+    radius = peg_radius(bench.vise, view.scale)
+    distances = [radius + gap for gap in (5, 14, 26, 42, 64, 90)]
+    return around(view((peg.x, peg.y)), atan2(-ny, nx), size, distances, spread(24))
+
+
+def mark_label(point: Point, name: str) -> Label:
+    """Candidates for the name of a marked page point."""
+    size = (text_width(name, TAG_SIZE) + 6, TAG_SIZE + 4)
+    distances = [MARK_RADIUS + gap for gap in (3, 10, 20, 34, 52, 76, 110)]
+    return around(point, pi / 4, size, distances, spread(24), turn_cost=2)
+
+
+def face_tag(bench: Bench, face_number: int, view: View) -> Label:
+    """Candidates for the number of a face: inside the part, beside the contacts on it."""
+    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.segment == face_number)
+    face = bench.faces[index]
+    size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
+    half = face.half_extent
+    near = face.parameter(bench.contacts[index][0])
+    labels = []
+    for share in (-0.85, -0.6, -0.35, 0.0, 0.35, 0.6, 0.85):
+        parameter = share * half
+        nx, ny = face.normal(parameter)
+        extra = 4 * abs(parameter - near) / half
+        labels.append(around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24), (0.0, 0.5, -0.5), extra))
+    return joined(labels)
+
+
+def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
+    """Draw the label of a peg: a framed name, and a leader when it stands off."""
+    peg = place.anchor
+    x, y = leader_end(peg, place.box)
+    gap = hypot(x - peg[0], y - peg[1])
+    if gap > radius + 2:
+        share = radius / gap
+        scene.line([(peg[0] + share * (x - peg[0]), peg[1] + share * (y - peg[1])), (x, y)], PEG_FILL, 1.4)
+    scene.rectangle(place.box, "#ffffff", PEG_FILL, 1.4, 4)
+    scene.text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
+
+
+def draw_mark(scene: Scene, place: Place, name: str) -> None:
+    """Draw the sign of a zero point, a quartered disc, and its name with a leader."""
+    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
+    draw_zero(scene, place.anchor, MARK_RADIUS)
+    scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
+
+
+def draw_tag(scene: Scene, place: Place, name: str) -> None:
+    """Draw the number of a face in a rounded frame with a short leader to the face."""
+    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
+    scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
+    scene.text(place.box.center, name, TAG_SIZE, "middle")

@@ -1,0 +1,52 @@
+"""SVG text to the bytes of a picture file."""
+
+from __future__ import annotations
+
+import resvg_py
+
+from workhold.drawing.fonts import font_files
+from workhold.errors import InputError
+
+__all__ = ["render", "svg_to_png"]
+
+DEFAULT_WIDTH = 2400
+
+
+def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
+    """Render SVG text to a PNG of a width in pixels, with the bundled fonts only.
+
+    Raises
+    ------
+    InputError
+        For a width that is not positive.
+    """
+    if width < 1:
+        raise InputError(f"picture width {width} is not a positive number of pixels: give 1 or more.")
+    return bytes(
+        resvg_py.svg_to_bytes(
+            svg_string=svg,
+            width=width,
+            dpi=96,  # else lengths in mm come out as nothing
+            background="#ffffff",
+            skip_system_fonts=True,
+            font_files=font_files(),
+            font_family="DejaVu Sans",
+            sans_serif_family="DejaVu Sans",
+        )
+    )
+
+
+def render(svg: str, ending: str) -> bytes:
+    """The bytes of a picture file with the ending ".svg" or ".png" (in capitals as well).
+
+    Raises
+    ------
+    InputError
+        For any other ending.
+    """
+    match ending.lower():
+        case ".svg":
+            return svg.encode("utf-8")
+        case ".png":
+            return svg_to_png(svg)
+    raise InputError(f"{ending or 'no ending'} is not a kind of picture workhold writes: end the file in .svg or .png.")

@@ -1,0 +1,305 @@
+"""A page of SVG: the map from millimetres to the page, and the few shapes that pictures are made of.
+
+Glossary
+--------
+page unit : a quarter of a millimetre on A4 paper; a page is 1188 by 840 units, or 840 by 1188. Line widths and text
+    sizes are page units, so a part of half a millimetre and one of two metres look alike. y runs down the page.
+model : a frame in millimetres whose y runs up: the vise frame, or that of the workpiece.
+view : the map from a model frame to the page, a scale and a shift.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from math import atan2, cos, hypot, log10, sin
+
+from attrs import frozen
+
+from workhold.drawing.fonts import FAMILY
+from workhold.geometry.segment import Point
+
+__all__ = [
+    "BLACK",
+    "GREY",
+    "LANDSCAPE",
+    "PORTRAIT",
+    "UNITS_PER_MM",
+    "Box",
+    "Scene",
+    "View",
+    "decimals_for",
+    "number",
+    "stacked",
+]
+
+LANDSCAPE = (1188.0, 840.0)
+PORTRAIT = (840.0, 1188.0)
+UNITS_PER_MM = 4.0
+
+BLACK = "#1a1a1a"
+GREY = "#5f6670"
+
+# Height of capitals and figures of the typeface, in ems.
+CAP_HEIGHT = 0.729
+
+SVG_NAMESPACE = "http://www.w3.org/2000/svg"
+
+Attributes = dict[str, str]
+
+
+def number(value: float) -> str:
+    """A page coordinate with at most three decimals, always written the same way.
+
+    >>> number(2.0), number(-0.0001), number(1.23456)
+    ('2', '0', '1.235')
+    """
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def decimals_for(length: float) -> int:
+    """Decimals for dimensions in mm in a picture whose typical length is ``length`` mm: three, more for tiny parts.
+
+    >>> decimals_for(10.0), decimals_for(0.05)
+    (3, 5)
+    """
+    return max(3, 3 - int(log10(length) // 1)) if length < 1 else 3
+
+
+@frozen
+class Box:
+    """A rectangle with sides along the axes, in mm (y up) or page units (y down)."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def width(self) -> float:
+        """Extent along x."""
+        return self.x1 - self.x0
+
+    @property
+    def height(self) -> float:
+        """Extent along y."""
+        return self.y1 - self.y0
+
+    @property
+    def center(self) -> Point:
+        """The middle."""
+        return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
+
+    def grown(self, margin: float) -> Box:
+        """The box with every side moved out."""
+        return Box(self.x0 - margin, self.y0 - margin, self.x1 + margin, self.y1 + margin)
+
+    def union(self, other: Box) -> Box:
+        """The smallest box around both."""
+        return Box(min(self.x0, other.x0), min(self.y0, other.y0), max(self.x1, other.x1), max(self.y1, other.y1))
+
+    def overlap(self, other: Box) -> float:
+        """Area shared with another box."""
+        width = min(self.x1, other.x1) - max(self.x0, other.x0)
+        height = min(self.y1, other.y1) - max(self.y0, other.y0)
+        return max(width, 0.0) * max(height, 0.0)
+
+    def contains(self, other: Box) -> bool:
+        """Whether another box lies inside."""
+        return self.x0 <= other.x0 and self.y0 <= other.y0 and self.x1 >= other.x1 and self.y1 >= other.y1
+
+
+@frozen
+class View:
+    """The map (x, y) -> (left + scale x, top - scale y) from mm to page units."""
+
+    scale: float
+    left: float
+    top: float
+
+    @classmethod
+    def fitting(cls, model: Box, page: Box, scale: float | None = None) -> View:
+        """Centre a model box in a page box, as large as fits or at a given scale in page units per mm."""
+        if scale is None:
+            scale = min(page.width / model.width, page.height / model.height)
+        (mx, my), (px, py) = model.center, page.center
+        return cls(scale, px - scale * mx, py + scale * my)
+
+    def __call__(self, point: Point) -> Point:
+        """A model point on the page."""
+        return self.left + self.scale * point[0], self.top - self.scale * point[1]
+
+    def box(self, model: Box) -> Box:
+        """A model box on the page."""
+        (x0, y1), (x1, y0) = self((model.x0, model.y0)), self((model.x1, model.y1))
+        return Box(x0, y0, x1, y1)
+
+    @property
+    def matrix(self) -> str:
+        """The map as an SVG ``matrix(a b c d e f)``."""
+        return f"matrix({self.scale:.12g} 0 0 {-self.scale:.12g} {self.left:.12g} {self.top:.12g})"
+
+
+def plain(content: str) -> str:
+    """Text without the control characters that XML forbids."""
+    return "".join(c for c in content if c >= " " and c not in "\x7f\ufffe\uffff" and not "\ud800" <= c <= "\udfff")
+
+
+def stacked(pages: Sequence[str]) -> str:
+    """Pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
+    if len(pages) == 1:
+        return pages[0]
+    ET.register_namespace("", SVG_NAMESPACE)
+    roots = [ET.fromstring(page.encode("utf-8")) for page in pages]
+    _, _, width, height = (float(word) for word in roots[0].attrib["viewBox"].split())
+    whole = Scene.page((width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or "")
+    text = whole.svg().removesuffix("</svg>\n")
+    for k, root in enumerate(roots):
+        root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
+        text += ET.tostring(root, encoding="unicode") + "\n"
+    return text + "</svg>\n"
+
+
+class Scene:
+    """An SVG page, or a group of one, that shapes are added to in page units.
+
+    Parameters
+    ----------
+    element : the group that shapes go to.
+    """
+
+    def __init__(self, element: ET.Element) -> None:
+        self.element = element
+
+    @classmethod
+    def page(cls, size: tuple[float, float], title: str) -> Scene:
+        """An empty white page; ``title`` is for screen readers and window titles."""
+        width, height = size
+        root = ET.Element(
+            "svg",
+            {
+                "xmlns": SVG_NAMESPACE,
+                "width": f"{number(width / UNITS_PER_MM)}mm",
+                "height": f"{number(height / UNITS_PER_MM)}mm",
+                "viewBox": f"0 0 {number(width)} {number(height)}",
+                "font-family": FAMILY,
+                "fill": "none",
+                "stroke-linejoin": "round",
+            },
+        )
+        ET.SubElement(root, "title").text = plain(title)
+        scene = cls(root)
+        scene.add("rect", {"width": number(width), "height": number(height), "fill": "#ffffff"})
+        return scene
+
+    def svg(self) -> str:
+        """The page as SVG text."""
+        ET.indent(self.element, " ")
+        return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(self.element, encoding="unicode") + "\n"
+
+    def add(self, tag: str, attributes: Attributes) -> ET.Element:
+        """Add any element."""
+        return ET.SubElement(self.element, tag, attributes)
+
+    def group(self, name: str, view: View | None = None, **attributes: str) -> Scene:
+        """Add a group of the class ``name``; its ``data-model-to-page`` holds the map from mm, if a view is given."""
+        found = {"class": name, **{key.replace("_", "-"): value for key, value in attributes.items()}}
+        if view is not None:
+            found["data-model-to-page"] = view.matrix
+        return Scene(self.add("g", found))
+
+    def path(self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str) -> ET.Element:
+        """Add a path."""
+        attributes = {"d": d, "fill": fill}
+        if stroke != "none":
+            attributes |= {"stroke": stroke, "stroke-width": number(width)}
+        return self.add("path", attributes | {key.replace("_", "-"): value for key, value in more.items()})
+
+    def line(self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str) -> ET.Element:
+        """Add an open polyline."""
+        return self.path("M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more)
+
+    def polygon(self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0) -> ET.Element:
+        """Add a closed polygon."""
+        d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
+        return self.path(d, stroke, width, fill)
+
+    def rectangle(
+        self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
+    ) -> ET.Element:
+        """Add a rectangle."""
+        attributes = {
+            "x": number(box.x0),
+            "y": number(box.y0),
+            "width": number(box.width),
+            "height": number(box.height),
+            "fill": fill,
+        }
+        if round_by:
+            attributes["rx"] = number(round_by)
+        if stroke != "none":
+            attributes |= {"stroke": stroke, "stroke-width": number(width)}
+        return self.add("rect", attributes)
+
+    def circle(
+        self, center: Point, radius: float, fill: str = "none", stroke: str = "none", width: float = 1.0, **more: str
+    ) -> ET.Element:
+        """Add a circle."""
+        attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
+        if stroke != "none":
+            attributes |= {"stroke": stroke, "stroke-width": number(width)}
+        return self.add("circle", attributes | {key.replace("_", "-"): value for key, value in more.items()})
+
+    def text(
+        self,
+        at: Point,
+        content: str,
+        size: float,
+        anchor: str = "start",
+        bold: bool = False,
+        fill: str = BLACK,
+        halo: float = 0.0,
+        middle: bool = True,
+        turned: float = 0.0,
+    ) -> ET.Element:
+        """Add a line of text.
+
+        Parameters
+        ----------
+        at : where it stands; ``anchor`` tells which end ("start", "middle", "end").
+        size : font size in page units.
+        halo : width of a white rim that keeps it readable over lines, in page units.
+        middle : whether ``at`` is at half the height of the figures rather than on the baseline.
+        turned : degrees counter-clockwise.
+        """
+        x, y = at[0], at[1] + (CAP_HEIGHT * size / 2 if middle else 0.0)
+        attributes = {"x": number(x), "y": number(y), "font-size": number(size), "fill": fill}
+        if anchor != "start":
+            attributes["text-anchor"] = anchor
+        if bold:
+            attributes["font-weight"] = "bold"
+        if halo:
+            attributes |= {"stroke": "#ffffff", "stroke-width": number(2 * halo), "paint-order": "stroke"}
+        if turned:
+            attributes["transform"] = f"rotate({number(-turned)} {number(at[0])} {number(at[1])})"
+        element = self.add("text", attributes)
+        element.text = plain(content)
+        return element
+
+    def arrow(self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0) -> None:
+        """Add an arrow; ``head`` is the length of its head."""
+        dx, dy = tip[0] - tail[0], tip[1] - tail[1]
+        length = hypot(dx, dy)
+        head = min(head, length) if length > 0 else head
+        if length > 0:
+            neck = (tip[0] - 0.9 * head * dx / length, tip[1] - 0.9 * head * dy / length)
+            self.line([tail, neck], stroke, width)
+        self.arrow_head(tip, atan2(dy, dx), stroke, head)
+
+    def arrow_head(self, tip: Point, angle: float, fill: str, length: float) -> None:
+        """Add the head of an arrow that points along ``angle`` (radians on the page, y down)."""
+        c, s = cos(angle), sin(angle)
+        half = 0.34 * length
+        back = (tip[0] - length * c, tip[1] - length * s)
+        self.polygon([tip, (back[0] - half * s, back[1] + half * c), (back[0] + half * s, back[1] - half * c)], fill)

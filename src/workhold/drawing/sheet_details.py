@@ -1,0 +1,51 @@
+"""What a setup sheet says besides the fixture: paper, unit, names, dates, and what the loads do."""
+
+from __future__ import annotations
+
+from datetime import date
+
+from attrs import field, frozen
+
+from workhold.model.tolerance import Tolerance
+from workhold.model.units import MILLIMETRE, Unit
+from workhold.statics.loads import LoadCase
+
+__all__ = ["PAPERS", "SheetDetails"]
+
+# Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
+PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
+
+
+@frozen
+class SheetDetails:
+    """Everything on a setup sheet that the fixture does not tell.
+
+    Parameters
+    ----------
+    number, count : the fixture's rank in its result and how many there are.
+    day : the date written on the sheet.
+    result_hash : SHA-256 of the result file in hexadecimal.
+    version : of the program.
+    paper : "a4" or "letter".
+    unit : of lengths.
+    part_name : written instead of the workpiece's own name.
+    tolerance : how far pegs and faces may be off, which the location error is for.
+    jaw_force : in N; None when it is left open.
+    friction : coefficient of friction that was asked for with the loads.
+    loads : what acts on the part, and the peg forces that answer it.
+    others : how many other fixtures of the result use the same holes.
+    """
+
+    number: int
+    count: int
+    day: date
+    result_hash: str
+    version: str
+    paper: str = "a4"
+    unit: Unit = MILLIMETRE
+    part_name: str | None = None
+    tolerance: Tolerance = field(factory=Tolerance)
+    jaw_force: float | None = None
+    friction: float | None = None
+    loads: tuple[LoadCase, ...] = ()
+    others: int = 0

@@ -1,0 +1,102 @@
+"""A sheet of small pictures, to choose among fixtures at a glance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.drawing.bench import Bench, bench_of, draw_bench
+from workhold.drawing.dimensions import scale_bar
+from workhold.drawing.fonts import shortened, text_width
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.panel import closure_margin
+from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture
+from workhold.model.units import MILLIMETRE, Unit
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["MOST_THUMBNAILS", "draw_thumbnails"]
+
+MOST_THUMBNAILS = 12
+EDGE = 32.0
+HEADER = 50.0
+FOOTER = 26.0
+CAPTION = 44.0
+GAP = 14.0
+
+
+def draw_thumbnails(
+    fixtures: Sequence[Fixture],
+    workpiece: Workpiece,
+    vise: Vise,
+    titles: Sequence[str],
+    *,
+    unit: Unit = MILLIMETRE,
+) -> str:
+    """Draw up to twelve fixtures on one A4 sheet, all to the same scale, with type, closure margin and jaw separation.
+
+    Parameters
+    ----------
+    titles : what to call each of them, such as its rank.
+    unit : of the lengths written.
+
+    Returns
+    -------
+    str
+        SVG text.
+
+    Raises
+    ------
+    InputError
+        For no fixture, more than twelve, or another number of titles.
+    """
+    count = len(fixtures)
+    if not 1 <= count <= MOST_THUMBNAILS:
+        raise InputError(f"a sheet of thumbnails holds 1 to {MOST_THUMBNAILS} fixtures, not {count}: choose fewer.")
+    if len(titles) != count:
+        raise InputError(f"{count} fixtures have {len(titles)} titles: give one title for each.")
+    lengths = LengthUnit.suiting(unit, min(vise.pitch))
+    benches = [bench_of(fixture, workpiece, vise) for fixture in fixtures]
+    cells = grid(count)
+    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
+    scale = min(View.fitting(bench.extent, room).scale for bench, room in zip(benches, rooms, strict=True))
+    scene = Scene.page(LANDSCAPE, f"{workpiece.name}: fixtures")
+    width, height = LANDSCAPE
+    plural = "s" if count > 1 else ""
+    words = f"{count} fixture{plural}, all to the same scale"
+    name = shortened(workpiece.name, 24, width - 2 * EDGE - text_width(words, 14) - 20, bold=True)
+    scene.text((EDGE, EDGE + 10), name, 24, bold=True)
+    scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
+    for bench, title, cell, room in zip(benches, titles, cells, rooms, strict=True):
+        draw_cell(scene, bench, title, cell, View.fitting(bench.extent, room, scale), lengths)
+    scale_bar(scene, (EDGE, height - EDGE + 8), scale, lengths)
+    return scene.svg()
+
+
+def grid(count: int) -> list[Box]:
+    """Equal cells for a number of thumbnails, row by row: at most four across and three down."""
+    across = next(columns for columns, most in ((1, 1), (2, 4), (3, 6), (4, 12)) if count <= most)
+    down = -(-count // across)
+    width = (LANDSCAPE[0] - 2 * EDGE - (across - 1) * GAP) / across
+    height = (LANDSCAPE[1] - 2 * EDGE - HEADER - FOOTER - (down - 1) * GAP) / down
+    cells = []
+    for k in range(count):
+        x, y = EDGE + (k % across) * (width + GAP), EDGE + HEADER + (k // across) * (height + GAP)
+        cells.append(Box(x, y, x + width, y + height))
+    return cells
+
+
+def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
+    """Draw one thumbnail with its caption."""
+    group = scene.group("thumbnail")
+    group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
+    draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
+    fixture, width = bench.fixture, cell.width - 20
+    kind = f"Type {fixture.type}"
+    name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
+    group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
+    group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
+    separation = lengths.words(fixture.jaw_separation)
+    group.text((cell.x0 + 10, cell.y1 - 12), f"margin {closure_margin(fixture)}", 12, fill=GREY)
+    group.text((cell.x1 - 10, cell.y1 - 12), f"S = {separation}", 12, "end", fill=GREY)

@@ -1,0 +1,14 @@
+"""The errors workhold raises on purpose.
+
+Every message is one plain sentence that names the place and the remedy, because the command line prints it as it is.
+"""
+
+__all__ = ["WorkholdError", "InputError"]
+
+
+class WorkholdError(Exception):
+    """Base of every error workhold raises on purpose."""
+
+
+class InputError(WorkholdError, ValueError):
+    """A file, a flag or a value given by the user cannot be used; the command line exits with code 2."""

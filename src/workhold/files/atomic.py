@@ -1,0 +1,156 @@
+"""Output files that appear whole or not at all.
+
+Content is written under a temporary name in the same folder and renamed at the end, so that an error, a full disk or
+an interruption leaves an earlier file as it was. Devices and pipes have nothing to protect and are written directly.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from secrets import token_hex
+from typing import IO
+
+from workhold.errors import InputError
+
+__all__ = ["refuse_unwritable", "refuse_unwritable_folder", "text_file", "write_bytes"]
+
+NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+
+
+def refuse_unwritable(path: str | Path) -> None:
+    """Refuse an output file that could not be written in the end, before any work is done for it.
+
+    Raises
+    ------
+    InputError
+        When the path is a folder, lies in a folder that does not exist, or cannot be written.
+    """
+    path = Path(path)
+    target = resolved_file(path)
+    with plain_errors(path):
+        if is_special(target):
+            return
+        if target.exists() and not os.access(target, os.W_OK):
+            raise InputError(f"{path} cannot be written: it is write-protected.")
+        probe(target.parent)
+
+
+def refuse_unwritable_folder(path: str | Path) -> None:
+    """Refuse an output folder that could not be created or written in the end; creates nothing.
+
+    Raises
+    ------
+    InputError
+        When the path, or what it lies in, is no folder or cannot be written.
+    """
+    path = Path(path)
+    with plain_errors(path):
+        existing = resolved(path)
+        while not existing.exists():
+            existing = existing.parent
+        if not existing.is_dir():
+            raise InputError(f"{path} cannot be a folder: {existing} is a file.")
+        probe(existing)
+
+
+@contextmanager
+def text_file(path: str | Path) -> Iterator[IO[str]]:
+    """A text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream:
+        yield stream
+
+
+def write_bytes(path: str | Path, content: bytes) -> None:
+    """Write a whole file of bytes, or leave an earlier one as it was.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
+        stream.write(content)
+
+
+@contextmanager
+def replacement(path: Path) -> Iterator[int]:
+    """A file descriptor whose content replaces the path when the block ends without an error; the block closes it."""
+    target = resolved_file(path)
+    with plain_errors(path):
+        if is_special(target):
+            yield os.open(target, os.O_WRONLY)
+            return
+        temporary = temporary_name(target)
+        descriptor = os.open(temporary, NEW_FILE, 0o666)
+        try:
+            yield descriptor
+            if target.exists():
+                temporary.chmod(stat.S_IMODE(target.stat().st_mode))
+            temporary.replace(target)
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink()
+            raise
+
+
+def resolved(path: Path) -> Path:
+    """The path without symbolic links.
+
+    Raises
+    ------
+    InputError
+        For names no file can have, and for links that lead in a circle.
+    """
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError, ValueError) as error:
+        raise InputError(f"{str(path)!r} cannot be a file's name: {error}.") from error
+
+
+def resolved_file(path: Path) -> Path:
+    """The path without symbolic links, after checking that a file can be there."""
+    target = resolved(path)
+    with plain_errors(path):
+        if target.is_dir():
+            raise InputError(f"{path} is a folder: name a file in it.")
+        if not target.parent.is_dir():
+            raise InputError(f"{path} cannot be written, there is no folder {path.parent}: create it first.")
+    return target
+
+
+@contextmanager
+def plain_errors(path: Path) -> Iterator[None]:
+    """Turn the operating system's refusals into a sentence that names the file."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror or error}.") from error
+
+
+def probe(folder: Path) -> None:
+    """Create a file in a folder and remove it, the only sure way to know whether that is allowed."""
+    temporary = temporary_name(folder / "probe")
+    os.close(os.open(temporary, NEW_FILE, 0o666))
+    temporary.unlink()
+
+
+def is_special(target: Path) -> bool:
+    """Whether a path is a device, a pipe or a socket: something to write to, not to replace."""
+    return target.exists() and not target.is_file() and not target.is_dir()
+
+
+def temporary_name(target: Path) -> Path:
+    """A name beside the target that no other file has; cut short so that the file system accepts it."""
+    return target.with_name(f".{target.name[:40]}.{token_hex(6)}.part")

@@ -1,0 +1,202 @@
+"""Chains: the pieces a drawing is made of, before they are joined into loops.
+
+Glossary
+--------
+chain : a run of lines and arcs drawn as one entity: N segments through N + 1 points.
+label : what a message calls one segment, such as ``ARC 30 of INSERT 41``.
+closed chain : its last point is its first.
+bulge : tan of a quarter of an arc's sweep, positive counter-clockwise, 0 for a line.
+drawing : what a file held: chains in mm, and remarks for the user.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from math import copysign, hypot, isfinite, pi, sqrt, tan
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.geometry.loop import SHORTEST
+from workhold.geometry.segment import Point
+
+__all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
+
+# Ends nearer than this, in mm, are the same point: the rounding of computed arc ends and of placed blocks.
+SAME_POINT = 1e-9
+# Coordinates beyond this, in mm, leave no digits for a fixture; the unit is wrong, or the file.
+LARGEST = 1e9
+# How many places a remark names before it only counts.
+NAMED = 10
+
+
+@frozen
+class Chain:
+    """A run of lines and arcs drawn as one entity.
+
+    Parameters
+    ----------
+    points : N + 1 points (x, y) in mm.
+    bulges : N bulges.
+    labels : N names for messages.
+    """
+
+    points: tuple[Point, ...]
+    bulges: tuple[float, ...]
+    labels: tuple[str, ...]
+
+    @property
+    def closed(self) -> bool:
+        """Whether the last point is the first (to within 1e-9 mm)."""
+        (x0, y0), (x1, y1) = self.points[0], self.points[-1]
+        return hypot(x1 - x0, y1 - y0) <= SAME_POINT
+
+    @property
+    def entity(self) -> str:
+        """The entity's name: the first label without its segment number."""
+        return without_segment(self.labels[0])
+
+    def reversed(self) -> Chain:
+        """The same chain run the other way."""
+        return Chain(self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1])
+
+
+@frozen
+class Drawing:
+    """What a drawing file held.
+
+    Parameters
+    ----------
+    chains : open and closed chains, in mm.
+    remarks : what the user should know, one sentence each.
+    """
+
+    chains: tuple[Chain, ...]
+    remarks: tuple[str, ...] = ()
+
+
+def arc_bulges(sweep: float) -> list[float]:
+    """Bulges of an arc of a sweep in radians (signed): one, or two halves when it is nearly a full circle.
+
+    Two, because a single bulge near a full circle fixes the centre badly.
+    """
+    if abs(sweep) == pi:
+        return [copysign(1.0, sweep)]
+    return [tan(sweep / 4)] if abs(sweep) < 1.95 * pi else [tan(sweep / 8)] * 2
+
+
+def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
+    """Bulge of an arc whose ends have been moved a little, its centre staying as near its place as it can.
+
+    The new centre is the foot of the old one on the perpendicular bisector of the new chord, so that centre and radius
+    change by no more than the order of the movement (times centre distance over chord, which no choice can avoid).
+    """
+    if bulge == 0.0:
+        return 0.0
+    chord = hypot(end[0] - start[0], end[1] - start[1])
+    size = abs(bulge)
+    sign = 1.0 if bulge > 0 else -1.0
+    # Signed distance from the chord's middle to the centre, to the left of the chord for a short counter-clockwise arc.
+    apart = sign * chord * (1 - size * size) / (4 * size)
+    ux, uy = (end[0] - start[0]) / chord, (end[1] - start[1]) / chord
+    center = ((start[0] + end[0]) / 2 - apart * uy, (start[1] + end[1]) / 2 + apart * ux)
+    new_chord = hypot(new_end[0] - new_start[0], new_end[1] - new_start[1])
+    if new_chord < SHORTEST:
+        return bulge
+    vx, vy = (new_end[0] - new_start[0]) / new_chord, (new_end[1] - new_start[1]) / new_chord
+    dx, dy = center[0] - (new_start[0] + new_end[0]) / 2, center[1] - (new_start[1] + new_end[1]) / 2
+    distance = sign * (vx * dy - vy * dx)
+    half = new_chord / 2
+    radius = sqrt(half * half + distance * distance)
+    # tan(half sweep / 2) in whichever form does not cancel.
+    return sign * (half / (radius + distance) if distance >= 0 else (radius - distance) / half)
+
+
+def listed(items: Sequence[str]) -> str:
+    """The first ten items, and how many more there are."""
+    more = len(items) - NAMED
+    return "; ".join(items[:NAMED]) + (f"; and {more} more" if more > 0 else "")
+
+
+def cleaned(chains: Iterable[Chain]) -> Drawing:
+    """Drop entities and polyline segments of zero length (below 1e-7 mm), with remarks.
+
+    Raises
+    ------
+    InputError
+        For coordinates or bulges that are not finite, or so large that the unit must be wrong.
+    """
+    kept: list[Chain] = []
+    empty: list[str] = []
+    doubled: list[str] = []
+    for chain in chains:
+        refuse_unusable(chain)
+        good = without_doubled_points(chain)
+        if good is None:
+            empty.append(f"{chain.entity} at {at(chain.points[0])}")
+            continue
+        if len(good.bulges) < len(chain.bulges):
+            doubled.append(f"{chain.entity} at {at(chain.points[0])}")
+        kept.append(good)
+    remarks = []
+    if empty:
+        remarks.append(f"Left out {counted(len(empty), 'entity', 'entities')} of zero length: {listed(empty)}.")
+    if doubled:
+        remarks.append(
+            f"Left out doubled vertices of {counted(len(doubled), 'polyline', 'polylines')}: {listed(doubled)}."
+        )
+    return Drawing(tuple(kept), tuple(remarks))
+
+
+def refuse_unusable(chain: Chain) -> None:
+    """Refuse numbers that are not finite or absurdly large.
+
+    Raises
+    ------
+    InputError
+        Naming the segment.
+    """
+    for k, (x, y) in enumerate(chain.points):
+        bulge = chain.bulges[k] if k < len(chain.bulges) else 0.0
+        label = chain.labels[min(k, len(chain.labels) - 1)]
+        if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
+            raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
+        if max(abs(x), abs(y)) > LARGEST:
+            raise InputError(
+                f"{label} lies more than 1000 km from the origin: check the drawing's unit, or move it to the origin."
+            )
+
+
+def without_doubled_points(chain: Chain) -> Chain | None:
+    """The chain without segments of zero length; None when nothing is left."""
+    if len(chain.bulges) == 1:
+        (x0, y0), (x1, y1) = chain.points
+        return chain if hypot(x1 - x0, y1 - y0) >= SHORTEST else None
+    points, bulges, labels = [chain.points[0]], [], []
+    for k, point in enumerate(chain.points[1:]):
+        if hypot(point[0] - points[-1][0], point[1] - points[-1][1]) < SHORTEST:
+            continue
+        points.append(point)
+        bulges.append(chain.bulges[k])
+        labels.append(chain.labels[k])
+    if not bulges:
+        return None
+    if len(bulges) < len(chain.bulges):
+        points[-1] = chain.points[-1]
+    return Chain(tuple(points), tuple(bulges), tuple(labels))
+
+
+def without_segment(label: str) -> str:
+    """A label without its segment number: the name of the whole entity."""
+    return re.sub(r" segment \d+", "", label)
+
+
+def at(point: Point) -> str:
+    """A point in words."""
+    return f"({point[0]:.6g}, {point[1]:.6g})"
+
+
+def counted(count: int, one: str, many: str) -> str:
+    """A number and its noun."""
+    return f"{count} {one if count == 1 else many}"

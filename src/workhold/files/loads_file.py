@@ -1,0 +1,232 @@
+"""Loads from a file, and the words that describe a load there and on the command line.
+
+A file is TOML, or JSON if its name ends in .json, with a table for each load:
+
+    unit = "mm"                 # of at and path: mm, cm, m or inch; if not given, what the caller says
+
+    [[load]]
+    name = "side milling"
+    force = 200                 # N, or with a unit: "0.2 kN", "45 lbf"
+    path = [[0, 0], [40, 0]]    # or at = [10, 5]
+    direction = [30, 60]        # degrees in the part's frame; or 30, or "any", which is also meant by none
+    moment = 5000               # N mm, or "5 N.m", "40 lbf.in"; positive counter-clockwise
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Mapping
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from workhold.errors import InputError
+from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.units import unit_named
+
+__all__ = ["load_from_words", "read_loads"]
+
+KEYS = ("name", "force", "at", "path", "direction", "moment")
+# Exact: 0.45359237 kg (international pound, 1959) times 9.80665 m/s^2 (standard gravity, 1901).
+POUND_FORCE = 4.4482216152605
+FORCE_UNITS = {"": 1.0, "n": 1.0, "kn": 1000.0, "lbf": POUND_FORCE}
+INCH_POUND = 25.4 * POUND_FORCE
+MOMENT_UNITS = {
+    "": 1.0,
+    **dict.fromkeys(("n.mm", "nmm"), 1.0),
+    **dict.fromkeys(("n.m", "nm"), 1000.0),
+    **dict.fromkeys(("lbf.in", "in.lbf"), INCH_POUND),
+    **dict.fromkeys(("lbf.ft", "ft.lbf"), 12 * INCH_POUND),
+}
+QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-Z.*·]*)\s*", re.ASCII)
+
+
+def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
+    """Read a loads file.
+
+    Parameters
+    ----------
+    path : a TOML file, or JSON if its name ends in .json.
+    unit_scale : millimetres in one unit of length, where the file does not name its unit.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read or holds no loads, naming the first load that cannot be used.
+    """
+    path = Path(path)
+    content = parsed(path)
+    for key in content:
+        if key not in ("unit", "load"):
+            raise InputError(f"{path} has an unknown key '{key}': give unit, and a table [[load]] for each load.")
+    if "unit" in content:
+        try:
+            unit_scale = unit_named(str(content["unit"])).millimetres
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+    tables = content.get("load")
+    if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"{path} has no loads: write a table [[load]] for each, with force and at, path or moment.")
+    return tuple(load_from_words(table, f"{path}: load {n}", unit_scale) for n, table in enumerate(tables, 1))
+
+
+def parsed(path: Path) -> dict[str, Any]:
+    """The content of a TOML or JSON file.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not a loads file: it is not text.") from error
+    try:
+        content = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
+        reason = " ".join(str(error).split()).removesuffix(".")
+        raise InputError(f"{path} is not a loads file: it is broken {kind} ({reason}).") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path} is not a loads file: it must have a list of loads under the key load.")
+    return content
+
+
+def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
+    """A load from its description.
+
+    Parameters
+    ----------
+    words : values of name, force, at, path, direction and moment, as text (as in ``--load``), numbers or lists.
+    place : where they come from, for messages.
+    unit_scale : millimetres in one unit of ``at`` and ``path``.
+
+    Raises
+    ------
+    InputError
+        For a key or value that cannot be used.
+
+    Examples
+    --------
+    >>> load_from_words({"force": "200", "at": "10,5", "direction": "30..60"}, "here", 1.0).directions
+    (30.0, 60.0)
+    """
+    for key in words:
+        if key not in KEYS:
+            raise InputError(f"{place} has an unknown key '{key}': give {', '.join(KEYS[:-1])} or {KEYS[-1]}.")
+    if "at" in words and "path" in words:
+        raise InputError(f"{place} has both at and path: a force acts at a point or along a path.")
+    if "force" not in words:
+        for key in ("at", "path", "direction"):
+            if key in words:
+                raise InputError(f"{place} has {key} but no force: give its size in N, such as force=200.")
+    points: list[tuple[float, float]] = []
+    if "at" in words:
+        points = [point(words["at"], f"{place}: at")]
+    elif "path" in words:
+        points = path_points(words["path"], f"{place}: path")
+    try:
+        return Load(
+            points=[(x * unit_scale, y * unit_scale) for x, y in points],
+            force=quantity(words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"),
+            directions=directions(words["direction"], f"{place}: direction") if "direction" in words else ANY_DIRECTION,
+            moment=quantity(
+                words.get("moment", 0), f"{place}: moment", MOMENT_UNITS, "5000, 5000N.mm, 5N.m or 40lbf.in"
+            ),
+            name=str(words.get("name", "")),
+        )
+    except InputError as error:
+        raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a finite number, and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+
+
+def quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
+    """A number with or without a unit, in N or N mm.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if is_number(value):
+        return float(value)
+    found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    unit = found[2].lower().replace("·", ".").replace("*", ".") if found else ""
+    if found is None or unit not in units:
+        raise InputError(f"{place} {shown(value)} cannot be used: give a number, such as {such_as}.")
+    return float(found[1]) * units[unit]
+
+
+def number(value: Any) -> float | None:
+    """A plain finite number, from a number or from text; None for anything else."""
+    if isinstance(value, str):
+        found = QUANTITY.fullmatch(value)
+        value = float(found[1]) if found and not found[2] else None
+    return float(value) if is_number(value) else None
+
+
+def point(value: Any, place: str) -> tuple[float, float]:
+    """A point from ``X,Y`` or [x, y].
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    parts = value.split(",") if isinstance(value, str) else value
+    if isinstance(parts, list | tuple) and len(parts) == 2:
+        x, y = number(parts[0]), number(parts[1])
+        if x is not None and y is not None:
+            return x, y
+    raise InputError(f"{place} {shown(value)} is not a point: give two numbers, such as 10,5.")
+
+
+def path_points(value: Any, place: str) -> list[tuple[float, float]]:
+    """The corners of a path from ``X,Y;X,Y`` or a list of points.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    parts = value.split(";") if isinstance(value, str) else value
+    if not isinstance(parts, list | tuple) or len(parts) < 2:
+        raise InputError(f"{place} {shown(value)} is not a path: give two points or more, such as 0,0;40,0;40,20.")
+    return [point(part, place) for part in parts]
+
+
+def directions(value: Any, place: str) -> tuple[float, float]:
+    """A range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if isinstance(value, str) and value.strip().lower() == "any":
+        return ANY_DIRECTION
+    parts = value.split("..") if isinstance(value, str) else value
+    if not isinstance(parts, list | tuple):
+        parts = [parts]
+    angles = [number(part) for part in parts]
+    low, high = angles[0] if angles else None, angles[-1] if angles else None
+    if len(angles) > 2 or low is None or high is None:
+        raise InputError(
+            f"{place} {shown(value)} cannot be used: give an angle in degrees such as 30, a range such as 30..60, or any."
+        )
+    return low, high
+
+
+def shown(value: Any) -> str:
+    """A value as a message shows it."""
+    text = f"'{value}'" if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

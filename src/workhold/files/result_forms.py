@@ -1,0 +1,186 @@
+"""The shape of a result file's head, checked by pydantic, and what its parts are in the model."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from workhold.errors import InputError
+from workhold.model.holes import holes_named
+from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.proof import Proof, Undecided
+from workhold.model.restrictions import Restrictions, zone_of
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+
+__all__ = ["Head", "ProofPart"]
+
+
+class Part(BaseModel):
+    """What a key of the head must look like; further keys are allowed."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class WorkpiecePart(Part):
+    """The workpiece's keys."""
+
+    name: str
+    units: Literal["mm"]
+    loops: list[list[list[float]]]
+
+
+class VisePart(Part):
+    """The vise's keys."""
+
+    pitch: list[float] = Field(min_length=2, max_length=2)
+    columns: int
+    peg_radius: float
+    rows: int | None = None
+    min_gap: float | None = None
+    max_opening: float | None = None
+    row_offset: float = 0.0
+    body_radius: float | None = None
+    blocked: list[str] = []
+
+    def vise(self) -> Vise:
+        """The vise.
+
+        Raises
+        ------
+        InputError
+            When there is no such vise.
+        """
+        values = self.model_dump() | {"pitch": (self.pitch[0], self.pitch[1])}
+        return Vise(**values | {"blocked": [holes_named(name) for name in self.blocked]})
+
+
+class RestrictionsPart(Part):
+    """What was ruled out."""
+
+    avoid: list[int] = []
+    zones: list[list[list[float]]] = []
+    angles: list[list[float]] = []
+
+    def restrictions(self) -> Restrictions:
+        """The restrictions.
+
+        Raises
+        ------
+        InputError
+            When a zone or a range of angles is none.
+        """
+        zones = tuple(zone_of(loop) for loop in self.zones)
+        if any(len(pair) != 2 for pair in self.angles):
+            raise InputError("a range of angles is not two numbers.")
+        return Restrictions(tuple(self.avoid), zones, tuple((pair[0], pair[1]) for pair in self.angles))
+
+
+class TolerancePart(Part):
+    """How far pegs and faces may be off."""
+
+    peg: float
+    face: float
+
+
+class LoadPart(Part):
+    """A load."""
+
+    name: str = ""
+    points: list[tuple[float, float]] = []
+    force: float = 0.0
+    directions: tuple[float, float] = ANY_DIRECTION
+    moment: float = 0.0
+
+    # JSON has no tuples.
+    model_config = ConfigDict(strict=False, allow_inf_nan=False)
+
+    def load(self) -> Load:
+        """The load.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        return Load(tuple(self.points), self.force, self.directions, self.moment, self.name)
+
+
+class Counts(Part):
+    """Fixtures of each type."""
+
+    type_one: int = Field(alias="I", ge=0)
+    type_two: int = Field(alias="II", ge=0)
+
+    def by_type(self) -> dict[str, int]:
+        """The counts by the types' names."""
+        return {"I": self.type_one, "II": self.type_two}
+
+
+class UndecidedPart(Part):
+    """One entry of the proof's list of what is not decided; columns and rows may be negative."""
+
+    type: Literal["I", "II"]
+    segments: list[int] = Field(min_length=4, max_length=4)
+    columns: list[int] = Field(min_length=4, max_length=4)
+    rows: list[int] = Field(min_length=4, max_length=4)
+    theta_deg: float = Field(ge=0, lt=360)
+    reason: str = Field(min_length=1)
+
+    def undecided(self) -> Undecided:
+        """The entry as the model has it."""
+        segments, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
+        return Undecided(self.type, segments, columns, rows, self.theta_deg, self.reason)
+
+
+class ProofPart(Part):
+    """The account of the search."""
+
+    cells: int = Field(ge=0)
+    candidates: int = Field(ge=0)
+    discarded_by_bound: int = Field(ge=0)
+    verified: int = Field(ge=0)
+    escalated: int = Field(ge=0)
+    undecided: list[UndecidedPart]
+
+    def proof(self) -> Proof:
+        """The account as the model has it."""
+        counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
+        return Proof(*counts, tuple(item.undecided() for item in self.undecided))
+
+
+class Head(Part):
+    """Everything in the file but the fixtures."""
+
+    format: Literal["workhold-result/1"]
+    workpiece: WorkpiecePart
+    vise: VisePart
+    counts: Counts
+    contact_margin: float = Field(default=0.0, ge=0)
+    found: Counts | None = None
+    distinct: Counts | None = None
+    complete: bool = True
+    notes: list[str] = []
+    statistics: dict[str, int] = {}
+    proof: ProofPart | None = None
+    twins: list[Any] = []
+    restrictions: RestrictionsPart = RestrictionsPart()
+    ranking: list[str] = ["closure_margin"]
+    tolerance: TolerancePart | None = None
+    loads: list[LoadPart] = []
+
+    def model_parts(self) -> dict[str, Any]:
+        """The keyword arguments of a result that describe what was asked for.
+
+        Raises
+        ------
+        InputError
+            When one of them cannot be.
+        """
+        return {
+            "restrictions": self.restrictions.restrictions(),
+            "ranking": tuple(self.ranking),
+            "tolerance": Tolerance() if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
+            "loads": tuple(part.load() for part in self.loads),
+        }

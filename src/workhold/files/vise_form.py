@@ -1,0 +1,82 @@
+"""The shape of a vise's TOML file, checked by pydantic; a module of its own because pydantic takes long to import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+
+from workhold.errors import InputError
+
+__all__ = ["checked"]
+
+Pair = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
+
+
+class ViseForm(BaseModel):
+    """The shape of the file; what the numbers mean is checked by the vise and the dowel."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+
+    unit: str
+    pitch: FiniteFloat | Pair
+    columns: int
+    peg_radius: FiniteFloat
+    title: str | None = None
+    source: str | None = None
+    rows: int | None = None
+    min_gap: FiniteFloat | None = None
+    max_opening: FiniteFloat | None = None
+    row_offset: FiniteFloat | None = None
+    body_radius: FiniteFloat | None = None
+    blocked: list[str] | None = None
+    dowel: str | None = None
+    pin_diameter: Pair | None = None
+    hole_diameter: Pair | None = None
+    hole_position: FiniteFloat | None = None
+    peg_tolerance: FiniteFloat | None = None
+    face_tolerance: FiniteFloat | None = None
+
+
+WANTED = {
+    "unit": 'write unit = "mm" or unit = "inch"',
+    "pitch": "write the distance between holes as one number, or [x, y]",
+    "columns": "write how many columns of holes each jaw has, such as columns = 2",
+    "peg_radius": "write the radius of the pegs as a number",
+    "blocked": 'write a list of holes and columns by name, such as ["L-B3", "R-A"]',
+    "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",
+    "hole_diameter": "write the smallest and the largest diameter, such as [6.0, 6.012]",
+}
+
+
+def checked(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a vise file that are given, each of the type it should have.
+
+    Raises
+    ------
+    InputError
+        Naming the first entry that is not of this shape.
+    """
+    try:
+        return ViseForm.model_validate(content).model_dump(exclude_none=True)
+    except ValidationError as error:
+        raise InputError(in_words(error)) from error
+
+
+def in_words(error: ValidationError) -> str:
+    """The first thing wrong with the shape, as one sentence."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    name, kind = str(first["loc"][0]), first["type"]
+    if kind == "extra_forbidden":
+        known = get_close_matches(name, ViseForm.model_fields, n=1)
+        meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(ViseForm.model_fields)}."
+        return f'"{name[:40]}" is no entry of a vise: {meant}'
+    if kind == "missing":
+        return f"{name} is missing: {WANTED[name]}."
+    field = ViseForm.model_fields[name].annotation
+    usual = "write text in quotes" if field == str | None else "write a finite number"
+    if field == int | None:
+        usual = "write a whole number"
+    return f"{name} is not what it should be: {WANTED.get(name, usual)}."

@@ -1,0 +1,242 @@
+"""Closed loops of segments: building them from vertices, their direction, and what is refused.
+
+Glossary
+--------
+vertices : (N, 3) rows x, y, bulge; segment k runs from vertex k to vertex k + 1, the last one back to vertex 0.
+joint : the common end of two neighbouring segments of a loop.
+place : words that tell a user where something is, such as ``loop 0, segment 3 (LINE 2F)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from math import hypot, pi, sin
+
+import numpy as np
+from attrs import define
+from numpy.typing import ArrayLike, NDArray
+
+from workhold.errors import InputError
+from workhold.geometry.intersect import bounding_box, common_points
+from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
+from workhold.kernels.distance import turns_around
+
+__all__ = [
+    "LoopShape",
+    "checked_vertices",
+    "encloses",
+    "loop_segments",
+    "near_pairs",
+    "refuse_meeting_loops",
+    "refuse_no_area",
+    "refuse_self_crossing",
+    "reversed_vertices",
+    "signed_area",
+]
+
+Place = Callable[[int], str]
+
+# Segments shorter than this, in mm, have no direction worth the name.
+SHORTEST = 1e-7
+# Points nearer than this, in mm, touch.
+TOUCHING = 1e-7
+
+
+@define(frozen=True, slots=False, eq=False)
+class LoopShape:
+    """A loop's segments with what is needed to compare it with other loops quickly.
+
+    Parameters
+    ----------
+    segments : in running order, run either way.
+    boxes : (N, 4) bounding boxes of the segments.
+    """
+
+    segments: tuple[Segment, ...]
+    boxes: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment]) -> LoopShape:
+        """The shape of some segments."""
+        return cls(tuple(segments), np.array([bounding_box(segment) for segment in segments]))
+
+    @cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """Kernel rows of the segments, shape (N, 8)."""
+        return segment_rows(self.segments)
+
+    @cached_property
+    def box(self) -> NDArray[np.float64]:
+        """Bounding box of the loop, shape (4,)."""
+        return np.concatenate([self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0)])
+
+
+def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
+    """Copy the vertices of one loop after checking that each number and each segment can be used.
+
+    Parameters
+    ----------
+    vertices : (N, 3) array-like of x, y in mm and bulge.
+    loop : the loop's place, for messages.
+    place : the place of segment k, for messages.
+
+    Returns
+    -------
+    (N, 3) array, read-only.
+
+    Raises
+    ------
+    InputError
+        For a wrong shape, NaN or infinite numbers, zero-length segments, or too few segments to enclose anything.
+    """
+    try:
+        array = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
+        ) from error
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InputError(f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex.")
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if bad.size:
+        raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it.")
+    if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
+        raise InputError(
+            f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."
+        )
+    steps = np.hypot(*(np.roll(array[:, :2], -1, axis=0) - array[:, :2]).T)
+    short = np.flatnonzero(steps < SHORTEST)
+    if short.size:
+        k = int(short[0])
+        raise InputError(
+            f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled vertex "
+            "(a full circle is drawn as two halves)."
+        )
+    array.setflags(write=False)
+    return array
+
+
+def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
+    """Segments of a loop given by (N, 3) vertices."""
+    points = [(float(x), float(y)) for x, y in vertices[:, :2]]
+    ends = points[1:] + points[:1]
+    return tuple(segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True))
+
+
+def signed_area(segments: Sequence[Segment]) -> float:
+    """Area in mm² enclosed by a loop, positive when it runs counter-clockwise (shoelace plus circular segments)."""
+    area = 0.0
+    for segment in segments:
+        (x0, y0), (x1, y1) = segment.start, segment.end
+        area += (x0 * y1 - x1 * y0) / 2
+        if isinstance(segment, Arc):
+            area += segment.sign * segment.radius**2 * circular_segment(2 * segment.half_sweep) / 2
+    return area
+
+
+def circular_segment(sweep: float) -> float:
+    """sweep - sin(sweep) without cancellation for small sweeps (Taylor series below 0.1 rad, exact to rounding)."""
+    if sweep > 0.1:
+        return sweep - sin(sweep)
+    square = sweep * sweep
+    return sweep * square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72)))
+
+
+def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same loop run the other way round, from the same first vertex."""
+    out = np.empty_like(vertices)
+    order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
+    out[:, :2] = vertices[order, :2]
+    out[:, 2] = 0.0 - vertices[np.roll(order, -1), 2]
+    out.setflags(write=False)
+    return out
+
+
+def refuse_no_area(shape: LoopShape, loop: str) -> None:
+    """Refuse a loop that runs back along itself.
+
+    Raises
+    ------
+    InputError
+        Naming the loop.
+    """
+    if abs(signed_area(shape.segments)) <= TOUCHING * sum(segment.length for segment in shape.segments):
+        raise InputError(f"{loop} encloses no area, it runs back along itself: draw the outline of the part.")
+
+
+def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
+    """Pairs (i, j) whose (N, 4) bounding boxes come within the touching distance."""
+    for i, (x0, y0, x1, y1) in enumerate(boxes_a):
+        apart = (
+            (boxes_b[:, 0] > x1 + TOUCHING)
+            | (boxes_b[:, 2] < x0 - TOUCHING)
+            | (boxes_b[:, 1] > y1 + TOUCHING)
+            | (boxes_b[:, 3] < y0 - TOUCHING)
+        )
+        for j in np.flatnonzero(~apart):
+            yield i, int(j)
+
+
+def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
+    """Refuse a loop that crosses or touches itself anywhere but at its joints.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point.
+    """
+    segments, box = shape.segments, shape.boxes
+    count = len(segments)
+    # Tangent neighbours meet again within rounding of their joint; that is no crossing.
+    blur = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
+    for i, j in near_pairs(box, box):
+        if j <= i:
+            continue
+        joints: list[Point] = []
+        if j == i + 1:
+            joints.append(segments[i].end)
+        if (j + 1) % count == i:
+            joints.append(segments[j].end)
+        for x, y in common_points(segments[i], segments[j], TOUCHING):
+            if all(hypot(x - px, y - py) > blur for px, py in joints):
+                raise InputError(
+                    f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet itself only "
+                    "where one segment ends and the next begins."
+                )
+
+
+def refuse_meeting_loops(a: LoopShape, b: LoopShape, place_a: Place, place_b: Place) -> None:
+    """Refuse two loops that cross or touch.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point.
+    """
+    for i, j in near_pairs(a.boxes, b.boxes):
+        for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
+            raise InputError(
+                f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart from each other."
+            )
+
+
+def encloses(around: LoopShape, inner: LoopShape) -> bool:
+    """Whether a loop, run either way, has another loop, which does not meet it, in its inside."""
+    x, y = inner.segments[0].start
+    return bool(abs(turns_around(x, y, around.rows)) > pi)
+
+
+def same_carrier(a: Segment, b: Segment) -> bool:
+    """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense.
+
+    Directions agree within 1e-9 (sum of the components' differences), places and radii within 1e-7 mm.
+    """
+    if isinstance(a, Line) and isinstance(b, Line):
+        (tx, ty), (ux, uy) = a.tangent, b.tangent
+        dx, dy = b.start[0] - a.start[0], b.start[1] - a.start[1]
+        return abs(tx - ux) + abs(ty - uy) < 1e-9 and abs(dx * ty - dy * tx) < 1e-7
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
+        return apart < 1e-7 and abs(a.radius - b.radius) < 1e-7 and a.sign == b.sign
+    return False

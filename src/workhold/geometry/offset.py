@@ -1,0 +1,137 @@
+"""Trimmed offset of an outline: the straight and circular pieces of the boundary of (part + disc).
+
+No general arrangement is needed. Every raw offset piece is cut where it meets another raw offset piece or a circle of the
+offset radius around a joint; a cut piece belongs to the boundary exactly when its middle is no nearer than the radius to
+the outline, because nearness can only change at such a cut. Quadratic in the number of segments, exact up to rounding.
+
+Glossary
+--------
+raw piece : a segment moved outward by the radius, before trimming.
+joint circle : the circle around a joint on which a disc rolls around a corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
+from workhold.geometry.segment import Arc, Line, Point, Segment, segment_rows
+from workhold.kernels.distance import is_inside, outline_distances
+
+__all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
+
+# A piece may come nearer to the outline than the radius by this much, in mm, and pieces shorter than this are dropped.
+CLEARANCE = 1e-9
+
+
+def raw_offset(segment: Segment, radius: float) -> Segment | None:
+    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes."""
+    if isinstance(segment, Line):
+        nx, ny = segment.normal()
+        (x0, y0), (x1, y1) = segment.start, segment.end
+        return Line((x0 + radius * nx, y0 + radius * ny), (x1 + radius * nx, y1 + radius * ny))
+    grown = segment.radius + segment.sign * radius
+    if grown <= CLEARANCE:
+        return None
+    return Arc(segment.center, grown, segment.mid_angle, segment.half_sweep, segment.sign)
+
+
+def cut_points(piece: Segment, others: Sequence[Segment], joints: Sequence[Point], radius: float) -> list[Point]:
+    """Points at which a raw piece may enter or leave the boundary."""
+    points: list[Point] = []
+    for other in others:
+        points += carrier_intersections(piece, other)
+    for joint in joints:
+        if isinstance(piece, Line):
+            points += line_circle(piece, joint, radius)
+        else:
+            points += circle_circle(piece.center, piece.radius, joint, radius)
+    return points
+
+
+def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[int, Segment]]:
+    """The boundary pieces of (part + disc of ``radius`` mm) that face the segments, without the rolled corners.
+
+    Parameters
+    ----------
+    segments : the whole outline with its holes, material on the left.
+    radius : in mm, zero or more.
+
+    Returns
+    -------
+    list of (index of the segment, piece), in the order of the segments and of the parameter along each.
+    """
+    rows = segment_rows(segments)
+    raw = [raw_offset(segment, radius) for segment in segments]
+    joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
+    boxes = np.array([bounding_box(segment) for segment in segments])
+    pieces: list[tuple[int, Segment]] = []
+
+    def is_clear(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
+
+    for index, piece in enumerate(raw):
+        if piece is None:
+            continue
+        # Only what comes within a diameter of the segment can touch the disc beside it.
+        near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
+        others = [r for k in near if k != index and (r := raw[k]) is not None]
+        close_joints = [j for j in joints if point_apart(j, bounding_box(piece)) <= radius + CLEARANCE]
+        points = cut_points(piece, others, close_joints, radius)
+        pieces += [(index, kept) for kept in kept_parts(piece, points, is_clear)]
+    return pieces
+
+
+def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[Segment]:
+    """The parts of a segment whose points are at least ``radius`` mm from a zone, a closed loop with its inside on the left.
+
+    They end where the distance is the radius: on the zone's offset or on a joint circle, like the pieces of an outline.
+    """
+    rows = segment_rows(zone)
+    others = [raw for segment in zone if (raw := raw_offset(segment, radius)) is not None]
+    points = cut_points(piece, others, [segment.start for segment in zone], radius)
+
+    def is_clear(middles: NDArray[np.float64]) -> NDArray[np.bool_]:
+        outside = np.array([not is_inside(x, y, rows) for x, y in middles], np.bool_)
+        return np.asarray(outside & (outline_distances(middles, rows) >= radius - CLEARANCE))
+
+    return kept_parts(piece, points, is_clear)
+
+
+def kept_parts(
+    piece: Segment, points: Sequence[Point], is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+) -> list[Segment]:
+    """The parts of a raw piece, cut at some points, that stay clear; ``is_clear`` tells it of (M, 2) points."""
+    half = piece.half_extent
+    inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
+    cuts = [-half, *inner, half]
+    scale = piece.radius if isinstance(piece, Arc) else 1.0
+    middles = np.array([piece.at((a + b) / 2) for a, b in pairwise(cuts)])
+    clear = is_clear(middles)
+    spans: list[list[float]] = []
+    for a, b, keep in zip(cuts, cuts[1:], clear, strict=False):
+        if not keep:
+            continue
+        if spans and spans[-1][1] == a:
+            spans[-1][1] = b
+        else:
+            spans.append([a, b])
+    if spans == [[-half, half]]:
+        return [piece]
+    return [piece.part(a, b) for a, b in spans if (b - a) * scale > CLEARANCE]
+
+
+def boxes_apart(boxes: NDArray[np.float64], box: tuple[float, float, float, float]) -> NDArray[np.float64]:
+    """Largest of the gaps in x and y between (N, 4) bounding boxes and one, shape (N,), negative where they overlap."""
+    x0, y0, x1, y1 = box
+    gaps = np.stack([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
+    return np.asarray(gaps.max(axis=0))
+
+
+def point_apart(point: Point, box: tuple[float, float, float, float]) -> float:
+    """Largest of the gaps in x and y between a point and a bounding box."""
+    return max(box[0] - point[0], point[0] - box[2], box[1] - point[1], point[1] - box[3])

@@ -1,0 +1,76 @@
+"""Compiling the kernels of a search ahead of it, in two halves of about the same length.
+
+Numba compiles one kernel at a time in a process, so a first run takes half as long when two processes share the work
+through the cache folder. Kernels are compiled for the types they are called with: here, with arrays of nothing.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from workhold.kernels.certifying import certified
+from workhold.kernels.contacts import SETTING_LENGTH
+from workhold.kernels.curve_columns import CURVE_INTEGERS, CURVE_REALS
+from workhold.kernels.curve_table import tail_curves
+from workhold.kernels.quality import figures
+from workhold.kernels.reactions import LOAD_LENGTH
+from workhold.kernels.stances import stances_of
+from workhold.kernels.standing import contacts_of, stand
+from workhold.kernels.stretches import STRETCH_LENGTH
+from workhold.kernels.type_one import STATISTICS, type_one_cells
+from workhold.kernels.type_two import type_two_cells
+from workhold.kernels.uprights import UPRIGHT_REALS, upright_type_one, upright_type_two
+from workhold.kernels.vise_checks import LIMITS, RECORD_LENGTH
+
+__all__ = ["prepare_crossings", "prepare_table_and_listing"]
+
+FEATURE_LENGTH, CHECKED_LENGTH = 8, 10
+
+
+@contextmanager
+def without_collector() -> Iterator[None]:
+    """Compile without the garbage collector, which would look through all that is compiled again and again."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def prepare_crossings() -> None:
+    """Compile the kernels of crossings and uprights."""
+    none, rows, checked = np.zeros(0, np.int64), np.zeros((0, FEATURE_LENGTH)), np.zeros((0, CHECKED_LENGTH))
+    integers, reals = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+    uprights = np.zeros((0, UPRIGHT_REALS))
+    limits, stats = np.zeros(LIMITS), np.zeros(STATISTICS, np.int64)
+    with without_collector():
+        for cells in (type_one_cells, type_two_cells):
+            stretches = np.zeros((0, STRETCH_LENGTH))
+            table = (rows, checked, integers, reals, stretches)
+            cells(np.zeros(1), none, *table, 1.0, 1.0, 0.0, limits, False, stats)
+        for meet in (upright_type_one, upright_type_two):
+            meet(none, integers, uprights, none, rows, checked, integers, reals, 1.0, 0.0, limits, False, stats)
+
+
+def prepare_table_and_listing() -> None:
+    """Compile the kernels that come before and after the search."""
+    none, features = np.zeros(0, np.int64), np.zeros((1, FEATURE_LENGTH))
+    records, checked, outline = (np.zeros((0, width)) for width in (RECORD_LENGTH, CHECKED_LENGTH, FEATURE_LENGTH))
+    outline.setflags(write=False)
+    setting, whole = np.zeros(SETTING_LENGTH), np.zeros((0, 4), np.int64)
+    with without_collector():
+        tail_curves(0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0))
+        certified(records, checked, outline, np.zeros((0, 4)), setting, np.zeros((0, 4)))
+        contacts_of(records, checked, setting, np.zeros((0, 4, 2)), np.zeros(0), np.zeros((0, 4)), np.zeros((0, 4)))
+        stand(none, np.zeros(0), whole, whole.copy(), whole.copy(), 0.0)
+        pairs, fours, matrices = np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros((0, 4, 4))
+        pose, two = np.zeros((0, 3)), np.zeros(2)
+        stances_of(pairs, pose, fours, whole, features, none, two, 1.0, pairs, pairs, fours, matrices)
+        rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 6))
+        figures(pairs, pairs, fours, matrices, whole, 1.0, two, *rows)

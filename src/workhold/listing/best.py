@@ -1,0 +1,80 @@
+"""The best fixtures of a search while it runs, and the closure margin that a further one must reach."""
+
+from __future__ import annotations
+
+from threading import Event
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.listing.candidates import Candidates, joined, listed_once, twins
+from workhold.listing.deciding import Account
+from workhold.listing.finish import finish
+from workhold.listing.placing import placed
+from workhold.listing.problem import Problem
+from workhold.listing.ranking import Preference, best_marked
+from workhold.model.quality import CLOSURE_MARGIN
+
+__all__ = ["BestFixtures"]
+
+# A fixture may fall short of the margin to reach by this much and still be examined: margins are compared to 9 digits.
+SLACK = 2e-9
+# Records are decided when so many are waiting, or as many as are to be kept if that is more.
+WAITING = 64
+
+
+@define(eq=False)
+class BestFixtures:
+    """The best ``most`` fixtures of those added so far, and those that tie with the last of them.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    preference : what makes one better than another.
+    most : how many to keep.
+    cancel : see ``listing.finish.finish``.
+    """
+
+    problem: Problem
+    preference: Preference
+    most: int
+    cancel: Event | None = None
+    margin: float = field(default=0.0, init=False)
+    has_dropped: bool = field(default=False, init=False)
+    waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
+    kept: Candidates | None = field(default=None, init=False)
+    accounts: list[Account] = field(factory=list, init=False)
+
+    def add(self, records: NDArray[np.float64]) -> float:
+        """Take records (N, 19) from the search; the closure margin that further ones must reach."""
+        self.waiting.append(records)
+        if sum(map(len, self.waiting)) >= max(WAITING, self.most):
+            self.decide()
+        return self.margin
+
+    def decide(self) -> None:
+        """Decide the records that wait, and keep the best."""
+        fresh, account = finish(self.waiting, self.problem, None, self.cancel)
+        self.waiting = []
+        self.accounts.append(account)
+        everything = fresh if self.kept is None else listed_once(joined([self.kept, fresh]))
+        self.kept = self.cut(everything, ties=True)
+
+    def cut(self, everything: Candidates, ties: bool) -> Candidates:
+        """The best ``most`` of fixtures that are listed once, with their twins; and with those that tie with the last."""
+        sets = twins(everything, self.problem.faces[everything.feature])
+        if len(sets.first) <= self.most:
+            return everything
+        table = self.preference.measured(placed(everything.take(sets.first), self.problem), self.problem)
+        chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)
+        self.has_dropped |= not chosen.all()
+        if self.preference.by_margin_alone:
+            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - SLACK, 0.0)
+        return everything.take(sets.kept(chosen))
+
+    def finished(self) -> tuple[Candidates, Account]:
+        """The best fixtures and the account of all records, once the search is over."""
+        self.decide()
+        assert self.kept is not None
+        return self.cut(self.kept, ties=False), Account.together(self.accounts)

@@ -1,0 +1,139 @@
+"""From the records of any engine to the result a user sees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from threading import Event
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.listing.best import BestFixtures
+from workhold.listing.candidates import Candidates, twins
+from workhold.listing.deciding import Account
+from workhold.listing.distinct import count_distinct
+from workhold.listing.finish import finish
+from workhold.listing.placing import placed
+from workhold.listing.problem import TYPES, Problem, Progress
+from workhold.listing.ranking import Preference, rank
+from workhold.model.proof import Proof
+from workhold.model.result import FixtureTable, Result
+
+__all__ = ["Work", "best_result", "listed_result", "result_of"]
+
+
+@frozen
+class Work:
+    """How the search went.
+
+    Parameters
+    ----------
+    complete : whether it came to its end.
+    statistics : see ``Result.statistics``.
+    cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
+        than the records).
+    """
+
+    complete: bool
+    statistics: Mapping[str, int]
+    cells: int = 0
+    examined: int | None = None
+
+
+def listed_result(
+    problem: Problem,
+    preference: Preference,
+    records: list[NDArray[np.float64]],
+    work: Work,
+    *,
+    best: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+    threads: int = 1,
+) -> Result:
+    """Check, list once, rank and count the fixtures that an engine found.
+
+    Parameters
+    ----------
+    problem : what was searched.
+    preference : what makes one better than another.
+    records : (N, 19) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
+    best : list only this many, the best ones.
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
+    threads : how many threads share the deciding.
+    """
+    candidates, account = finish(records, problem, progress, cancel, threads)
+    result = result_of(problem, preference, candidates, account, work, threads)
+    return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
+
+
+def best_result(kept: BestFixtures, work: Work) -> Result:
+    """The result of a search for the best fixtures only.
+
+    How many fixtures there are in all is not known: those that could not be among the best were not examined.
+    """
+    candidates, account = kept.finished()
+    result = result_of(kept.problem, kept.preference, candidates, account, work)
+    if not (work.complete and kept.has_dropped):
+        return result
+    note = f"Only the best {kept.most} were sought, so how many fixtures there are in all was not counted."
+    return evolve(result, notes=(note, *result.notes))
+
+
+def result_of(
+    problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work, threads: int = 1
+) -> Result:
+    """The result of fixtures that are listed once."""
+    sets = twins(candidates, problem.faces[candidates.feature])
+    listed = candidates.take(sets.first)
+    everything = preference.measured(placed(listed, problem), problem, threads)
+    kept_apart = FixtureTable.empty()
+    if len(sets.others):
+        kept_apart = preference.measured(placed(candidates.take(sets.others), problem), problem)
+    ranked = everything.take(rank(everything.quality, preference.ranking))
+    return Result(
+        workpiece=problem.workpiece,
+        vise=problem.vise,
+        table=ranked,
+        found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
+        distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece, threads),
+        complete=work.complete and account.left == 0,
+        contact_margin=problem.contact_margin,
+        notes=notes(len(kept_apart), len(account.undecided)),
+        statistics=work.statistics,
+        twins=kept_apart,
+        proof=proof_of(account, work),
+        restrictions=problem.restrictions,
+        ranking=preference.ranking,
+        tolerance=preference.tolerance,
+        loads=preference.loads,
+    )
+
+
+def proof_of(account: Account, work: Work) -> Proof:
+    """The account of a search for the result."""
+    # A pair of chords that was given up counts as one candidate.
+    examined = work.examined
+    candidates = account.records if examined is None else examined + account.given_up - account.left
+    kept = account.verified + len(account.undecided)
+    # One candidate may hold two solutions, which then count as two.
+    candidates = max(candidates, kept)
+    return Proof(work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
+
+
+def notes(twin_count: int, undecided_count: int) -> tuple[str, ...]:
+    """Remarks on a search that a user should read."""
+    out = []
+    if twin_count:
+        some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
+        out.append(
+            f"{some}: the same holes, faces and orientation with the part in another place, kept apart from the list."
+        )
+    if undecided_count:
+        some = "1 candidate is undecided" if undecided_count == 1 else f"{undecided_count} candidates are undecided"
+        out.append(
+            f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+        )
+    return tuple(out)

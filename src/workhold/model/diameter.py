@@ -1,0 +1,57 @@
+"""The diameter of a workpiece."""
+
+from __future__ import annotations
+
+from math import hypot, pi, tau
+
+from workhold.geometry.segment import Arc, Segment
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["outline_diameter"]
+
+
+def outline_diameter(workpiece: Workpiece) -> float:
+    """Largest distance in mm between two points of the silhouette.
+
+    It is reached between two joints, between a joint and the far side of an arc, or between the far sides of two arcs;
+    far sides lie on the line through the arcs' centres.
+    """
+    outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
+    best = 0.0
+    for index, a in enumerate(outer):
+        for b in outer[index:]:
+            best = max(best, segments_diameter(a, b))
+    return best
+
+
+def segments_diameter(a: Segment, b: Segment) -> float:
+    """Largest distance in mm between a point of one segment and a point of another."""
+    best = max(hypot(p[0] - q[0], p[1] - q[1]) for p in (a.start, a.end) for q in (b.start, b.end))
+    for arc, other in ((a, b), (b, a)):
+        if isinstance(arc, Arc):
+            for q in (other.start, other.end):
+                best = max(best, far_side(arc, q))
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        far_a, far_b = far_point(a, b.center), far_point(b, a.center)
+        if far_a is not None and far_b is not None:
+            best = max(best, hypot(far_a[0] - far_b[0], far_a[1] - far_b[1]))
+        opposite = abs((a.mid_angle - b.mid_angle) % tau - pi)
+        if a.center == b.center and opposite <= a.half_sweep + b.half_sweep:
+            best = max(best, a.radius + b.radius)
+    return best
+
+
+def far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
+    """The point of an arc's circle farthest from a point, if it lies on the arc."""
+    dx, dy = arc.center[0] - point[0], arc.center[1] - point[1]
+    distance = hypot(dx, dy)
+    if distance == 0.0:
+        return None
+    far = (arc.center[0] + arc.radius * dx / distance, arc.center[1] + arc.radius * dy / distance)
+    return far if abs(arc.parameter(far)) <= arc.half_sweep else None
+
+
+def far_side(arc: Arc, point: tuple[float, float]) -> float:
+    """Distance in mm from a point to the far side of an arc, 0 if that is not on the arc."""
+    far = far_point(arc, point)
+    return 0.0 if far is None else hypot(far[0] - point[0], far[1] - point[1])

@@ -1,0 +1,135 @@
+"""The fixture vise: two jaws with a lattice of peg holes each (paper, sections 1 and 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf, isfinite, isnan, nan
+from typing import Any
+
+from attrs import field, frozen
+from attrs.converters import optional
+
+from workhold.errors import InputError
+from workhold.model.holes import Holes
+
+__all__ = ["Vise"]
+
+
+def pair(value: float | Iterable[float]) -> tuple[float, float]:
+    """One pitch for both directions, or one for x and one for y."""
+    numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
+    if len(numbers) != 2:
+        raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
+    return float(numbers[0]), float(numbers[1])
+
+
+def whole(value: float | None) -> Any:
+    """A whole number as an int; None and anything else as it is, to be looked at later."""
+    return value if value is None or not isfinite(value) or value != int(value) else int(value)
+
+
+def optional_length(value: float | None) -> float:
+    """A length, or NaN (which the vise resolves) for None."""
+    return nan if value is None else float(value) if not isnan(float(value)) else inf
+
+
+def all_holes(holes: Iterable[Holes]) -> tuple[Holes, ...]:
+    """Holes as a tuple."""
+    return tuple(holes)
+
+
+@frozen
+class Vise:
+    """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
+
+    Parameters
+    ----------
+    pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
+    columns : columns of holes on each jaw.
+    peg_radius : in mm; 0 is allowed.
+    rows : rows of holes on each jaw, or None for as many as needed.
+    min_gap : smallest distance in x from the centre of a left peg to the centre of a right one, in mm; None means the
+        x pitch.
+    max_opening : largest jaw separation in mm, or None for no limit.
+    row_offset : height in mm of the right jaw's row 0 above the left jaw's.
+    body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
+        peg radius. Bodies may neither overlap nor stand over a keep-out zone.
+    blocked : holes and columns that no peg can stand in.
+
+    Raises
+    ------
+    InputError
+        For values that are not finite and positive, and for pegs too fat for neighbouring holes.
+
+    Examples
+    --------
+    >>> from workhold import Vise
+    >>> Vise(pitch=10, columns=2, peg_radius=3).min_gap
+    10.0
+    """
+
+    pitch: tuple[float, float] = field(converter=pair)
+    columns: int = field(converter=whole)
+    peg_radius: float = field(converter=float)
+    rows: int | None = field(default=None, converter=whole)
+    min_gap: float = field(default=None, converter=optional_length)
+    max_opening: float | None = field(default=None, converter=optional(float))
+    row_offset: float = field(default=0.0, converter=float)
+    body_radius: float = field(default=None, converter=optional_length)
+    blocked: tuple[Holes, ...] = field(default=(), converter=all_holes)
+
+    def __attrs_post_init__(self) -> None:
+        if isnan(self.min_gap):
+            object.__setattr__(self, "min_gap", self.pitch[0])
+        if isnan(self.body_radius):
+            object.__setattr__(self, "body_radius", self.peg_radius)
+        for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
+            if not (isfinite(value) and value > 0):
+                raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
+        for name, count in (("columns", self.columns), ("rows", self.rows)):
+            if count is not None and (not isinstance(count, int) or count < 1):
+                raise InputError(f"{name} {count} is not a positive whole number: a jaw needs at least one.")
+        if not (isfinite(self.peg_radius) and self.peg_radius >= 0):
+            raise InputError(f"peg radius {self.peg_radius} is not a length: give 0 or more, in mm.")
+        if 2 * self.peg_radius > min(self.pitch):
+            raise InputError(
+                f"pegs of radius {self.peg_radius:g} overlap in neighbouring holes {min(self.pitch):g} apart: "
+                "use a smaller peg or a larger pitch."
+            )
+        if not (isfinite(self.min_gap) and self.min_gap >= 0):
+            raise InputError(f"min gap {self.min_gap} is not a length: give 0 or more, in mm.")
+        if self.max_opening is not None:
+            if not (isfinite(self.max_opening) and self.max_opening > 0):
+                raise InputError(f"max opening {self.max_opening} is not a positive length: give it in mm.")
+            if self.max_opening < self.min_gap:
+                raise InputError(
+                    f"max opening {self.max_opening:g} is below the min gap {self.min_gap:g}: no jaw separation is left."
+                )
+        if not isfinite(self.row_offset):
+            raise InputError(f"row offset {self.row_offset} is not a length: give it in mm.")
+        if not (isfinite(self.body_radius) and self.body_radius >= self.peg_radius):
+            raise InputError(
+                f"body radius {self.body_radius:g} is not one of a peg of radius {self.peg_radius:g}: give that or more, "
+                "in mm."
+            )
+        refuse_blocked(self)
+
+
+def refuse_blocked(vise: Vise) -> None:
+    """Refuse blocked holes that the vise does not have, and a jaw without a free hole.
+
+    Raises
+    ------
+    InputError
+        Naming the hole or the jaw.
+    """
+    for holes in vise.blocked:
+        if holes.column >= vise.columns:
+            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.columns} columns.")
+        if vise.rows is not None and holes.row is not None and holes.row >= vise.rows:
+            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.rows} rows.")
+    for jaw in ("left", "right"):
+        if {holes.column for holes in vise.blocked if holes.jaw == jaw and holes.row is None} == set(
+            range(vise.columns)
+        ):
+            raise InputError(f"every column of the {jaw} jaw is blocked: leave at least one.")

@@ -1,0 +1,153 @@
+"""The workpiece: a generalized polygon with holes (paper, section 2.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property, partial
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import ArrayLike, NDArray
+
+from workhold.errors import InputError
+from workhold.geometry.face import Face, faces_of_loop
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.loop import (
+    LoopShape,
+    checked_vertices,
+    encloses,
+    loop_segments,
+    near_pairs,
+    refuse_meeting_loops,
+    refuse_no_area,
+    refuse_self_crossing,
+    reversed_vertices,
+    signed_area,
+)
+from workhold.geometry.segment import Point, Segment
+
+__all__ = ["Workpiece"]
+
+
+@define(frozen=True, slots=False, eq=False)
+class Workpiece:
+    """A prismatic part, known by its silhouette. Build it with :meth:`from_loops` or :func:`workhold.load`.
+
+    Parameters
+    ----------
+    name : what the user calls it.
+    loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then the holes,
+        clockwise.
+
+    Examples
+    --------
+    >>> from workhold import Workpiece
+    >>> plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
+    >>> [face.number for face in plate.faces]
+    [0, 1, 2, 3]
+    """
+
+    name: str
+    loops: tuple[NDArray[np.float64], ...] = field(repr=lambda loops: f"<{len(loops)} loops>")
+
+    @classmethod
+    def from_loops(
+        cls, name: str, loops: Sequence[ArrayLike], labels: Sequence[Sequence[str]] | None = None
+    ) -> Workpiece:
+        """Check loops of (x, y, bulge) vertices in mm and turn them so that material lies on the left.
+
+        Parameters
+        ----------
+        name : what the user calls the part.
+        loops : the outer loop first, then any holes; each (N, 3), run in either direction.
+        labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
+
+        Raises
+        ------
+        InputError
+            For open or degenerate loops, numbers that are not finite, segments of zero length, loops that cross or
+            touch, holes outside the outer loop or inside one another.
+        """
+        if not loops:
+            raise InputError(f"{name} has no loop: give at least an outer loop.")
+
+        def segment_place(loop: int, k: int) -> str:
+            # Labels follow the loop as drawn, so a message before turning must not use later numbers.
+            label = f" ({labels[loop][k]})" if labels else ""
+            return f"{name}: loop {loop}, segment {k}{label}"
+
+        used: list[NDArray[np.float64]] = []
+        drawn: list[LoopShape] = []
+        for index, loop in enumerate(loops):
+            place = partial(segment_place, index)
+            vertices = checked_vertices(loop, f"{name}: loop {index}", place)
+            shape = LoopShape.of(loop_segments(vertices))
+            refuse_self_crossing(shape, place)
+            refuse_no_area(shape, f"{name}: loop {index}")
+            if (signed_area(shape.segments) > 0) != (index == 0):
+                vertices = reversed_vertices(vertices)
+            used.append(vertices)
+            drawn.append(shape)
+        boxes = np.array([shape.box for shape in drawn])
+        for a, b in near_pairs(boxes, boxes):
+            if a < b:
+                refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
+        refuse_misplaced_holes(name, drawn)
+        return cls(name, tuple(used))
+
+    @cached_property
+    def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
+        """Segments of each loop."""
+        return tuple(loop_segments(vertices) for vertices in self.loops)
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """All segments; their places in this tuple are their numbers."""
+        return tuple(segment for loop in self.loop_segments for segment in loop)
+
+    @cached_property
+    def faces(self) -> tuple[Face, ...]:
+        """All faces, ordered by their numbers."""
+        faces: list[Face] = []
+        number = 0
+        for loop in self.loop_segments:
+            faces += faces_of_loop(loop, number)
+            number += len(loop)
+        return tuple(faces)
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(smallest x, smallest y, largest x, largest y) in mm."""
+        boxes = np.array([bounding_box(segment) for segment in self.loop_segments[0]])
+        low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+        return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    @property
+    def center(self) -> Point:
+        """Centre of the bounding box, the point that moments are taken about."""
+        x0, y0, x1, y1 = self.bounds
+        return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
+    """Refuse holes outside the outer loop and holes inside one another (loops are known not to meet).
+
+    Raises
+    ------
+    InputError
+        Naming the hole.
+    """
+    boxes = np.array([shape.box for shape in shapes])
+    for index, hole in enumerate(shapes[1:], start=1):
+        x, y = hole.segments[0].start
+        if not encloses(shapes[0], hole):
+            raise InputError(
+                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop must be the "
+                "outline that encloses all the others."
+            )
+        for _, other in near_pairs(boxes[index : index + 1], boxes):
+            if other not in (0, index) and encloses(shapes[other], hole):
+                raise InputError(
+                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: holes may not "
+                    "overlap; load the inner piece as a part of its own."
+                )

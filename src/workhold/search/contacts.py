@@ -1,0 +1,39 @@
+"""Counting simultaneous contacts, the measure of how much there is to search (paper, section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.kernels.type_one import CONTACTS
+from workhold.listing.problem import TYPES, Problem
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.search.cells import run_blocks, thread_count
+from workhold.search.vise_search import ViseSearch
+
+__all__ = ["contacts_of", "count_contacts"]
+
+
+def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = None) -> int:
+    """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its feature.
+
+    Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest on a chord of
+    parallel faces and right pegs on faces square to the jaws' motion count only where they can be told apart.
+
+    Parameters
+    ----------
+    threads : how many threads share the work; None for one on each processor.
+
+    Raises
+    ------
+    InputError
+        For a peg that fits nowhere along the part.
+    """
+    return contacts_of(Problem.of(workpiece, vise), TYPES, threads)
+
+
+def contacts_of(problem: Problem, types: Sequence[str], threads: int | None) -> int:
+    """Simultaneous contacts of a problem, see :func:`count_contacts`."""
+    search = ViseSearch.of(problem, counting=True)
+    run_blocks(search.blocks(types), thread_count(threads), None, None)
+    return int(search.totals[CONTACTS])

@@ -1,0 +1,359 @@
+"""Why there is no fixture: every simultaneous contact is looked at again and asked which rule it breaks first.
+
+The rules are asked one after the other, as a person would: what the user ruled out, whether four pegs can touch at all,
+contact margin, smallest gap, closure, clamping, and the place in the jaws. The counts are of contacts as computed, in
+plain numbers; the proof that there is no fixture is the search's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from threading import Event, Timer
+
+import numpy as np
+from attrs import define, evolve
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.kernels import vise_checks as record
+from workhold.listing.candidates import Candidates, candidates_of, listed_once, standing
+from workhold.listing.deciding import is_left
+from workhold.listing.placing import arranged, placed
+from workhold.listing.problem import TYPES, Problem
+from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
+from workhold.model.restrictions import Restrictions
+from workhold.model.result import fixture_at
+from workhold.model.units import MILLIMETRE, Unit
+from workhold.model.vise import Vise
+from workhold.search.cells import run_blocks, thread_count
+from workhold.search.contacts import contacts_of
+from workhold.search.design import design
+from workhold.search.vise_search import ViseSearch
+from workhold.statics.wrenches import outward_normals, wrench_minors
+
+__all__ = ["explain"]
+
+Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+# Contacts kept from each block of the search; far more than a part without a fixture has.
+MOST_LISTED = 5_000
+# Faces to avoid that are given back one by one.
+MOST_FACES = 8
+# Pegs this near in x, in mm, are even.
+EVEN = 1e-6
+# Seconds after which a change has shown that it helps; how many fixtures there are in all is then not known.
+HELP_SECONDS = 10.0
+# A contact misses closure by this much at most to be called near.
+ROUNDING = 1e-12
+
+
+@define(frozen=True, eq=False)
+class Contacts:
+    """N sets of four simultaneous contacts and what the rules ask of them.
+
+    Parameters
+    ----------
+    candidates : the contacts, as fixtures would be.
+    margin : (N,) smallest entry of the null vector of sum of sizes 1, of the sign that makes it largest.
+    null : (N, 4) that null vector.
+    clamping : (N,) push of the left pegs along x for it.
+    end_distance : (N,) smallest distance in mm to the end of a feature.
+    """
+
+    candidates: Candidates
+    margin: Array
+    null: Array
+    clamping: Array
+    end_distance: Array
+
+    def take(self, chosen: BoolArray) -> Contacts:
+        """Some of them."""
+        rest = (values[chosen] for values in (self.margin, self.null, self.clamping, self.end_distance))
+        return Contacts(self.candidates.take(chosen), *rest)
+
+
+def explain(
+    problem: Problem, types: Sequence[str] = TYPES, threads: int | None = None, unit: Unit = MILLIMETRE
+) -> Explanation:
+    """Explain why a problem has no fixture.
+
+    Parameters
+    ----------
+    problem : what was searched in vain.
+    types : "I", "II" or both.
+    threads : how many threads share the work; None for one on each processor.
+    unit : of the lengths in its words.
+    """
+    contacts = all_contacts(problem, types, threads)
+    first, removals = restriction_removals(problem, types, threads, len(contacts.margin))
+    nearest = None
+    for rule, keeps, miss in rules(problem, unit):
+        if len(contacts.margin) == 0:
+            break
+        kept = keeps(contacts)
+        removals.append(Removal(rule, len(kept), int(kept.sum())))
+        if not kept.any():
+            nearest = nearest_miss(contacts, miss(contacts), problem)
+        contacts = contacts.take(kept)
+    removals = [removal for removal in removals if removal.before > 0]
+    return Explanation(first, tuple(removals), nearest, helps(problem, types, threads, unit))
+
+
+def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) -> Contacts:
+    """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
+    search = ViseSearch.of(problem, counting=True, most_listed=MOST_LISTED)
+    records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
+    together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
+    together = together[(together[:, record.KIND] > 0.0) & np.isfinite(together).all(axis=1)]
+    c = listed_once(facing(standing(candidates_of(together, problem))))
+    rows = problem.rows[c.feature]
+    normals = outward_normals(rows[..., :8], c.point)
+    minors = wrench_minors(c.point, normals, problem.wrench_length)
+    size = np.abs(minors).sum(axis=1, keepdims=True)
+    spans = size[:, 0] > record.LEAST_SPAN
+    null = minors / np.where(spans[:, None], size, 1.0)
+    null *= np.where(null.min(axis=1) >= -null.max(axis=1), 1.0, -1.0)[:, None]
+    along = normals[..., 0] * np.cos(c.theta)[:, None] - normals[..., 1] * np.sin(c.theta)[:, None]
+    return Contacts(
+        evolve(c, force=null),
+        margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
+        null=null,
+        clamping=-(null * along * is_left(c.kind)).sum(axis=1),
+        end_distance=end_distances(rows, c.point).min(axis=1, initial=np.inf),
+    )
+
+
+def facing(c: Candidates) -> Candidates:
+    """Contacts with the right chord on the right: of Type I those whose right pegs are farther right in the middle.
+
+    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
+    lower one is taken for the right one.
+    """
+    cosine, sine = np.cos(c.theta)[:, None], np.sin(c.theta)[:, None]
+    across = c.point[..., 0] * cosine - c.point[..., 1] * sine
+    upward = c.point[..., 0] * sine + c.point[..., 1] * cosine
+    right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
+    return c.take((c.kind != 1) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
+
+
+def end_distances(rows: Array, points: Array) -> Array:
+    """Distances (N, 4) in mm along features, given by rows (N, 4, 10), from peg centres (N, 4, 2) to the nearer end."""
+    dx, dy = points[..., 0] - rows[..., 1], points[..., 1] - rows[..., 2]
+    along, across = dx * rows[..., 3] + dy * rows[..., 4], rows[..., 3] * dy - rows[..., 4] * dx
+    is_arc = rows[..., 0] != 0.0
+    place = np.where(is_arc, np.arctan2(across, along), along)
+    distance = (rows[..., 5] - np.abs(place)) * np.where(is_arc, rows[..., 6], 1.0)
+    return np.where(is_arc & (rows[..., 5] >= np.pi), np.inf, distance)
+
+
+def restriction_removals(
+    problem: Problem, types: Sequence[str], threads: int | None, left: int
+) -> tuple[int, list[Removal]]:
+    """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
+
+    Parameters
+    ----------
+    left : contacts that keep all restrictions.
+    """
+    vise, asked = problem.vise, problem.restrictions
+    free_vise = evolve(vise, rows=None, blocked=(), body_radius=vise.peg_radius)
+    steps: list[tuple[str, Restrictions, Vise]] = []
+    if asked.avoid:
+        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free_vise))
+    if asked.zones:
+        thick = evolve(free_vise, body_radius=vise.body_radius)
+        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), thick))
+    if vise.body_radius > vise.peg_radius or vise.blocked or vise.rows is not None:
+        steps.append(("holes that the jaws do not have, or too near for the bodies", evolve(asked, angles=()), vise))
+    if asked.angles:
+        steps.append(("angles of the part", asked, vise))
+
+    def count(restrictions: Restrictions, in_vise: Vise) -> int:
+        part = Problem.of(problem.workpiece, in_vise, 0.0, restrictions)
+        return contacts_of(part, types, threads)
+
+    first = before = max(count(Restrictions(), free_vise), left) if steps else left
+    removals = []
+    for rule, restrictions, in_vise in steps:
+        after = left if rule == steps[-1][0] else min(max(count(restrictions, in_vise), left), before)
+        removals.append(Removal(rule, before, after))
+        before = after
+    return first, removals
+
+
+Rule = tuple[str, Callable[[Contacts], BoolArray], Callable[[Contacts], tuple[int, str]]]
+
+
+def rules(problem: Problem, unit: Unit) -> list[Rule]:
+    """The rules in the order they are asked: words, which contacts keep it, and which broken one comes nearest and why."""
+    vise, margin = problem.vise, problem.contact_margin
+    out: list[Rule] = []
+    if margin > 0.0:
+        out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin, unit)))
+    out.append(
+        (
+            "smallest gap",
+            lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK,
+            partial(too_near, vise, unit),
+        )
+    )
+    out.append(("closure", lambda c: c.margin > record.LEAST_CLOSURE, open_contact))
+    out.append(("clamping", lambda c: c.clamping > record.LEAST_CLAMPING, unclamped))
+    return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
+
+
+def placing_rules(problem: Problem) -> list[Rule]:
+    """The rules about where fixtures stand in the jaws, as far as the vise and the user have any."""
+    vise, asked = problem.vise, problem.restrictions
+    bare = evolve(vise, rows=None, max_opening=None, blocked=(), body_radius=vise.peg_radius)
+    out: list[Rule] = []
+
+    def rule(words: str, in_vise: Vise, restrictions: Restrictions) -> None:
+        part = evolve(problem, vise=in_vise, restrictions=restrictions)
+        out.append((words, lambda c: arranged(c.candidates, part).fits, partial(no_place, words)))
+
+    if vise.body_radius > vise.peg_radius:
+        bare = evolve(bare, body_radius=vise.body_radius)
+        rule("bodies that would overlap", bare, Restrictions())
+    if asked.angles:
+        rule("angles of the part", bare, asked)
+    if vise.max_opening is not None:
+        bare = evolve(bare, max_opening=vise.max_opening)
+        rule("largest opening", bare, asked)
+    if vise.rows is not None:
+        bare = evolve(bare, rows=vise.rows)
+        rule("rows of holes", bare, asked)
+    if vise.blocked:
+        rule("blocked holes", vise, asked)
+    return out
+
+
+def no_contact(contacts: Contacts) -> BoolArray:
+    """None of the contacts."""
+    return np.zeros(len(contacts.margin), np.bool_)
+
+
+def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
+    """The contact whose pegs are farthest from the ends of their faces."""
+    index = int(c.end_distance.argmax())
+    return index, (
+        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; the contact margin is "
+        f"{unit.figure(margin)} {unit.abbreviation}."
+    )
+
+
+def too_near(vise: Vise, unit: Unit, c: Contacts) -> tuple[int, str]:
+    """The contact whose right pegs are farthest from the left ones."""
+    index = int(c.candidates.opening.argmax())
+    opening = c.candidates.opening[index]
+    where = f"{unit.text(abs(opening))} {'to the right of the left ones' if opening >= 0 else 'to their left'}"
+    gap = f"{unit.figure(vise.min_gap)} {unit.abbreviation}"
+    return index, f"the right pegs would stand {where}; the smallest gap is {gap}."
+
+
+def open_contact(c: Contacts) -> tuple[int, str]:
+    """The contact that comes nearest to force closure."""
+    index = int(c.margin.argmax())
+    if c.margin[index] > -ROUNDING:
+        return (
+            index,
+            "the lines of force of the pegs meet in one point or are parallel, so one peg would not press at all.",
+        )
+    pulls = int((c.null[index] < 0).sum())
+    many = "one peg" if pulls == 1 else f"{pulls} pegs"
+    return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
+
+
+def unclamped(c: Contacts) -> tuple[int, str]:
+    """The contact that comes nearest to being clamped by closing the vise."""
+    return int(c.clamping.argmax()), "it holds when the jaws are pressed apart, not when they close."
+
+
+def no_place(words: str, c: Contacts) -> tuple[int, str]:
+    """The best of what cannot be placed."""
+    return int(c.margin.argmax()), f"it would hold, but what was asked for of the vise forbids it: {words}."
+
+
+def on_the_edge(c: Contacts) -> tuple[int, str]:
+    """The best of what the exact test removes."""
+    return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
+
+
+def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) -> NearestMiss:
+    """A contact that is no fixture, placed in jaws without ends."""
+    index, words = miss
+    vise = evolve(problem.vise, rows=None, max_opening=None, blocked=(), min_gap=0.0)
+    part = evolve(problem, vise=vise, restrictions=Restrictions())
+    table = placed(contacts.candidates.take(np.array([index])), part)
+    return NearestMiss(fixture_at(table, vise, 0), words)
+
+
+def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Unit) -> tuple[Help, ...]:
+    """Single changes of what was asked for with which there are fixtures, the most first."""
+    out = []
+    for words, vise, restrictions, margin in changes(problem, unit):
+        enough = Event()
+        timer = Timer(HELP_SECONDS, enough.set)
+        timer.start()
+        try:
+            result = design(
+                problem.workpiece,
+                vise,
+                types=types,
+                contact_margin=margin,
+                restrictions=restrictions,
+                rank_by=["closure_margin"],
+                threads=threads,
+                cancel=enough,
+            )
+        except InputError:
+            continue
+        finally:
+            timer.cancel()
+        if any(result.found.values()):
+            out.append(Help(words, sum(result.found.values()), result.complete))
+    return tuple(sorted(out, key=lambda help: -help.fixtures))
+
+
+def changes(problem: Problem, unit: Unit) -> Iterator[tuple[str, Vise, Restrictions, float]]:
+    """Changes to try, one at a time."""
+    vise, asked, margin = problem.vise, problem.restrictions, problem.contact_margin
+    if asked.avoid:
+        if len(asked.avoid) > 1:
+            faces = ", ".join(str(number) for number in asked.avoid)
+            yield f"touching faces {faces} too", vise, evolve(asked, avoid=()), margin
+        for face in asked.avoid[:MOST_FACES]:
+            rest = tuple(number for number in asked.avoid if number != face)
+            yield f"touching face {face} too", vise, evolve(asked, avoid=rest), margin
+    if asked.zones:
+        yield "without the keep-out zones", vise, evolve(asked, zones=()), margin
+    if asked.angles:
+        yield "at any angle", vise, evolve(asked, angles=()), margin
+    if margin > 0:
+        yield "without a contact margin", vise, asked, 0.0
+    if vise.body_radius > vise.peg_radius:
+        yield "with pegs without a shoulder", evolve(vise, body_radius=vise.peg_radius), asked, margin
+    if vise.blocked:
+        yield "with no hole blocked", evolve(vise, blocked=()), asked, margin
+    if vise.rows is not None:
+        yield "with as many rows as needed", evolve(vise, rows=None), asked, margin
+    if vise.max_opening is not None:
+        yield "with a larger opening", evolve(vise, max_opening=None), asked, margin
+    if vise.min_gap > 2 * vise.peg_radius > 0:
+        narrow = evolve(vise, min_gap=2 * vise.peg_radius)
+        yield f"with a smallest gap of {unit.figure(narrow.min_gap)} {unit.abbreviation}", narrow, asked, margin
+    yield "with one more column on each jaw", evolve(vise, columns=vise.columns + 1), asked, margin
+    if vise.row_offset == 0.0:
+        offset = vise.pitch[1] / 2
+        words = f"{unit.figure(offset)} {unit.abbreviation}"
+        yield f"with the right jaw's rows offset by {words}", evolve(vise, row_offset=offset), asked, margin
+    if min(vise.pitch) >= 4 * vise.peg_radius:
+        half = (vise.pitch[0] / 2, vise.pitch[1] / 2)
+        yield (
+            "with half the pitch",
+            evolve(vise, pitch=half, min_gap=min(vise.min_gap, half[0]), blocked=()),
+            asked,
+            margin,
+        )

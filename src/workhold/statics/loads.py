@@ -1,0 +1,191 @@
+"""What loads do to one fixture: peg forces, and the jaw force that keeps every peg in contact.
+
+Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on the right jaw is:
+f = f0 + F h, where F is the jaw force, h the peg forces per unit of it, and f0 balances the load without pushing the right
+jaw. Friction can only be told as what it would make possible, see ``statics.friction``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import atan2, cos, degrees, hypot, isfinite, radians, sin
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture
+from workhold.model.load import Load
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.statics.friction import possible_motions
+from workhold.statics.stances import Touched
+
+__all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
+
+Array = NDArray[np.float64]
+FourForces = tuple[float, float, float, float]
+# A force this small beside the largest is none.
+ROUNDING = 1e-9
+
+
+@frozen
+class Worst:
+    """Where and in which direction a load is worst.
+
+    Parameters
+    ----------
+    value : how bad it is there, in N.
+    peg : index of the peg concerned, in the fixture's order.
+    point : where the load acts, in mm in the part's coordinates; the part's centre for a moment alone.
+    direction : in degrees in the part's frame, in [0, 360).
+    """
+
+    value: float
+    peg: int
+    point: tuple[float, float]
+    direction: float
+
+
+@frozen
+class LoadCase:
+    """What one load does to a fixture; forces in N, for the worst point and direction of the load.
+
+    Parameters
+    ----------
+    load : the load.
+    jaw_force : force on the right jaw that ``smallest`` and ``largest`` are told for.
+    smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would have to pull: it
+        lets go, and the forces told are no longer those that act.
+    reaction : the largest peg force with as little clamping as keeps all forces from being negative (the figure of quality
+        ``load_reaction``).
+    needed : the jaw force above which no peg lets go, and the peg that does below it; never negative.
+    needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no friction was given.
+        Optimistic: with friction the forces are not determined by statics, and this tells what the best of all possible
+        forces would need. Pegs may let go.
+    """
+
+    load: Load
+    jaw_force: float
+    smallest: FourForces
+    largest: FourForces
+    reaction: Worst
+    needed: Worst
+    needed_with_friction: float | None
+
+    @property
+    def keeps_contact(self) -> bool:
+        """Whether every peg presses on the part at this jaw force, or just touches it within rounding."""
+        return min(self.smallest) >= -ROUNDING * max(self.largest)
+
+
+def load_cases(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    vise: Vise,
+    loads: Sequence[Load],
+    jaw_force: float | None = None,
+    friction: float | None = None,
+) -> tuple[LoadCase, ...]:
+    """What each of some loads does to a fixture; each acts by itself.
+
+    Parameters
+    ----------
+    fixture, workpiece, vise : the fixture, of what and in what.
+    loads : see :class:`workhold.model.load.Load`.
+    jaw_force : force in N that pushes the right jaw; by default the one needed so that no peg lets go under any of them.
+    friction : Coulomb's coefficient of friction between peg and part, to tell what it could add.
+
+    Raises
+    ------
+    InputError
+        For a jaw force or a coefficient that is negative or not finite.
+    """
+    for name, value in (("jaw force", jaw_force), ("friction", friction)):
+        if value is not None and not (isfinite(value) and value >= 0):
+            raise InputError(f"{name} {value:g} cannot be used: give 0 or more.")
+    touched = Touched.of(workpiece, vise)
+    pose = np.array([[radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]])
+    right = np.array([[peg.jaw == "right" for peg in fixture.pegs]])
+    faces = np.array([[peg.segment for peg in fixture.pegs]])
+    stances = touched.stances(np.array([[(peg.x, peg.y) for peg in fixture.pegs]]), pose, right, faces)
+    # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.stances.
+    forces = stances.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
+    motions = None
+    if friction is not None:
+        contacts = stances.points[0] - vise.peg_radius * stances.normals[0]
+        closing = np.array([cos(pose[0, 0]), -sin(pose[0, 0])])
+        motions = possible_motions(contacts, stances.normals[0], right[0], closing, friction, touched.length)
+    center = (float(touched.center[0]), float(touched.center[1]))
+    needs = [needed(forces, load, center) for load in loads]
+    if jaw_force is None:
+        jaw_force = max((worst.value for worst in needs), default=0.0)
+    jaw_force = float(jaw_force)
+    return tuple(
+        LoadCase(
+            load=load,
+            jaw_force=jaw_force,
+            smallest=four(-largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
+            largest=four(largest_of(forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
+            reaction=reaction(forces, load, center),
+            needed=need,
+            needed_with_friction=None if motions is None else resisted(motions, load, center),
+        )
+        for load, need in zip(loads, needs, strict=True)
+    )
+
+
+def four(values: Iterator[float]) -> FourForces:
+    """Four numbers as a tuple."""
+    a, b, c, d = (float(value) for value in values)
+    return a, b, c, d
+
+
+def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
+    """Largest value of x cos + y sin over a range of directions in degrees, and the direction in [0, 360) it is at."""
+    low, high = directions
+    peak = low + (degrees(atan2(y, x)) - low) % 360.0
+    candidates = [low, high, peak] if peak <= high else [low, high]
+    value, direction = max((x * cos(radians(angle)) + y * sin(radians(angle)), angle) for angle in candidates)
+    return (hypot(x, y) if direction == peak else value), direction % 360.0
+
+
+def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> Worst:
+    """Where a load makes a (g_x, g_y, moment) . coefficients largest; the value tells how large, the peg is 0."""
+    a, b, c = (float(value) for value in coefficients[:3])
+    worst: Worst | None = None
+    for x, y in load.points or (center,):
+        dx, dy = x - center[0], y - center[1]
+        value, direction = largest_value(a - dy * c, b + dx * c, load.directions)
+        total = load.force * value + load.moment * c
+        if worst is None or total > worst.value:
+            worst = Worst(total, 0, (x, y), direction)
+    assert worst is not None
+    return worst
+
+
+def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
+    """The jaw force needed so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
+    worst = max((of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(4)), key=lambda worst: worst.value)
+    return Worst(max(worst.value, 0.0), worst.peg, worst.point, worst.direction)
+
+
+def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
+    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.reactions``)."""
+    pairs = [(j, i) for j in range(4) for i in range(4) if i != j]
+    return max(
+        (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),
+        key=lambda worst: worst.value,
+    )
+
+
+def of_peg(coefficients: Array, peg: int, load: Load, center: tuple[float, float]) -> Worst:
+    """As :func:`largest_of`, said of a peg."""
+    worst = largest_of(coefficients, load, center)
+    return Worst(worst.value, peg, worst.point, worst.direction)
+
+
+def resisted(motions: Array, load: Load, center: tuple[float, float]) -> float:
+    """The jaw force that friction leaves needed: the largest work of a load on the possible motions, never negative."""
+    return max([0.0, *(largest_of(motion, load, center).value for motion in motions)])

@@ -1,0 +1,132 @@
+"""The figures of quality of whole tables of fixtures (model: "Quality"; what they mean is in docs/quality.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from math import cos, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.geometry.hull import convex_hull
+from workhold.geometry.segment import Arc
+from workhold.kernels.quality import figures
+from workhold.kernels.reactions import LOAD_LENGTH
+from workhold.model.load import Load
+from workhold.model.quality import FIGURES
+from workhold.model.result import FixtureTable
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.statics.stances import Touched
+
+__all__ = ["load_rows", "quality_of"]
+
+Array = NDArray[np.float64]
+# Fixtures looked at together; what is needed for them beside the table and the figures takes 3 MB.
+BLOCK = 1 << 13
+
+
+def quality_of(
+    table: FixtureTable,
+    workpiece: Workpiece,
+    vise: Vise,
+    tolerance: Tolerance | None = None,
+    loads: Sequence[Load] = (),
+    threads: int = 1,
+    touched: Touched | None = None,
+) -> Array:
+    """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
+
+    Parameters
+    ----------
+    table : N fixtures.
+    workpiece, vise : what they hold and in what.
+    tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
+    loads : for the load reaction, the worst of them; each acts by itself.
+    threads : how many threads share the work; the outcome does not depend on it.
+    touched : the workpiece's contact features, where they are known already.
+
+    Returns
+    -------
+    (N, 6) array, columns in the order of ``model.quality.FIGURES``; NaN for a load reaction without loads, and for pegs
+    whose contact equations have no single solution.
+    """
+    tolerance = tolerance or Tolerance()
+    known = touched or Touched.of(workpiece, vise)
+    corners, arcs = extremes(workpiece)
+    rows = load_rows(loads, workpiece.center)
+    tolerances = np.array([tolerance.peg, tolerance.face])
+    out = np.empty((len(table), len(FIGURES)))
+
+    def fill(start: int) -> None:
+        block = table.take(slice(start, start + BLOCK))
+        pose = np.column_stack([block.theta, block.position])
+        faces = block.segment.astype(np.int64)
+        right = block.jaw.astype(np.float64)
+        stances = known.stances(peg_centers(block, vise), pose, right, faces)
+        figures(
+            stances.points,
+            stances.normals,
+            stances.ends,
+            stances.inverses,
+            faces,
+            known.length,
+            tolerances,
+            corners,
+            arcs,
+            rows,
+            out[start : start + BLOCK],
+        )
+
+    starts = range(0, len(table), BLOCK)
+    if threads > 1 and len(starts) > 1:
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            list(pool.map(fill, starts))
+    else:
+        for start in starts:
+            fill(start)
+    return out
+
+
+def peg_centers(table: FixtureTable, vise: Vise) -> Array:
+    """Peg centres (N, 4, 2) in mm in the vise frame, see ``model.result.hole_position``."""
+    across = (vise.columns - 1) * vise.pitch[0] + table.jaw_separation[:, None]
+    x = table.column * vise.pitch[0] + table.jaw * across
+    y = table.row * vise.pitch[1] + table.jaw * vise.row_offset
+    return np.stack([x, y], axis=2)
+
+
+def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
+    """Where the point of the silhouette that a small movement moves most may be.
+
+    Returns
+    -------
+    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.quality`` takes them.
+    """
+    outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
+    cx, cy = workpiece.center
+    joints = [segment.start for segment in outer if not (isinstance(segment, Arc) and segment.is_full)]
+    corners = np.array([(x - cx, y - cy) for x, y in convex_hull(joints)]).reshape(-1, 2)
+    arcs = [
+        (*segment.row()[1:3], segment.radius, *segment.row()[3:5], cos(min(segment.half_sweep, pi)))
+        for segment in outer
+        if isinstance(segment, Arc) and segment.sign > 0
+    ]
+    return corners, np.array(arcs).reshape(-1, 6) - np.array([cx, cy, 0.0, 0.0, 0.0, 0.0])
+
+
+def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
+    """Rows (M, 11) of loads for ``kernels.reactions``, one for each corner of a path's convex hull.
+
+    The largest force is a convex function of the point, so no other point of a path can be worse.
+    """
+    rows = []
+    for load in loads:
+        low, high = np.radians(load.directions)
+        middle, half = (low + high) / 2, min((high - low) / 2, pi)
+        ends = [f(angle) for angle in (low, high, middle) for f in (np.cos, np.sin)]
+        for x, y in convex_hull(load.points) or [center]:
+            rows.append([load.force, x - center[0], y - center[1], load.moment, *ends, cos(half)])
+    return np.array(rows, np.float64).reshape(-1, LOAD_LENGTH)

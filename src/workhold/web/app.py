@@ -1,0 +1,175 @@
+"""The application: routes, errors as plain sentences, and the guard before them."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.openapi.utils import get_openapi
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.responses import JSONResponse, Response
+
+from workhold import __version__
+from workhold.errors import InputError
+from workhold.web import fixture_routes, job_routes, part_routes
+from workhold.web.answers import place_in
+from workhold.web.forms import sentence_of
+from workhold.web.guard import Guard, Hosts
+from workhold.web.jobs import TooManyError
+from workhold.web.limits import Limits
+from workhold.web.pool import BusyError, FailedError, StoppedError
+from workhold.web.state import ServerState, state_of
+
+__all__ = ["create_app"]
+
+WRONG = {
+    "description": "What is wrong, in one sentence",
+    "content": {
+        "application/json": {
+            "schema": {
+                "type": "object",
+                "required": ["error", "place"],
+                "properties": {
+                    "error": {"type": "string"},
+                    "place": {
+                        "type": ["object", "null"],
+                        "properties": {"x": {"type": "number"}, "y": {"type": "number"}},
+                    },
+                },
+            }
+        }
+    },
+}
+# What the libraries below say, in the words of this server.
+SENTENCES = {
+    "Not Found": "There is nothing at this address.",
+    "Method Not Allowed": "This cannot be done at this address.",
+    "There was an error parsing the body": "The request is not valid JSON: send one object.",
+}
+STATUSES = ("400", "404", "408", "409", "413", "429", "500", "503")
+
+
+def create_app(limits: Limits | None = None, hosts: Hosts | None = None) -> FastAPI:
+    """The application.
+
+    Parameters
+    ----------
+    limits : how much it gives.
+    hosts : names it may be called by; only those of this machine by default.
+    """
+    limits = limits or Limits()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        app.state.server = ServerState(limits)
+        async with app.state.server.open():
+            yield
+
+    app = FastAPI(
+        title="workhold",
+        version=__version__,
+        summary="Finds every way to hold a part in a fixture vise with four pegs.",
+        description="Lengths are in mm, angles in degrees, forces in N.",
+        lifespan=lifespan,
+        openapi_url="/api/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        separate_input_output_schemas=False,
+    )
+    app.include_router(part_routes.router)
+    app.include_router(job_routes.router)
+    app.include_router(fixture_routes.router)
+    app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
+    app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
+    add_error_handlers(app)
+    app.add_middleware(Guard, hosts=hosts or Hosts(), limits=limits)
+    app.openapi = lambda: description(app)  # type: ignore[method-assign]
+    return app
+
+
+async def page(request: Request) -> Response:
+    """The page."""
+    return await static_file(request, "index.html")
+
+
+async def static_file(request: Request, path: str) -> Response:
+    """A file of the page."""
+    file = state_of(request).files.get(path)
+    if file is None:
+        raise HTTPException(404, "There is no such page.")
+    headers = {"ETag": file.tag, "Cache-Control": "no-cache", "Content-Type": file.type}
+    if request.headers.get("if-none-match") == file.tag:
+        return Response(status_code=304, headers=headers)
+    return Response(file.content, headers=headers)
+
+
+def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
+    """An error as an answer."""
+    more = {"Retry-After": "1"} if status in (429, 503) else {}
+    if status in (408, 413):
+        more["Connection"] = "close"
+    place = place_in(sentence) if status == 400 else None
+    return JSONResponse({"error": sentence, "place": place}, status, {**more, **(headers or {})})
+
+
+def add_error_handlers(app: FastAPI) -> None:
+    """Turn every error into a status and one sentence."""
+
+    def on(error_class: type[Exception], status: int) -> None:
+        async def handler(request: Request, error: Exception) -> Response:
+            return wrong(status, str(error) or "The search was stopped.")
+
+        app.add_exception_handler(error_class, handler)
+
+    on(InputError, 400)
+    on(TooManyError, 429)
+    on(BusyError, 503)
+    on(FailedError, 503)
+    on(StoppedError, 409)
+
+    async def refused(request: Request, error: Exception) -> Response:
+        assert isinstance(error, RequestValidationError)
+        return wrong(400, sentence_of(dict(error.errors()[0])))
+
+    async def plain(request: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        sentence = SENTENCES.get(str(error.detail), str(error.detail))
+        return wrong(error.status_code, sentence, dict(error.headers or {}))
+
+    async def left(request: Request, error: Exception) -> Response:
+        return wrong(400, "The request ended before it was complete.")
+
+    async def fault(request: Request, error: Exception) -> Response:
+        return wrong(500, "This is a mistake of the program, not yours; please report it.")
+
+    app.add_exception_handler(RequestValidationError, refused)
+    app.add_exception_handler(HTTPException, plain)
+    app.add_exception_handler(ClientDisconnect, left)
+    # The server's log tells what it was.
+    app.add_exception_handler(Exception, fault)
+
+
+def description(app: FastAPI) -> dict[str, Any]:
+    """The OpenAPI description, with this server's way to say what is wrong."""
+    if app.openapi_schema is None:
+        schema = get_openapi(
+            title=app.title,
+            version=app.version,
+            summary=app.summary,
+            description=app.description,
+            routes=app.routes,
+            separate_input_output_schemas=False,
+        )
+        for operations in schema["paths"].values():
+            for operation in operations.values():
+                operation["responses"].pop("422", None)
+                operation["responses"] |= dict.fromkeys(STATUSES, WRONG)
+        for name in ("HTTPValidationError", "ValidationError"):
+            schema.get("components", {}).get("schemas", {}).pop(name, None)
+        app.openapi_schema = schema
+    return app.openapi_schema

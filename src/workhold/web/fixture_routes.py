@@ -1,0 +1,86 @@
+"""Routes of one fixture of a job."""
+
+from __future__ import annotations
+
+from datetime import date
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Path, Query, Request
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from workhold.model.result import Result
+from workhold.model.workpiece import Workpiece
+from workhold.web.answers import contact_answer, rows_answer
+from workhold.web.forms import LoadsForm
+from workhold.web.job_routes import attachment, found_job, result_of_job
+from workhold.web.paper import KINDS, PaperOrder
+from workhold.web.state import state_of
+
+__all__ = ["router"]
+
+router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
+
+Rank = Annotated[int, Path(ge=1, le=10**9)]
+Revision = Annotated[int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")]
+
+
+def ranked(result: Result, rank: int) -> int:
+    """The index of a fixture.
+
+    Raises
+    ------
+    HTTPException
+        404 when there is none of that rank.
+    """
+    if rank > len(result):
+        raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
+    return rank - 1
+
+
+@router.get("", summary="One fixture")
+async def fixture(request: Request, name: str, rank: Rank, revision: Revision = None) -> dict[str, Any]:
+    """Its row, with contacts and outward normals in the vise frame."""
+    result = result_of_job(found_job(request, name), revision)
+    index = ranked(result, rank)
+    row = rows_answer(result.table.take(np.array([index])), result.vise, [rank])[0]
+    return {**row, **contact_answer(result[index], result.workpiece, result.vise)}
+
+
+@router.post("/loads", summary="What loads do to a fixture")
+async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revision: Revision = None) -> dict[str, Any]:
+    """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
+    result = result_of_job(found_job(request, name), revision)
+    chosen = result[ranked(result, rank)]
+    bare = Workpiece(result.workpiece.name, result.workpiece.loops)
+    cases = await state_of(request).at_desk("loads", (chosen, bare, result.vise, form))
+    return {"rank": rank, "cases": cases}
+
+
+@router.get("/{kind}", summary="A setup sheet, a drawing or a picture", response_class=Response)
+async def paper(
+    request: Request,
+    name: str,
+    rank: Rank,
+    kind: Literal["sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg"],
+    paper: Literal["a4", "letter"] = "a4",
+    unit: Literal["mm", "inch"] = "mm",
+    jaw_force: Annotated[float | None, Query(gt=0, le=1e9)] = None,
+    friction: Annotated[float | None, Query(gt=0, le=100)] = None,
+    day: Annotated[date | None, Query(alias="date")] = None,
+    revision: Revision = None,
+) -> Response:
+    """Of a fixture; all but the picture wait for the search to be over. The date is today's if not given."""
+    job = found_job(request, name)
+    result = result_of_job(job, revision, when_over=kind != "picture.svg")
+    ranked(result, rank)
+    order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), jaw_force, friction, job.result_hash)
+    content, result_hash = await state_of(request).at_desk("paper", order)
+    if result_hash is not None and job.result is result:
+        job.result_hash = result_hash
+    headers = {}
+    if kind != "picture.svg":
+        what, ending = kind.split(".")
+        headers["Content-Disposition"] = attachment(f"{result.workpiece.name}-{what}-{rank}", ending)
+    return Response(content, media_type=KINDS[kind], headers=headers)

@@ -1,0 +1,253 @@
+"""The shapes of requests, checked by pydantic, and what they are in the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from workhold.errors import InputError
+from workhold.model.holes import holes_named
+from workhold.model.load import Load
+from workhold.model.restrictions import Restrictions, zone_of
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+from workhold.web.asked import Asked
+
+__all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "sentence_of"]
+
+# Beyond this, in mm, degrees, N or N mm, a number is a mistake.
+LARGEST = 1e9
+MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_VISES = 20_000, 50, 500, 50, 500, 60
+MOST_COLUMNS, MOST_ROWS = 200, 100_000
+
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
+LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
+Name = Annotated[str, Field(max_length=200)]
+
+
+class Form(BaseModel):
+    """What every request has in common: unknown keys are refused, and so are numbers written as text."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class WorkpieceForm(Form):
+    """A part; lengths in mm."""
+
+    name: Name = "part"
+    loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
+
+    def workpiece(self, most_segments: int) -> Workpiece:
+        """The part.
+
+        Raises
+        ------
+        InputError
+            For loops that cannot be used, and for too many segments.
+        """
+        return checked_part(self.name, self.loops, most_segments)
+
+
+def checked_part(name: str, loops: Sequence[Sequence[Sequence[float]]], most_segments: int) -> Workpiece:
+    """A part of loops in mm.
+
+    Raises
+    ------
+    InputError
+        For loops that cannot be used, and for more segments than this server takes.
+    """
+    count = sum(map(len, loops))
+    if count > most_segments:
+        raise InputError(
+            f"The part has {count} segments, more than the {most_segments} this server takes: draw its outline with lines "
+            "and arcs instead of many short pieces."
+        )
+    try:
+        return Workpiece.from_loops(name, loops)
+    except (ArithmeticError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("The part's numbers are too large or too small to compute with: check its units.") from error
+
+
+class ViseForm(Form):
+    """A vise; lengths in mm."""
+
+    pitch: Point
+    columns: int = Field(ge=1, le=MOST_COLUMNS)
+    peg_radius: Number
+    rows: int | None = Field(default=None, ge=1, le=MOST_ROWS)
+    min_gap: Number | None = None
+    max_opening: Number | None = None
+    row_offset: Number = 0.0
+    body_radius: Number | None = None
+    blocked: list[Name] = Field(default=[], max_length=MOST_NAMES)
+
+    def vise(self) -> Vise:
+        """The vise.
+
+        Raises
+        ------
+        InputError
+            When there is no such vise.
+        """
+        values = self.model_dump() | {"pitch": (self.pitch[0], self.pitch[1])}
+        return Vise(**values | {"blocked": [holes_named(name) for name in self.blocked]})
+
+
+class RestrictionsForm(Form):
+    """What is ruled out."""
+
+    avoid: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
+    zones: list[LoopForm] = Field(default=[], max_length=MOST_RANGES)
+    angles: list[Point] = Field(default=[], max_length=MOST_RANGES)
+
+    def restrictions(self) -> Restrictions:
+        """The restrictions.
+
+        Raises
+        ------
+        InputError
+            When a zone or a range of angles is none.
+        """
+        ranges = tuple((low, high) for low, high in self.angles)
+        return Restrictions(tuple(self.avoid), tuple(zone_of(loop) for loop in self.zones), ranges)
+
+
+class ToleranceForm(Form):
+    """How far pegs and faces may be off, in mm."""
+
+    peg: Number
+    face: Number
+
+
+class LoadForm(Form):
+    """A load, in N, mm, degrees and N mm."""
+
+    name: Name = ""
+    points: list[Point] = Field(default=[], max_length=MOST_POINTS)
+    force: Number = 0.0
+    directions: Point = [0.0, 360.0]
+    moment: Number = 0.0
+
+    def load(self) -> Load:
+        """The load.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        points = tuple((x, y) for x, y in self.points)
+        return Load(points, self.force, (self.directions[0], self.directions[1]), self.moment, self.name)
+
+
+class LoadsForm(Form):
+    """Loads on a fixture."""
+
+    loads: list[LoadForm] = Field(min_length=1, max_length=MOST_LOADS)
+    jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
+    friction: Annotated[float, Field(ge=0, le=100)] | None = None
+
+
+class SearchForm(Form):
+    """What a search in one vise and a comparison of several have in common."""
+
+    workpiece: WorkpieceForm
+    types: list[Literal["I", "II"]] = Field(default=["I", "II"], min_length=1, max_length=2)
+    contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
+    restrictions: RestrictionsForm = RestrictionsForm()
+    ranking: list[Name] | None = Field(default=None, max_length=10)
+    tolerance: ToleranceForm | None = None
+    loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
+
+    def common(self, most_segments: int) -> dict[str, Any]:
+        """The values of :class:`Asked` but the vise.
+
+        Raises
+        ------
+        InputError
+            For the first that cannot be.
+        """
+        from workhold.listing.ranking import preference_of
+
+        off = None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face)
+        loads = tuple(form.load() for form in self.loads)
+        preference_of(self.ranking, off, loads)
+        return {
+            "workpiece": self.workpiece.workpiece(most_segments),
+            "types": tuple(name for name in ("I", "II") if name in self.types),
+            "contact_margin": self.contact_margin,
+            "restrictions": self.restrictions.restrictions(),
+            "ranking": None if self.ranking is None else tuple(self.ranking),
+            "tolerance": off or Tolerance(),
+            "loads": loads,
+        }
+
+
+class JobForm(SearchForm):
+    """A search for every fixture."""
+
+    vise: ViseForm
+
+    def asked(self, most_segments: int) -> tuple[Asked, ...]:
+        """The search.
+
+        Raises
+        ------
+        InputError
+            For the first value that cannot be.
+        """
+        return (Asked(vise=self.vise.vise(), **self.common(most_segments)),)
+
+
+class NamedViseForm(ViseForm):
+    """A vise to compare, with what to call it."""
+
+    title: Name = ""
+
+
+class ExploreForm(SearchForm):
+    """A comparison of vises; without vises, of all that come with the program."""
+
+    vises: list[NamedViseForm] | None = Field(default=None, min_length=1, max_length=MOST_VISES)
+
+    def asked(self, most_segments: int) -> tuple[Asked, ...]:
+        """The searches, one for each vise.
+
+        Raises
+        ------
+        InputError
+            For the first value that cannot be.
+        """
+        common = self.common(most_segments)
+        if self.vises is not None:
+            named = [(form.title, ViseForm(**form.model_dump(exclude={"title"})).vise()) for form in self.vises]
+            return tuple(Asked(vise=vise, title=title, **common) for title, vise in named)
+        from workhold.files.vise_presets import preset, preset_names
+
+        asked = []
+        for name in preset_names():
+            loaded = preset(name)
+            off = common["tolerance"] if self.tolerance is not None else loaded.tolerance
+            asked.append(Asked(vise=loaded.vise, title=name, **common | {"tolerance": off}))
+        return tuple(asked)
+
+
+def sentence_of(error: dict[str, Any]) -> str:
+    """One thing that pydantic finds wrong with a request, as a sentence."""
+    loc = [str(part) for part in error.get("loc", ())]
+    if error.get("type") == "json_invalid":
+        return "The request is not valid JSON: send one object."
+    where, rest = (loc[0], loc[1:]) if loc else ("body", [])
+    place = ".".join(rest)[:120]
+    message = str(error.get("msg", "not what it should be")).strip().rstrip(".")
+    message = message[:1].lower() + message[1:200]
+    if where == "body":
+        return f"The request is not as it should be{f' at {place}' if place else ''}: {message}."
+    return f"The {where} value {place} of the address is not as it should be: {message}."

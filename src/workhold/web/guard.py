@@ -1,0 +1,204 @@
+"""What stands before every request: whose name it calls, where it comes from, how much it sends; and headers of answers."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable, Collection, MutableMapping
+from ipaddress import ip_address
+from typing import Any
+
+from attrs import define
+from starlette.exceptions import HTTPException
+
+from workhold.web.limits import Limits
+
+__all__ = ["Guard", "Hosts"]
+
+Scope = MutableMapping[str, Any]
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+HEADERS = {
+    b"content-security-policy": (
+        b"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+        b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+    b"x-content-type-options": b"nosniff",
+    b"referrer-policy": b"no-referrer",
+    b"cross-origin-resource-policy": b"same-origin",
+    b"cross-origin-opener-policy": b"same-origin",
+    b"permissions-policy": b"camera=(), geolocation=(), microphone=()",
+}
+READING = ("GET", "HEAD", "OPTIONS")
+UPLOADS = "/api/parts"
+
+
+@define
+class Hosts:
+    """The names by which the server may be called; other names are a sign of another page that leads here.
+
+    Parameters
+    ----------
+    names : in small letters, without port.
+    any_address : whether any numeric address will do, as when the server listens on all of them.
+    """
+
+    names: Collection[str] = ("localhost", "127.0.0.1", "::1")
+    any_address: bool = False
+
+    def knows(self, host: str) -> bool:
+        """Whether a Host header is one of them.
+
+        >>> Hosts().knows("localhost:8000"), Hosts().knows("evil.example"), Hosts().knows("[::1]:80")
+        (True, False, True)
+        """
+        name = host_name(host)
+        if name in self.names:
+            return True
+        try:
+            ip_address(name)
+        except ValueError:
+            return False
+        return self.any_address
+
+
+def host_name(host: str) -> str:
+    """A host without its port, in small letters."""
+    if host.startswith("["):
+        return host[1:].partition("]")[0].lower()
+    return host.partition(":")[0].lower()
+
+
+@define
+class Guard:
+    """The outermost layer of the server.
+
+    Parameters
+    ----------
+    app : what it stands before.
+    hosts : names of the server.
+    limits : of bytes and of the time a request may take to arrive.
+    """
+
+    app: App
+    hosts: Hosts
+    limits: Limits
+    arriving: int = 0
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        is_api = scope["path"].startswith("/api/")
+
+        async def send_guarded(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                present = {name.lower() for name, _ in message["headers"]}
+                more = [(name, value) for name, value in HEADERS.items() if name not in present]
+                if is_api and b"cache-control" not in present:
+                    more.append((b"cache-control", b"no-store"))
+                message["headers"] = [*message["headers"], *more]
+            await send(message)
+
+        refusal = self.refusal(scope, headers)
+        if refusal is not None:
+            await answer(send_guarded, *refusal)
+            return
+        uploads = scope["method"] == "POST" and scope["path"] == UPLOADS
+        if uploads and self.arriving >= self.limits.uploads:
+            await answer(send_guarded, 503, "Too many files are arriving at the same time: try again in a moment.")
+            return
+        self.arriving += uploads
+        try:
+            most = self.limits.upload_bytes if uploads else self.limits.request_bytes
+            await self.app(scope, Body(receive, most, self.limits.body_seconds), send_guarded)
+        finally:
+            self.arriving -= uploads
+
+    def refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
+        """Status and sentence for a request that is not let through."""
+        host = headers.get("host", "")
+        if not self.hosts.knows(host):
+            return 400, "This server is not known by that name: use the address that it printed."
+        if len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"") > 4_000:
+            return 414, "The address is too long."
+        if scope["method"] not in READING:
+            site = headers.get("sec-fetch-site", "same-origin")
+            origin = headers.get("origin")
+            strange = origin is not None and origin.partition("://")[2].lower() != host.lower()
+            if strange or site not in ("same-origin", "none"):
+                return 403, "A page of another site may not change anything here."
+            if headers.get("content-encoding", "identity").lower() != "identity":
+                return 415, "Send the request as it is, without compression."
+            most = self.limits.upload_bytes if scope["path"] == UPLOADS else self.limits.request_bytes
+            length = headers.get("content-length", "0")
+            if not (length.isascii() and length.isdigit()):
+                return 400, "The length of the request is no number."
+            if len(length) > 15 or int(length) > most:
+                return 413, too_large(most)
+        return None
+
+
+@define
+class Body:
+    """The body of a request, of which no more is taken than allowed.
+
+    Parameters
+    ----------
+    receive : the server's own.
+    most : bytes.
+    seconds : for all of it.
+    """
+
+    receive: Receive
+    most: int
+    seconds: float
+    taken: int = 0
+    is_whole: bool = False
+    end: float | None = None
+
+    async def __call__(self) -> Message:
+        """The next piece; once all is there, what comes after it.
+
+        Raises
+        ------
+        HTTPException
+            413 for too much, 408 when it takes too long.
+        """
+        if self.is_whole:
+            return await self.receive()
+        now = asyncio.get_running_loop().time()
+        self.end = now + self.seconds if self.end is None else self.end
+        try:
+            async with asyncio.timeout(max(self.end - now, 0.0)):
+                message = await self.receive()
+        except TimeoutError:
+            raise HTTPException(408, f"The request took longer than {self.seconds:g} s to arrive.") from None
+        self.taken += len(message.get("body", b""))
+        if self.taken > self.most:
+            raise HTTPException(413, too_large(self.most))
+        self.is_whole = not message.get("more_body", False)
+        return message
+
+
+def too_large(most: int) -> str:
+    """The sentence for a request that is too large."""
+    size = f"{most / 1e6:g} MB" if most >= 100_000 else f"{most} bytes"
+    return f"The request is larger than {size}: send a drawing of the part's outline only."
+
+
+async def answer(send: Send, status: int, sentence: str) -> None:
+    """Send an error as the server's others are."""
+    body = json.dumps({"error": sentence, "place": None}).encode()
+    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+    if status in (408, 413):
+        headers.append((b"connection", b"close"))
+    if status in (429, 503):
+        headers.append((b"retry-after", b"1"))
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})

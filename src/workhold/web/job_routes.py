@@ -1,0 +1,226 @@
+"""Routes that begin, watch and end jobs, and those of all their fixtures together."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Callable, Iterator
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request
+from starlette.exceptions import HTTPException
+from starlette.responses import JSONResponse, Response, StreamingResponse
+
+from workhold.model.result import FixtureTable, Result
+from workhold.web.answers import explanation_answer, rows_answer
+from workhold.web.forms import ExploreForm, JobForm, LoadsForm
+from workhold.web.jobs import Job
+from workhold.web.selection import Selection, angle_range
+from workhold.web.state import ServerState, address_of, state_of
+from workhold.web.tasks import plain
+
+__all__ = ["attachment", "found_job", "result_of_job", "router"]
+
+router = APIRouter(prefix="/api")
+
+# Seconds between two events of a stream at least, and at most.
+PAUSE, SILENCE = 0.1, 15.0
+MOST_ROWS = 1_000
+EMPTY = FixtureTable.empty()
+
+
+def found_job(request: Request, name: str) -> Job:
+    """The job of a name.
+
+    Raises
+    ------
+    HTTPException
+        404 when there is none.
+    """
+    job = state_of(request).job(name)
+    if job is None:
+        raise HTTPException(404, "There is no such search (any more): search again.")
+    return job
+
+
+def result_of_job(job: Job, revision: int | None = None, when_over: bool = False) -> Result:
+    """What a job has found.
+
+    Parameters
+    ----------
+    revision : that the caller has seen; None for any.
+    when_over : whether only the whole result will do.
+
+    Raises
+    ------
+    HTTPException
+        409 when there is nothing (yet), or the fixtures have changed.
+    """
+    if job.compares:
+        raise HTTPException(409, "A comparison of vises has no fixtures: search in one of the vises.")
+    if revision is not None and revision != job.revision:
+        raise HTTPException(409, "The list of fixtures has changed meanwhile: load it again.")
+    if job.result is None or (when_over and not job.is_over):
+        words = "ended without a result" if job.is_over else "is not over yet"
+        raise HTTPException(409, f"The search {words}.")
+    return job.result
+
+
+async def begin(request: Request, form: JobForm | ExploreForm) -> JSONResponse:
+    """Check what is asked for and begin with it."""
+    state = state_of(request)
+    address = address_of(request)
+    state.jobs.refuse_more(address)
+    asked = await state.at_desk("check_job", (form, state.limits.segments))
+    job = state.jobs.submit(form.model_dump(), asked, address, isinstance(form, ExploreForm))
+    url = f"/api/jobs/{job.name}"
+    return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
+
+
+@router.post("/jobs", status_code=202, summary="Search for every fixture")
+async def submit(request: Request, form: JobForm) -> Response:
+    """Begins the search; its state and fixtures are at the address in the answer."""
+    return await begin(request, form)
+
+
+@router.post("/explore", status_code=202, summary="Compare vises")
+async def explore(request: Request, form: ExploreForm) -> Response:
+    """Begins a comparison; the rows appear in the job's ``table``."""
+    return await begin(request, form)
+
+
+@router.get("/jobs/{name}", summary="State of a job")
+async def state(request: Request, name: str) -> dict[str, Any]:
+    """How far it is, what it found, and what was asked for."""
+    job = found_job(request, name)
+    return {**job.answer(), "request": job.request}
+
+
+@router.delete("/jobs/{name}", status_code=204, summary="Stop and forget a job")
+async def delete(request: Request, name: str) -> Response:
+    """Nothing of it is kept; a job that is not there is as good as forgotten."""
+    state_of(request).jobs.delete(name)
+    return Response(status_code=204)
+
+
+@router.post("/jobs/{name}/cancel", status_code=202, summary="Stop a job and keep what it found")
+async def cancel(request: Request, name: str) -> dict[str, Any]:
+    """Its state becomes ``cancelled`` within two seconds or so."""
+    job = found_job(request, name)
+    state_of(request).jobs.cancel(job)
+    return job.answer()
+
+
+@router.get(
+    "/jobs/{name}/events",
+    summary="Follow a job",
+    responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
+)
+async def events(request: Request, name: str) -> Response:
+    """Server-sent events named ``state``; the data is the state without the request. The stream ends with the job."""
+    server, job = state_of(request), found_job(request, name)
+    if server.streams >= server.limits.streams:
+        raise HTTPException(503, "Too many streams of events are open: ask for the state now and then instead.")
+    return StreamingResponse(stream(server, job), media_type="text/event-stream")
+
+
+async def stream(server: ServerState, job: Job) -> AsyncIterator[str]:
+    """The events of a job."""
+    watcher = asyncio.Event()
+    job.watchers.add(watcher)
+    server.streams += 1
+    sent = -1
+    try:
+        while True:
+            watcher.clear()
+            if sent != job.version:
+                sent = job.version
+                yield f"event: state\ndata: {json.dumps(job.answer(), allow_nan=False)}\n\n"
+            if job.is_over:
+                return
+            await asyncio.sleep(PAUSE)
+            try:
+                async with asyncio.timeout(SILENCE):
+                    await watcher.wait()
+            except TimeoutError:
+                yield ": still here\n\n"
+            if server.is_closing.is_set():
+                return
+    finally:
+        server.streams -= 1
+        job.watchers.discard(watcher)
+
+
+@router.get("/jobs/{name}/fixtures", summary="Fixtures of a job")
+async def fixtures(
+    request: Request,
+    name: str,
+    offset: Annotated[int, Query(ge=0, le=10**9)] = 0,
+    limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 200,
+    sort: Annotated[str, Query(max_length=40)] = "rank",
+    descending: bool = False,
+    type: Literal["I", "II"] | None = None,
+    face: Annotated[int | None, Query(ge=0, le=10**6)] = None,
+    angle: Annotated[str | None, Query(max_length=60, description="from..to in degrees")] = None,
+) -> dict[str, Any]:
+    """A page of them, also of those known so far while the search runs; ranks count all, best first, from 1."""
+    job = found_job(request, name)
+    selection = Selection(sort, descending, type, face, None if angle is None else angle_range(angle))
+    revision, result = job.revision, job.result
+    if result is None:
+        # So that what cannot be sorted by is told even then.
+        selection.indices(EMPTY)
+        return {"total": 0, "revision": revision, "rows": []}
+    indices = await asyncio.to_thread(job.chosen, selection)
+    page = indices[offset : offset + limit]
+    rows = rows_answer(result.table.take(page), result.vise, (page + 1).tolist())
+    return {"total": len(indices), "revision": revision, "rows": rows}
+
+
+@router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
+async def explanation(request: Request, name: str) -> dict[str, Any]:
+    """Of a search that is over and found none; it takes about as long as the search and is worked out once."""
+    job = found_job(request, name)
+    result = result_of_job(job, when_over=True)
+    if len(result) or not result.complete:
+        raise HTTPException(409, "There is nothing to explain: fixtures were found, or the search was not complete.")
+    return explanation_answer(await state_of(request).jobs.explain(job))
+
+
+@router.post("/jobs/{name}/resist", summary="Which fixtures resist loads best")
+async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]:
+    """The ten with the least load reaction, in N."""
+    job = found_job(request, name)
+    result, revision = result_of_job(job), job.revision
+    best = await state_of(request).at_desk("resist", (plain(result), form))
+    rows = [{"rank": rank, "load_reaction": reaction} for rank, reaction in best]
+    return {"revision": revision, "best": rows}
+
+
+@router.get("/jobs/{name}/result.json", summary="The result file", response_class=Response)
+async def result_json(request: Request, name: str) -> Response:
+    """As ``workhold design --out`` writes it."""
+    from workhold.files.result_file import result_text
+
+    return download(found_job(request, name), result_text, "json", "application/json")
+
+
+@router.get("/jobs/{name}/result.csv", summary="The fixtures as a table", response_class=Response)
+async def result_csv(request: Request, name: str) -> Response:
+    """Comma-separated values, one line for each fixture."""
+    from workhold.files.result_csv import result_csv_text
+
+    return download(found_job(request, name), result_csv_text, "csv", "text/csv; charset=utf-8")
+
+
+def download(job: Job, text: Callable[[Result], Iterator[str]], ending: str, content_type: str) -> Response:
+    """A file that is written while it is sent."""
+    result = result_of_job(job, when_over=True)
+    headers = {"Content-Disposition": attachment(result.workpiece.name, ending)}
+    return StreamingResponse(text(result), media_type=content_type, headers=headers)
+
+
+def attachment(name: str, ending: str) -> str:
+    """The header that names a file to save."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".") or "part"
+    return f'attachment; filename="{plain}.{ending}"'

@@ -1,0 +1,315 @@
+"""Searches that were asked for, while they run and as long after as they are used.
+
+Glossary
+--------
+job : a search, or a comparison of vises, with what is known of it.
+revision : a number that grows whenever the fixtures to show have changed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from secrets import token_urlsafe
+from time import monotonic
+from typing import Any
+
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.model.explanation import Explanation
+from workhold.model.result import Result
+from workhold.web.answers import proof_answer
+from workhold.web.asked import Asked
+from workhold.web.limits import Limits
+from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
+from workhold.web.selection import Selection
+from workhold.web.tasks import Found
+
+__all__ = ["OVER", "Job", "Jobs", "TooManyError"]
+
+# Bytes of a random name; nobody can guess 128 bits.
+NAME_BYTES = 16
+# The part of a search after which its records are decided and listed, see ``search.design``.
+LISTING = 0.9
+OVER = ("done", "failed", "cancelled")
+ORDERS_KEPT = 8
+
+
+class TooManyError(BusyError):
+    """One address has too many searches."""
+
+
+@define(eq=False)
+class Job:
+    """A job.
+
+    Parameters
+    ----------
+    name : a random token.
+    request : what was asked for, as it came.
+    asked : the search, or the searches of a comparison.
+    address : who asked.
+    compares : whether it is a comparison of vises.
+    """
+
+    name: str
+    request: Mapping[str, Any]
+    asked: tuple[Asked, ...]
+    address: str
+    compares: bool
+    state: str = "queued"
+    fraction: float = 0.0
+    found: int = 0
+    began: float | None = None
+    ended: float | None = None
+    result: Result | None = None
+    revision: int = 0
+    notes: tuple[str, ...] = ()
+    error: str | None = None
+    table: list[dict[str, Any]] = field(factory=list)
+    task: Task | None = None
+    runner: asyncio.Task[None] | None = None
+    explaining: asyncio.Task[Explanation] | None = None
+    used: float = field(factory=monotonic)
+    version: int = 0
+    watchers: set[asyncio.Event] = field(factory=set)
+    orders: dict[tuple[int, Selection], NDArray[np.intp]] = field(factory=dict)
+    result_hash: str | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing more will happen to it."""
+        return self.state in OVER
+
+    @property
+    def size(self) -> int:
+        """About how many bytes it keeps."""
+        if self.result is None:
+            return 0
+        tables = (self.result.table, self.result.twins)
+        return sum(getattr(t, a.name).nbytes for t in tables for a in t.__attrs_attrs__)
+
+    def changed(self) -> None:
+        """Tell those who watch."""
+        self.version += 1
+        for watcher in self.watchers:
+            watcher.set()
+
+    def answer(self) -> dict[str, Any]:
+        """What is known of it, but for the request."""
+        result, over = self.result, self.is_over
+        end = self.ended if self.ended is not None else monotonic()
+        complete = self.state == "done" and (self.compares or (result is not None and result.complete))
+        listed = result if over and result is not None and self.state != "failed" else None
+        return {
+            "job": self.name,
+            "kind": "explore" if self.compares else "design",
+            "state": self.state,
+            "fraction": round(self.fraction, 4),
+            "found": self.found,
+            "seconds": 0.0 if self.began is None else round(end - self.began, 3),
+            "counts": None if listed is None else {kind: int(listed.found[kind]) for kind in ("I", "II")},
+            "distinct": None if listed is None else {kind: int(listed.distinct[kind]) for kind in ("I", "II")},
+            "listed": 0 if result is None else len(result),
+            "ranking": None if result is None else list(result.ranking),
+            "complete": complete,
+            "notes": list(self.notes),
+            "proof": None if listed is None or listed.proof is None else proof_answer(listed.proof),
+            "error": self.error,
+            "revision": self.revision,
+            "table": list(self.table) if self.compares else None,
+        }
+
+    def chosen(self, selection: Selection) -> NDArray[np.intp]:
+        """Indices of the fixtures of a selection; the last few selections are remembered."""
+        if self.result is None:
+            return np.zeros(0, np.intp)
+        key = (self.revision, selection)
+        if key not in self.orders:
+            indices = selection.indices(self.result.table)
+            while len(self.orders) >= ORDERS_KEPT:
+                self.orders.pop(next(iter(self.orders)))
+            self.orders[key] = indices
+        return self.orders[key]
+
+
+@define(eq=False)
+class Jobs:
+    """All jobs of a server.
+
+    Parameters
+    ----------
+    pool : of workers that search.
+    limits : how much of everything.
+    """
+
+    pool: Pool
+    limits: Limits
+    by_name: dict[str, Job] = field(factory=dict, init=False)
+
+    def get(self, name: str) -> Job | None:
+        """A job by its name, or None when there is none (any more); it counts as used."""
+        job = self.by_name.get(name)
+        if job is not None:
+            job.used = monotonic()
+        return job
+
+    def refuse_more(self, address: str) -> None:
+        """Refuse a further job.
+
+        Raises
+        ------
+        TooManyError
+            When this address has too many that are not over.
+        BusyError
+            When too many wait.
+        """
+        running = sum(not job.is_over and job.address == address for job in self.by_name.values())
+        if running >= self.limits.jobs:
+            raise TooManyError(f"{running} of your searches are not over yet: wait for one of them, or cancel one.")
+        if len(self.pool.waiting) >= self.pool.most_waiting:
+            raise BusyError("The server is busy with other searches: try again in a moment.")
+
+    def submit(self, request: Mapping[str, Any], asked: tuple[Asked, ...], address: str, compares: bool) -> Job:
+        """Begin a job.
+
+        Raises
+        ------
+        BusyError
+            See :meth:`refuse_more`.
+        """
+        self.refuse_more(address)
+        job = Job(token_urlsafe(NAME_BYTES), request, asked, address, compares)
+        self.by_name[job.name] = job
+        job.runner = asyncio.create_task(self.run(job))
+        self.make_room()
+        return job
+
+    def begin(self, job: Job) -> None:
+        """Note that a worker has begun with it."""
+        job.began = monotonic()
+        job.state = "running"
+        job.changed()
+
+    async def run(self, job: Job) -> None:
+        """See a job through."""
+        payload: Any = job.asked if job.compares else (job.asked[0], self.limits.fixtures)
+        name = "explore" if job.compares else "search"
+        job.task = Task(
+            name,
+            payload,
+            self.limits.seconds,
+            stops_well=True,
+            report=lambda value: self.heard(job, value),
+            begun=lambda: self.begin(job),
+        )
+        try:
+            outcome = await self.pool.run(job.task)
+            if isinstance(outcome, Found):
+                self.keep(job, outcome)
+            elif len(job.table) < len(job.asked) and not job.task.stop.is_set():
+                job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the vises was not tried.",)
+            job.state = "cancelled" if job.task.stop.is_set() else "done"
+        except StoppedError:
+            job.state = "cancelled"
+        except (BusyError, FailedError, InputError) as error:
+            job.state, job.error = "failed", str(error)
+        job.ended = monotonic()
+        job.used = max(job.used, job.ended)
+        job.changed()
+        self.make_room()
+
+    def keep(self, job: Job, found: Found) -> None:
+        """Keep the outcome of a search."""
+        result, notes = found.result, list(found.result.notes)
+        if found.left_out:
+            notes.insert(
+                0,
+                f"{len(result) + found.left_out:,} fixtures were found; this server keeps the best {len(result):,} of them.",
+            )
+        if not result.complete and job.task is not None and not job.task.stop.is_set():
+            notes.insert(
+                0,
+                f"The search was stopped after {self.limits.seconds:g} s, the longest this server allows: this is a part of "
+                "the fixtures only.",
+            )
+        job.result = evolve(result, workpiece=job.asked[0].workpiece, notes=tuple(notes))
+        job.notes = tuple(notes)
+        job.found = sum(result.found.values())
+        job.fraction = 1.0 if result.complete else job.fraction
+        job.revision += 1
+        job.orders.clear()
+
+    def heard(self, job: Job, value: tuple[Any, ...]) -> None:
+        """Take what a worker reports."""
+        match value:
+            case ("progress", fraction, found):
+                job.fraction, job.found = max(float(fraction), job.fraction), int(found)
+                if job.fraction >= LISTING and not job.compares:
+                    job.state = "listing"
+            case ("preview", Result() as result):
+                job.result = evolve(result, workpiece=job.asked[0].workpiece)
+                job.revision += 1
+                job.orders.clear()
+            case ("row", row):
+                job.table.append(row)
+                job.revision += 1
+        job.changed()
+
+    async def explain(self, job: Job) -> Explanation:
+        """Why a job found no fixture; worked out once.
+
+        Raises
+        ------
+        BusyError, FailedError, StoppedError
+            When it could not be; it may be asked again.
+        """
+        if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
+            task = Task("explanation", job.asked[0], self.limits.seconds)
+            job.explaining = asyncio.create_task(self.pool.run(task))
+        return await asyncio.shield(job.explaining)
+
+    def cancel(self, job: Job) -> None:
+        """Tell a job to stop; what it has found is kept."""
+        if job.task is not None and not job.is_over:
+            self.pool.cancel(job.task)
+
+    def delete(self, name: str) -> None:
+        """Stop a job and forget it."""
+        job = self.by_name.pop(name, None)
+        if job is None:
+            return
+        self.cancel(job)
+        if job.explaining is not None:
+            job.explaining.cancel()
+        if not job.is_over:
+            job.state = "cancelled"
+        job.changed()
+
+    def make_room(self) -> None:
+        """Forget jobs whose life is over, and the longest unused ones when too much is kept."""
+        now = monotonic()
+        for job in [job for job in self.by_name.values() if now - job.used > self.limits.life_seconds]:
+            self.delete(job.name)
+        over = sorted((job for job in self.by_name.values() if job.is_over), key=lambda job: job.used)
+        total = sum(job.size for job in over)
+        # The newest stays whatever its size, which the limit on fixtures bounds.
+        for job in over[:-1]:
+            if total <= self.limits.kept_bytes and len(self.by_name) <= self.limits.kept_jobs:
+                break
+            total -= job.size
+            self.delete(job.name)
+
+    async def sweep(self) -> None:
+        """Make room again and again."""
+        while True:
+            await asyncio.sleep(min(max(self.limits.life_seconds / 10, 0.1), 30.0))
+            self.make_room()
+
+
+def explained(task: asyncio.Task[Explanation]) -> bool:
+    """Whether an explanation that was worked out came to a good end."""
+    return not task.cancelled() and task.exception() is None

@@ -1,0 +1,174 @@
+"""Tasks that make something to take away: setup sheets, drawings for the CAM system, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import date
+from hashlib import sha256
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture
+from workhold.model.result import FixtureTable, Result
+from workhold.model.workpiece import Workpiece
+from workhold.web.worker import Order
+
+__all__ = ["KINDS", "PaperOrder", "has_step", "make_paper"]
+
+# What can be made: its content type.
+KINDS = {
+    "sheet.pdf": "application/pdf",
+    "sheet.svg": "image/svg+xml",
+    "setup.dxf": "image/vnd.dxf",
+    "setup.step": "model/step",
+    "picture.svg": "image/svg+xml",
+}
+
+
+@frozen(eq=False)
+class PaperOrder:
+    """What to make of which fixture.
+
+    Parameters
+    ----------
+    kind : one of :data:`KINDS`.
+    result : all fixtures for a sheet, which tells of the others; else one of no other.
+    rank, count : of the fixture, from 1, and how many there are.
+    paper : "a4" or "letter".
+    unit : "mm" or "inch".
+    day : written on the sheet.
+    jaw_force : in N, or None.
+    friction : coefficient, or None.
+    result_hash : of the result's file, or None where it is not known yet.
+    """
+
+    kind: str
+    result: Result
+    rank: int
+    count: int
+    paper: str
+    unit: str
+    day: date
+    jaw_force: float | None
+    friction: float | None
+    result_hash: str | None
+
+    @classmethod
+    def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
+        """An order that carries no more of a result than is needed."""
+        small = evolve(result, workpiece=Workpiece(result.workpiece.name, result.workpiece.loops))
+        if not kind.startswith("sheet"):
+            small = evolve(small, table=result.table.take(slice(rank - 1, rank)), twins=FixtureTable.empty())
+        return cls(kind, small, rank, len(result), *options)
+
+    @property
+    def fixture(self) -> Fixture:
+        """The fixture."""
+        return self.result[self.rank - 1 if len(self.result) == self.count else 0]
+
+
+def has_step() -> bool:
+    """Whether STEP files can be read and written."""
+    return find_spec("OCP") is not None and find_spec("workhold.files.setup_step") is not None
+
+
+def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
+    """The bytes of what was ordered, and the hash of the result's file if it was needed."""
+    return MAKERS[payload.kind](payload)
+
+
+def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
+    """The setup sheet."""
+    from workhold import __version__
+    from workhold.drawing.scene import stacked
+    from workhold.drawing.sheet import draw_sheet
+    from workhold.drawing.sheet_details import SheetDetails
+    from workhold.drawing.sheet_facts import same_holes
+    from workhold.model.units import unit_named
+    from workhold.statics.loads import load_cases
+
+    result = order.result
+    fixture = with_quality(result, order.rank)
+    workpiece, vise = result.workpiece, result.vise
+    details = SheetDetails(
+        number=order.rank,
+        count=order.count,
+        day=order.day,
+        result_hash=order.result_hash or hash_of(result),
+        version=__version__,
+        paper=order.paper,
+        unit=unit_named(order.unit),
+        tolerance=result.tolerance,
+        jaw_force=order.jaw_force,
+        friction=order.friction,
+        loads=load_cases(fixture, workpiece, vise, result.loads, order.jaw_force, order.friction),
+        others=same_holes(result.table, order.rank - 1, result.twins),
+    )
+    pages = draw_sheet(fixture, workpiece, vise, details)
+    if order.kind == "sheet.svg":
+        return stacked(pages).encode("utf-8"), details.result_hash
+    from workhold.drawing.pdf import svg_to_pdf
+
+    return svg_to_pdf(pages, details.day), details.result_hash
+
+
+def hash_of(result: Result) -> str:
+    """SHA-256 of the result's file."""
+    from workhold.files.result_file import result_text
+
+    digest = sha256()
+    for text in result_text(result):
+        digest.update(text.encode("utf-8"))
+    return digest.hexdigest()
+
+
+def with_quality(result: Result, rank: int) -> Fixture:
+    """A fixture with all figures of quality that can be known for the loads of the result."""
+    from workhold.model.quality import FIGURES
+    from workhold.statics.quality import quality_of
+
+    row = result.table.take(slice(rank - 1, rank))
+    figures = quality_of(row, result.workpiece, result.vise, result.tolerance, result.loads)[0]
+    known = {figure.key: float(value) for figure, value in zip(FIGURES, figures, strict=True) if not np.isnan(value)}
+    return evolve(result[rank - 1], quality=known)
+
+
+def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
+    """The set-up as DXF."""
+    from workhold.files.setup_dxf import setup_dxf
+
+    result = order.result
+    return setup_dxf(order.fixture, result.workpiece, result.vise), None
+
+
+def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
+    """The set-up as STEP."""
+    if not has_step():
+        raise InputError("this server writes no STEP files: take the DXF, or install workhold with the extra step.")
+    module = import_module("workhold.files.setup_step")
+    result = order.result
+    content: bytes = module.setup_step(order.fixture, result.workpiece, result.vise)
+    return content, None
+
+
+def picture(order: PaperOrder) -> tuple[bytes, str | None]:
+    """The picture to set the vise from."""
+    from workhold.drawing.fixture_picture import draw_fixture
+
+    result = order.result
+    title = f"Fixture {order.rank} of {order.count}"
+    return draw_fixture(order.fixture, result.workpiece, result.vise, title=title).encode("utf-8"), None
+
+
+MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
+    "sheet.pdf": sheet,
+    "sheet.svg": sheet,
+    "setup.dxf": setup_drawing,
+    "setup.step": setup_solid,
+    "picture.svg": picture,
+}

@@ -1,0 +1,119 @@
+"""Routes about parts, vises and figures of quality."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+from urllib.parse import unquote
+
+from fastapi import APIRouter, Query, Request
+from starlette.exceptions import HTTPException
+
+from workhold import __version__
+from workhold.web.answers import figures_answer, vise_answer
+from workhold.web.forms import WorkpieceForm
+from workhold.web.paper import has_step
+from workhold.web.state import state_of
+from workhold.web.tasks import Upload
+
+__all__ = ["router"]
+
+router = APIRouter(prefix="/api")
+LONGEST_NAME = 120
+
+
+@router.get("/about", summary="Version and limits")
+async def about(request: Request) -> dict[str, Any]:
+    """What this server is and how much it takes."""
+    limits = state_of(request).limits
+    return {
+        "version": __version__,
+        "limits": {
+            "upload_bytes": limits.upload_bytes,
+            "request_bytes": limits.request_bytes,
+            "segments": limits.segments,
+            "searches": limits.searches,
+            "jobs": limits.jobs,
+            "seconds": limits.seconds,
+            "fixtures": limits.fixtures,
+            "life_seconds": limits.life_seconds,
+        },
+        "step": has_step(),
+    }
+
+
+@router.get("/parts", summary="The parts that come with the program")
+async def parts() -> list[dict[str, str]]:
+    """Their names and what they are."""
+    from workhold.files.builtin import builtin_parts
+
+    return [{"name": part.name, "title": part.description} for part in builtin_parts()]
+
+
+@router.get("/parts/{name}", summary="A part that comes with the program")
+async def part(request: Request, name: str) -> dict[str, Any]:
+    """Its loops, segments and faces."""
+    from workhold.files.builtin import builtin_parts
+
+    state = state_of(request)
+    known = {part.name.lower(): part.name for part in builtin_parts()}.get(name.lower())
+    if known is None:
+        raise HTTPException(404, "No part of that name comes with the program.")
+    if known not in state.builtin:
+        state.builtin[known] = await state.at_desk("builtin_part", known)
+    return state.builtin[known]
+
+
+@router.post(
+    "/parts",
+    summary="Read a part from a file",
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+        },
+        "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
+    },
+)
+async def read_part(
+    request: Request,
+    unit: Literal["mm", "cm", "m", "inch"] | None = None,
+    part: Annotated[int | None, Query(ge=1, le=100_000)] = None,
+    axis: Literal["x", "y", "z"] | None = None,
+) -> dict[str, Any]:
+    """The body is the file as it is: DXF, SVG, JSON, or STEP where installed; its name is in the header X-Filename."""
+    state = state_of(request)
+    content = await request.body()
+    options: dict[str, Any] = {"unit": unit, "part_number": part}
+    name = shown_name(request.headers.get("x-filename", ""))
+    if axis is not None and name.lower().endswith((".step", ".stp")):
+        options["axis"] = axis
+    answer: dict[str, Any] = await state.at_desk("read_part", Upload(content, name, state.limits.segments, options))
+    return answer
+
+
+def shown_name(header: str) -> str:
+    """A file's name as a user may see it again, without folders and what cannot be printed."""
+    name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
+    return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()
+
+
+@router.post("/parts/check", summary="Check a part that was drawn by hand")
+async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
+    """The part, or what is wrong with it and where."""
+    state = state_of(request)
+    answer: dict[str, Any] = await state.at_desk("check_part", (form, state.limits.segments))
+    return answer
+
+
+@router.get("/vises", summary="The vises that come with the program")
+async def vises() -> list[dict[str, Any]]:
+    """Plates that people own; lengths in mm."""
+    from workhold.files.vise_presets import preset, preset_names
+
+    return [vise_answer(preset(name)) for name in preset_names()]
+
+
+@router.get("/figures", summary="The figures of quality")
+async def figures() -> list[dict[str, Any]]:
+    """What each is called, its unit, and which way is better."""
+    return figures_answer()

@@ -1,0 +1,318 @@
+"""Worker processes that are kept ready, and the tasks that wait for them.
+
+Glossary
+--------
+task : something a worker does, by name, with a time limit.
+slot : a place for one worker; a worker that dies is replaced in its slot.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import count
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any
+
+from attrs import define, field
+
+from workhold.errors import InputError, WorkholdError
+from workhold.web.worker import CANCEL, worker_main
+
+__all__ = ["BusyError", "FailedError", "Pool", "StoppedError", "Task"]
+
+# Seconds a task that was told to stop by its user has before its worker is ended, and one that ran out of time.
+STOP_GRACE = 2.0
+TIME_GRACE = 10.0
+# Workers that end before they are ready, one after the other, before waiting tasks are given up; and the pause between.
+MOST_FAILED_STARTS = 3
+START_PAUSE = 1.0
+
+Message = tuple[str, int, Any]
+
+
+class BusyError(WorkholdError):
+    """Too many tasks wait already."""
+
+
+class FailedError(WorkholdError):
+    """A task came to a bad end; the message is a sentence for the user."""
+
+
+class StoppedError(WorkholdError):
+    """A task was told to stop and did not come to its end."""
+
+
+@define(eq=False)
+class Task:
+    """Something for a worker to do.
+
+    Parameters
+    ----------
+    name : see ``web.tasks.TASKS``.
+    payload : what it needs; must be picklable.
+    seconds : how long it may take once it has begun.
+    stops_well : whether it gives what it has when told to stop; its worker is ended at once otherwise.
+    report : called with what the worker sends before it is done.
+    begun : called when a worker begins.
+    """
+
+    name: str
+    payload: Any
+    seconds: float
+    stops_well: bool = False
+    report: Callable[[Any], None] | None = None
+    begun: Callable[[], None] | None = None
+    stop: asyncio.Event = field(factory=asyncio.Event, init=False)
+    outcome: asyncio.Future[Any] = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.outcome = asyncio.get_running_loop().create_future()
+
+    def settle(self, value: Any = None, error: Exception | None = None) -> None:
+        """Hand over the outcome, unless nobody waits for it any more."""
+        if self.outcome.done():
+            return
+        if error is None:
+            self.outcome.set_result(value)
+        else:
+            self.outcome.set_exception(error)
+
+
+@define(eq=False)
+class Worker:
+    """A worker process and its end of the pipe."""
+
+    process: Any
+    connection: Connection
+    inbox: asyncio.Queue[Message] = field(factory=asyncio.Queue)
+    gone: asyncio.Event = field(factory=asyncio.Event)
+
+    @classmethod
+    def started(cls, kind: str, memory_bytes: int) -> Worker:
+        """Start a process; a thread of the server hears what it says."""
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=worker_main, args=(theirs, kind, memory_bytes), daemon=True)
+        with deaf_to_interrupts():
+            process.start()
+        theirs.close()
+        worker = cls(process, ours)
+        loop = asyncio.get_running_loop()
+        threading.Thread(target=worker.listen, args=(loop,), daemon=True).start()
+        return worker
+
+    def listen(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Take messages until the pipe ends; runs in a thread of its own."""
+        try:
+            while True:
+                message = self.connection.recv()
+                loop.call_soon_threadsafe(self.inbox.put_nowait, message)
+        except Exception:
+            # The end of the pipe, or half a message of a worker that was ended.
+            with suppress(RuntimeError):
+                loop.call_soon_threadsafe(self.gone.set)
+
+    async def send(self, message: Any) -> None:
+        """Send a message; one to a worker that is gone is lost."""
+        with suppress(OSError, ValueError):
+            await asyncio.to_thread(self.connection.send, message)
+
+    async def end(self) -> None:
+        """End the process at once and let go of it."""
+        self.process.kill()
+        await asyncio.to_thread(self.process.join, 5.0)
+        with suppress(OSError):
+            self.connection.close()
+
+
+@contextmanager
+def deaf_to_interrupts() -> Iterator[None]:
+    """Let a process that is started meanwhile not hear Ctrl-C, which is for the server."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:
+        # Not in the main thread.
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@define(eq=False)
+class Pool:
+    """Workers of one kind.
+
+    Parameters
+    ----------
+    kind : see ``web.tasks.warm_up``.
+    size : how many workers.
+    memory_bytes : of each.
+    most_waiting : tasks that may wait.
+    """
+
+    kind: str
+    size: int
+    memory_bytes: int
+    most_waiting: int
+    waiting: deque[Task] = field(factory=deque, init=False)
+    bell: asyncio.Event = field(factory=asyncio.Event, init=False)
+    slots: list[asyncio.Task[None]] = field(factory=list, init=False)
+    workers: dict[int, Worker] = field(factory=dict, init=False)
+    numbers: Iterator[int] = field(factory=lambda: count(1), init=False)
+    ready: asyncio.Event = field(factory=asyncio.Event, init=False)
+    busy: int = field(default=0, init=False)
+
+    def open(self) -> None:
+        """Start the workers."""
+        self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
+
+    async def close(self) -> None:
+        """End the workers and give up what waits."""
+        for slot in self.slots:
+            slot.cancel()
+        await asyncio.gather(*self.slots, return_exceptions=True)
+        for worker in list(self.workers.values()):
+            await worker.end()
+        self.give_up("The server was stopped.")
+
+    def give_up(self, sentence: str) -> None:
+        """Fail all tasks that wait."""
+        while self.waiting:
+            self.waiting.popleft().settle(error=FailedError(sentence))
+
+    async def run(self, task: Task) -> Any:
+        """Do a task, after those that came before it; a caller that is cancelled cancels the task.
+
+        Raises
+        ------
+        BusyError
+            When too many tasks wait.
+        InputError
+            When the worker refuses what it was given.
+        StoppedError
+            When it was told to stop and had nothing to show.
+        FailedError
+            When it came to a bad end.
+        """
+        if len(self.waiting) >= self.most_waiting:
+            raise BusyError("The server is busy: try again in a moment.")
+        self.waiting.append(task)
+        self.bell.set()
+        try:
+            return await task.outcome
+        except asyncio.CancelledError:
+            self.cancel(task)
+            raise
+
+    def cancel(self, task: Task) -> None:
+        """Tell a task to stop; one that waits is over at once."""
+        task.stop.set()
+        if task in self.waiting:
+            self.waiting.remove(task)
+            task.settle(error=StoppedError())
+
+    async def next_task(self) -> Task:
+        """The task that has waited longest, when there is one."""
+        while not self.waiting:
+            self.bell.clear()
+            await self.bell.wait()
+        return self.waiting.popleft()
+
+    async def keep(self, slot: int) -> None:
+        """Keep a worker in a slot and give it tasks."""
+        failed = 0
+        while True:
+            worker = self.workers[slot] = Worker.started(self.kind, self.memory_bytes)
+            if await first(worker.inbox.get(), worker.gone.wait()) is None:
+                await worker.end()
+                failed += 1
+                if failed >= MOST_FAILED_STARTS:
+                    self.give_up("The server cannot start its worker processes: give them more memory.")
+                await asyncio.sleep(START_PAUSE)
+                continue
+            failed = 0
+            self.ready.set()
+            try:
+                await self.serve(worker)
+            finally:
+                await asyncio.shield(worker.end())
+
+    async def serve(self, worker: Worker) -> None:
+        """Give tasks to a worker until it is gone."""
+        while not worker.gone.is_set():
+            task = await first(self.next_task(), worker.gone.wait())
+            if task is None:
+                return
+            if worker.gone.is_set():
+                self.waiting.appendleft(task)
+                return
+            self.busy += 1
+            try:
+                await self.work(worker, task)
+            except asyncio.CancelledError:
+                task.settle(error=FailedError("The server was stopped."))
+                raise
+            finally:
+                self.busy -= 1
+
+    async def work(self, worker: Worker, task: Task) -> None:
+        """Let a worker do a task; afterwards the worker is gone if it had to be ended."""
+        clock, number, told = asyncio.get_running_loop().time, next(self.numbers), False
+        if task.begun is not None:
+            task.begun()
+        await worker.send((number, task.name, task.seconds, task.payload))
+        end, error = clock() + task.seconds, FailedError(f"This took longer than {task.seconds:g} s and was stopped.")
+        while True:
+            waits = [worker.inbox.get(), worker.gone.wait()] + ([] if told else [task.stop.wait()])
+            message = await first(*waits, timeout=max(end - clock(), 0.0))
+            if message is not None:
+                kind, of, value = message
+                if of != number:
+                    continue
+                if kind != "report":
+                    finish(task, kind, value)
+                    return
+                if task.report is not None and not task.stop.is_set():
+                    task.report(value)
+            elif worker.gone.is_set():
+                task.settle(
+                    error=FailedError("The process that worked on this ended unexpectedly; others are not affected.")
+                )
+                return
+            elif told or not task.stops_well:
+                task.settle(error=StoppedError() if task.stop.is_set() else error)
+                worker.gone.set()
+                return
+            else:
+                told = True
+                end = clock() + (STOP_GRACE if task.stop.is_set() else TIME_GRACE)
+                await worker.send((number, CANCEL))
+
+
+def finish(task: Task, kind: str, value: Any) -> None:
+    """Hand over what a worker answered."""
+    if kind == "done":
+        task.settle(value)
+    elif kind == "refused":
+        task.settle(error=InputError(value))
+    else:
+        task.settle(error=FailedError(value))
+
+
+async def first(*waits: Any, timeout: float | None = None) -> Any:
+    """What the first of some coroutines returns if it is done when any of them is, or the time is up; else None."""
+    tasks = [asyncio.ensure_future(wait) for wait in waits]
+    try:
+        await asyncio.wait(tasks, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)
+        return tasks[0].result() if tasks[0].done() else None
+    finally:
+        for task in tasks:
+            task.cancel()

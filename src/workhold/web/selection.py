@@ -1,0 +1,80 @@
+"""Which fixtures of a table are asked for, and in what order."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.model.quality import FIGURES, figure_number
+from workhold.model.result import FixtureTable
+
+__all__ = ["Selection", "angle_range"]
+
+
+@frozen
+class Selection:
+    """What to show of a list of fixtures.
+
+    Parameters
+    ----------
+    sort : "rank" or the key of a figure of quality; what is equal stays in the order of ranks.
+    descending : largest first; fixtures without the figure are last either way.
+    type : "I", "II" or None for both.
+    face : only fixtures that touch this face.
+    angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
+    """
+
+    sort: str = "rank"
+    descending: bool = False
+    type: str | None = None
+    face: int | None = None
+    angle: tuple[float, float] | None = None
+
+    def indices(self, table: FixtureTable) -> NDArray[np.intp]:
+        """Indices of the chosen fixtures of a table, in order.
+
+        Raises
+        ------
+        InputError
+            When there is nothing of that name to sort by.
+        """
+        column = None if self.sort == "rank" else figure_number(self.sort)
+        if column is None and self.sort != "rank":
+            known = ", ".join(figure.key for figure in FIGURES)
+            raise InputError(f"{self.sort[:40]!r} is nothing to sort by: choose rank or one of {known}.")
+        chosen = np.ones(len(table), np.bool_)
+        if self.type is not None:
+            chosen &= table.type == (1 if self.type == "I" else 2)
+        if self.face is not None:
+            chosen &= (table.segment == self.face).any(axis=1)
+        if self.angle is not None:
+            low, high = self.angle
+            chosen &= (np.degrees(table.theta) - low) % 360.0 <= high - low
+        found = np.flatnonzero(chosen)
+        if column is None:
+            return found[::-1] if self.descending else found
+        values = table.quality[found, column]
+        keys = np.where(np.isnan(values), np.inf, -values if self.descending else values)
+        return np.asarray(found[np.argsort(keys, kind="stable")])
+
+
+def angle_range(text: str) -> tuple[float, float]:
+    """A range of angles in degrees such as ``-10..10``.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    low, dots, high = text.partition("..")
+    try:
+        ends = float(low), float(high)
+    except ValueError:
+        ends = (1.0, 0.0)
+    if not dots or not ends[0] <= ends[1] or max(abs(ends[0]), abs(ends[1])) > 1e6:
+        raise InputError(
+            f"{text[:40]!r} is no range of angles: give it in degrees, the smaller first, such as -10..10."
+        )
+    return ends

@@ -1,0 +1,176 @@
+"""Running the server until it is told to stop."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Collection
+from ipaddress import ip_address
+from typing import Any
+
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from workhold.errors import InputError
+from workhold.web.app import create_app
+from workhold.web.guard import Hosts
+from workhold.web.limits import Limits
+
+__all__ = ["bound_socket", "make_server", "run_server"]
+
+LOCAL = ("localhost", "127.0.0.1", "::1")
+# Seconds a client has to send the first lines of a request, and a response to end when the server stops.
+HEADER_SECONDS = 15.0
+STOP_SECONDS = 2
+
+
+class PatientProtocol(H11Protocol):
+    """HTTP that lets go of clients who do not come to the point: their connections would else stay open for ever."""
+
+    header_timer: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        """A client is there: its request should follow."""
+        super().connection_made(transport)
+        self.watch()
+
+    def data_received(self, data: bytes) -> None:
+        """Some of a request is there."""
+        super().data_received(data)
+        self.watch()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """The client is gone."""
+        if self.header_timer is not None:
+            self.header_timer.cancel()
+        super().connection_lost(exc)
+
+    def watch(self) -> None:
+        """Run the timer while a request has begun and its first lines are not complete."""
+        awaited = self.cycle is None or self.cycle.response_complete
+        if awaited and self.header_timer is None:
+            self.header_timer = self.loop.call_later(HEADER_SECONDS, self.give_up)
+        elif not awaited and self.header_timer is not None:
+            self.header_timer.cancel()
+            self.header_timer = None
+
+    def give_up(self) -> None:
+        """Close a connection without a request."""
+        self.header_timer = None
+        if self.cycle is None or self.cycle.response_complete:
+            self.transport.close()
+
+
+class Server(uvicorn.Server):
+    """Tells when it listens."""
+
+    def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
+        super().__init__(config)
+        self.listening = listening
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start, and tell."""
+        await super().startup(sockets)
+        if self.started and not self.should_exit:
+            self.listening()
+
+
+def run_server(
+    host: str,
+    port: int,
+    limits: Limits,
+    more_hosts: Collection[str] = (),
+    listening: Callable[[str], None] | None = None,
+) -> None:
+    """Serve until interrupted.
+
+    Parameters
+    ----------
+    host, port : where to listen; port 0 takes a free one.
+    limits : how much to give.
+    more_hosts : further names that the server may be called by.
+    listening : called with the page's address once it is there.
+
+    Raises
+    ------
+    InputError
+        When nothing can listen there.
+    """
+    listener = bound_socket(host, port)
+    shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
+    server = make_server(limits, hosts_of(host, more_hosts), lambda: None if listening is None else listening(shown))
+    try:
+        server.run(sockets=[listener])
+    except KeyboardInterrupt:
+        # uvicorn raises it again after a clean stop.
+        pass
+    finally:
+        listener.close()
+
+
+def make_server(limits: Limits, hosts: Hosts, listening: Callable[[], None]) -> Server:
+    """A server that is not running yet; ``listening`` is called once it takes requests."""
+    config = uvicorn.Config(
+        create_app(limits, hosts),
+        http=PatientProtocol,
+        ws="none",
+        lifespan="on",
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+        limit_concurrency=limits.connections,
+        timeout_graceful_shutdown=STOP_SECONDS,
+    )
+    return Server(config, listening)
+
+
+def bound_socket(host: str, port: int) -> socket.socket:
+    """A socket that listens at an address.
+
+    Raises
+    ------
+    InputError
+        When there is no such address, or another program listens there.
+    """
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except (OSError, UnicodeError) as error:
+        raise InputError(
+            f"--host {host!r} is no address of this machine: leave it out, or give one such as 0.0.0.0."
+        ) from error
+    listener = socket.socket(family, kind, protocol)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+    except OSError as error:
+        listener.close()
+        reason = (error.strerror or str(error)).lower()
+        raise InputError(f"nothing can listen at {host} port {port} ({reason}): choose another --port.") from error
+    listener.set_inheritable(False)
+    return listener
+
+
+def is_everywhere(host: str) -> bool:
+    """Whether a host means every address of the machine."""
+    try:
+        return ip_address(host).is_unspecified
+    except ValueError:
+        return False
+
+
+def hosts_of(host: str, more: Collection[str]) -> Hosts:
+    """The names of a server that listens at a host."""
+    everywhere = is_everywhere(host)
+    names = {*LOCAL, *(name.lower() for name in more)}
+    names.add(socket.gethostname().lower() if everywhere else host.lower())
+    return Hosts(frozenset(names), any_address=everywhere)
+
+
+def address_words(host: str) -> str:
+    """A host as it stands in an address that can be opened."""
+    if is_everywhere(host):
+        return "127.0.0.1"
+    return f"[{host}]" if ":" in host else host

@@ -1,0 +1,78 @@
+"""What the routes of one server share."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from typing import Any
+
+from attrs import define, field
+from starlette.requests import Request
+
+from workhold.web.jobs import Job, Jobs
+from workhold.web.limits import Limits
+from workhold.web.pool import Pool, Task
+from workhold.web.static_files import StaticFile, static_files
+
+__all__ = ["ServerState", "address_of", "state_of"]
+
+
+@define(eq=False)
+class ServerState:
+    """Workers, jobs, and the page's files.
+
+    Parameters
+    ----------
+    limits : how much of everything.
+    searchers, desks : workers that search, and those that do what is quick.
+    """
+
+    limits: Limits
+    searchers: Pool = field(init=False)
+    desks: Pool = field(init=False)
+    jobs: Jobs = field(init=False)
+    files: dict[str, StaticFile] = field(factory=static_files, init=False)
+    builtin: dict[str, dict[str, Any]] = field(factory=dict, init=False)
+    streams: int = field(default=0, init=False)
+    is_closing: asyncio.Event = field(factory=asyncio.Event, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        limits = self.limits
+        self.searchers = Pool("search", limits.searches, limits.memory_bytes, limits.waiting)
+        self.desks = Pool("desk", limits.desks, limits.desk_memory_bytes, limits.waiting)
+        self.jobs = Jobs(self.searchers, limits)
+
+    @asynccontextmanager
+    async def open(self) -> AsyncIterator[None]:
+        """Workers run while the block does."""
+        self.searchers.open()
+        self.desks.open()
+        sweeper = asyncio.create_task(self.jobs.sweep())
+        try:
+            yield
+        finally:
+            self.is_closing.set()
+            sweeper.cancel()
+            with suppress(asyncio.CancelledError):
+                await sweeper
+            await asyncio.gather(self.searchers.close(), self.desks.close())
+
+    async def at_desk(self, name: str, payload: Any) -> Any:
+        """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises."""
+        return await self.desks.run(Task(name, payload, self.limits.desk_seconds))
+
+    def job(self, name: str) -> Job | None:
+        """A job by its name."""
+        return self.jobs.get(name)
+
+
+def state_of(request: Request) -> ServerState:
+    """The state of the server that a request came to."""
+    state: ServerState = request.app.state.server
+    return state
+
+
+def address_of(request: Request) -> str:
+    """Where a request comes from."""
+    return "" if request.client is None else request.client.host

@@ -1,0 +1,78 @@
+/**
+ * The server, in the words of its API. Every failure is an {@link ApiError} with one plain sentence.
+ */
+
+/** What went wrong, in one sentence, and where in the drawing. */
+export class ApiError extends Error {
+  /**
+   * @param {string} message
+   * @param {number} status of HTTP; 0 when the server was not reached
+   * @param {{x: number, y: number}|null} place in mm in the drawing
+   */
+  constructor(message, status, place = null) {
+    super(message);
+    this.status = status;
+    this.place = place;
+  }
+}
+
+/**
+ * Ask the server.
+ * @param {string} path after /api/
+ * @param {RequestInit} [options]
+ * @returns {Promise<any>} what it answers; null for nothing
+ */
+export async function ask(path, options = {}) {
+  let response;
+  try {
+    response = await fetch(`/api/${path}`, options);
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
+    throw new ApiError("The server does not answer: see whether workhold serve still runs.", 0);
+  }
+  if (response.status === 204) return null;
+  const text = await response.text();
+  let answer = null;
+  try {
+    answer = JSON.parse(text);
+  } catch {
+    answer = null;
+  }
+  if (response.ok && answer !== null) return answer;
+  throw new ApiError(answer?.error ?? `The server answered ${response.status}.`, response.status, answer?.place ?? null);
+}
+
+/**
+ * Send JSON.
+ * @param {string} path
+ * @param {any} body
+ * @param {RequestInit} [options]
+ */
+export function send(path, body, options = {}) {
+  const headers = { "Content-Type": "application/json" };
+  return ask(path, { method: "POST", headers, body: JSON.stringify(body), ...options });
+}
+
+/**
+ * Send a file to be read as a part.
+ * @param {File} file
+ * @param {Object<string, string>} query unit, part, axis
+ */
+export function sendPart(file, query = {}) {
+  const search = new URLSearchParams(query).toString();
+  const headers = { "X-Filename": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" };
+  return ask(`parts${search ? `?${search}` : ""}`, { method: "POST", headers, body: file });
+}
+
+/**
+ * The address of a download of a fixture or of a whole search.
+ * @param {string} job
+ * @param {number|null} rank
+ * @param {string} what such as "sheet.pdf"
+ * @param {Object<string, string>} [query]
+ */
+export function downloadPath(job, rank, what, query = {}) {
+  const search = new URLSearchParams(query).toString();
+  const place = rank === null ? what : `fixtures/${rank}/${what}`;
+  return `/api/jobs/${encodeURIComponent(job)}/${place}${search ? `?${search}` : ""}`;
+}

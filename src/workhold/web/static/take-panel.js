@@ -1,0 +1,69 @@
+/**
+ * Take away: the setup sheet and the other files of the fixture shown, all fixtures as files, and a link to all of it.
+ */
+import { downloadPath } from "./api.js";
+import { byId, show } from "./dom.js";
+import { keep } from "./link.js";
+import { searching } from "./search.js";
+import { on, state } from "./state.js";
+
+/** @param {any} about what the server can do */
+export function takePanel(about) {
+  show(byId("take-step"), Boolean(about.step));
+  on(["part", "selected", "job", "unit", "force"], write);
+  byId("paper").addEventListener("change", write);
+  byId("print").addEventListener("click", () => print());
+  byId("copy-link").addEventListener("click", copyLink);
+}
+
+/** Point every link at what is shown, and name the page after it. */
+function write() {
+  const job = state.job?.job;
+  const rank = state.selected?.rank;
+  const name = [state.part?.name, rank && `fixture ${rank}`].filter(Boolean).join(", ");
+  document.title = name ? `${name} – workhold` : "workhold: every way to hold a part in a fixture vise";
+  byId("print-title").textContent = name;
+  if (!job || !rank) return;
+  const date = new Date();
+  const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
+  const sheet = { paper: /** @type {HTMLSelectElement} */ (byId("paper")).value, unit: state.unit, date: day };
+  if (state.force?.jaw) sheet.jaw_force = String(state.force.jaw);
+  // Files are made of a whole search only; until then a link leads nowhere.
+  const over = !searching();
+  const point = (id, path) => {
+    const link = byId(id);
+    if (over || id === "take-picture") link.setAttribute("href", path);
+    else link.removeAttribute("href");
+    link.setAttribute("aria-disabled", String(!link.hasAttribute("href")));
+    link.title = link.hasAttribute("href") ? "" : "When the search is over";
+  };
+  point("take-sheet", downloadPath(job, rank, "sheet.pdf", sheet));
+  point("take-svg", downloadPath(job, rank, "sheet.svg", sheet));
+  point("take-dxf", downloadPath(job, rank, "setup.dxf"));
+  point("take-step", downloadPath(job, rank, "setup.step"));
+  point("take-picture", downloadPath(job, rank, "picture.svg"));
+  point("take-json", downloadPath(job, null, "result.json"));
+  point("take-csv", downloadPath(job, null, "result.csv"));
+}
+
+/** Copy the page's address, which holds the whole state. */
+async function copyLink() {
+  await keep();
+  try {
+    await navigator.clipboard.writeText(location.href);
+    toast("Link copied. It restores all that you see.");
+  } catch {
+    toast("The address of this page is the link: copy it from the address bar.");
+  }
+}
+
+let timer = 0;
+
+/** Say something for a moment. */
+function toast(words) {
+  const box = byId("toast");
+  box.textContent = words;
+  show(box, true);
+  clearTimeout(timer);
+  timer = window.setTimeout(() => show(box, false), 2600);
+}

@@ -1,0 +1,256 @@
+"""What workers do. Every task takes its payload and an :class:`workhold.web.worker.Order`, and returns plain data or
+objects of the model.
+
+Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; what is returned needs none of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.model.explanation import Explanation
+from workhold.model.result import Result
+from workhold.model.workpiece import Workpiece
+from workhold.web.asked import Asked
+from workhold.web.paper import make_paper
+from workhold.web.worker import Order
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.vise import Vise
+    from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
+
+__all__ = ["TASKS", "Found", "Upload", "plain", "warm_up"]
+
+# Seconds between reports of progress.
+PAUSE = 0.1
+# Best fixtures told when loads are asked for over all of them.
+MOST_RESISTING = 10
+ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
+
+
+@frozen
+class Upload:
+    """A file with a part as it came.
+
+    Parameters
+    ----------
+    content : its bytes.
+    name : what the user calls it; never used as a path.
+    most_segments : the most segments of the part.
+    options : keyword arguments of :func:`workhold.files.load.read_workpiece`.
+    """
+
+    content: bytes
+    name: str
+    most_segments: int
+    options: Mapping[str, Any]
+
+
+@frozen(eq=False)
+class Found:
+    """The outcome of a search; ``left_out`` fixtures were found but not kept."""
+
+    result: Result
+    left_out: int
+
+
+def warm_up(kind: str) -> None:
+    """Load, and on a first run compile, what workers of a kind need: "search" or "desk"."""
+    from workhold.search.design import design
+
+    if kind == "search":
+        from workhold.model.vise import Vise
+
+        corners = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.2], [34.0, 25.0, 0.0], [0.0, 20.0, 0.0]]
+        design(Workpiece.from_loops("warm", [corners]), Vise(pitch=8, columns=2, peg_radius=2))
+        return
+    import workhold.drawing.sheet
+    import workhold.files.dxf
+    import workhold.files.svg
+    import workhold.statics.loads
+    import workhold.web.forms  # noqa: F401
+
+
+def search(payload: tuple[Asked, int], order: Order) -> Found:
+    """Search; reports are ("progress", fraction, found) and ("preview", result)."""
+    from workhold.search.design import design
+
+    asked, most = payload
+    last = 0.0
+
+    def progress(fraction: float, found: int) -> None:
+        nonlocal last
+        now = perf_counter()
+        if now >= last + PAUSE or fraction >= 1.0:
+            last = now
+            order.report(("progress", fraction, found))
+
+    result = design(
+        asked.workpiece,
+        asked.vise,
+        types=asked.types,
+        contact_margin=asked.contact_margin,
+        restrictions=asked.restrictions,
+        rank_by=asked.ranking,
+        tolerance=asked.tolerance,
+        loads=asked.loads,
+        progress=progress,
+        cancel=order.cancel,
+        preview=lambda result: order.report(("preview", plain(result))),
+    )
+    left_out = max(len(result) - most, 0)
+    if left_out or len(result.twins) > most:
+        result = evolve(result, table=result.table.take(slice(0, most)), twins=result.twins.take(slice(0, most)))
+    return Found(plain(result), left_out)
+
+
+def plain(result: Result) -> Result:
+    """A result whose workpiece carries nothing that can be computed again."""
+    return evolve(result, workpiece=Workpiece(result.workpiece.name, result.workpiece.loops))
+
+
+def explore(payload: tuple[Asked, ...], order: Order) -> None:
+    """Search in one vise after the other; reports are ("row", row) and ("progress", fraction, found)."""
+    from attrs import asdict
+
+    from workhold.search.exploring import explore
+    from workhold.web.answers import vise_fields
+
+    total = 0
+    for number, asked in enumerate(payload):
+        rows = explore(
+            asked.workpiece,
+            [(asked.title, asdict(asked.vise, recurse=False))],
+            cancel=order.cancel,
+            types=asked.types,
+            contact_margin=asked.contact_margin,
+            restrictions=asked.restrictions,
+            tolerance=asked.tolerance,
+            loads=asked.loads,
+        )
+        for row in rows:
+            total += row.fixtures
+            order.report(
+                (
+                    "row",
+                    {
+                        "title": row.name,
+                        "vise": vise_fields(asked.vise),
+                        "counts": dict(row.found),
+                        "best": dict(row.best),
+                        "note": row.reason,
+                    },
+                )
+            )
+            order.report(("progress", (number + 1) / len(payload), total))
+
+
+def explanation(asked: Asked, order: Order) -> Explanation:
+    """Why there is no fixture."""
+    from workhold.listing.problem import Problem
+    from workhold.search.explaining import explain
+
+    problem = Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
+    return explain(problem, asked.types)
+
+
+def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple[Asked, ...]:
+    """The searches of a request, after everything that can be known to be wrong with them is asked for."""
+    from workhold.listing.problem import Problem
+
+    form, most_segments = payload
+    searches = form.asked(most_segments)
+    if len(searches) == 1:
+        asked = searches[0]
+        Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
+    clean = Workpiece(searches[0].workpiece.name, searches[0].workpiece.loops)
+    return tuple(evolve(asked, workpiece=clean) for asked in searches)
+
+
+def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
+    """A part drawn by hand, as the page shows it."""
+    from workhold.web.answers import part_answer
+
+    form, most_segments = payload
+    return part_answer(form.workpiece(most_segments))
+
+
+def builtin_part(name: str, order: Order) -> dict[str, Any]:
+    """A part that comes with the program; the name is known to exist."""
+    from workhold.files.builtin import builtin_path
+    from workhold.files.load import read_workpiece
+    from workhold.web.answers import part_answer
+
+    path = builtin_path(name)
+    assert path is not None
+    return part_answer(read_workpiece(path).workpiece)
+
+
+def read_part(upload: Upload, order: Order) -> dict[str, Any]:
+    """The part of a file that was sent."""
+    from workhold.files.load import read_workpiece
+    from workhold.web.answers import part_answer
+    from workhold.web.forms import checked_part
+
+    stem, _, ending = upload.name.rpartition(".")
+    ending = f".{ending.lower()}" if f".{ending.lower()}" in ENDINGS else ""
+    with TemporaryDirectory(prefix="workhold-") as folder:
+        path = Path(folder) / f"part{ending}"
+        path.write_bytes(upload.content)
+        try:
+            loaded = read_workpiece(path, **upload.options)
+        except InputError as error:
+            raise InputError(str(error).replace(f"{path.name}: ", "", 1)) from error
+        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
+            raise InputError("The file is damaged, or holds what this program cannot read: save it anew.") from error
+    part = loaded.workpiece
+    checked_size = checked_part(part.name, part.loops, upload.most_segments)  # type: ignore[arg-type]
+    name = stem or upload.name if part.name == path.stem else part.name
+    return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
+
+
+def loads(payload: tuple[Fixture, Workpiece, Vise, LoadsForm], order: Order) -> list[dict[str, Any]]:
+    """What loads do to a fixture."""
+    from workhold.statics.loads import load_cases
+    from workhold.web.answers import load_case_answer
+
+    fixture, workpiece, vise, form = payload
+    asked = [load.load() for load in form.loads]
+    cases = load_cases(fixture, workpiece, vise, asked, form.jaw_force, form.friction)
+    return [load_case_answer(case) for case in cases]
+
+
+def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
+    """Ranks and load reactions of the fixtures that resist loads best."""
+    import numpy as np
+
+    from workhold.model.quality import LOAD_REACTION
+    from workhold.statics.quality import quality_of
+
+    result, form = payload
+    asked = [load.load() for load in form.loads]
+    reaction = quality_of(result.table, result.workpiece, result.vise, result.tolerance, asked)[:, LOAD_REACTION]
+    order_of = np.argsort(reaction, kind="stable")[:MOST_RESISTING]
+    return [(int(index) + 1, float(reaction[index])) for index in order_of if np.isfinite(reaction[index])]
+
+
+TASKS: dict[str, Callable[[Any, Order], Any]] = {
+    "search": search,
+    "explore": explore,
+    "explanation": explanation,
+    "check_job": check_job,
+    "check_part": check_part,
+    "builtin_part": builtin_part,
+    "read_part": read_part,
+    "loads": loads,
+    "resist": resist,
+    "paper": make_paper,
+}

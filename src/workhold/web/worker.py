@@ -1,0 +1,130 @@
+"""A worker process: does one task after the other that it gets through a pipe, within limits of memory and time.
+
+It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it says that it is
+ready. When the server goes, the pipe ends and so does the worker.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from queue import SimpleQueue
+from threading import Event, Thread
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+
+__all__ = ["CANCEL", "Order", "worker_main"]
+
+# The name of a message that asks a task to stop.
+CANCEL = "cancel"
+# Processor seconds beyond the wall time of a task, for each processor, before the system ends the process.
+SPARE_SECONDS = 30.0
+
+
+@frozen
+class Order:
+    """What a task may use of its process.
+
+    Parameters
+    ----------
+    report : sends something to the server before the task is done.
+    cancel : set when the task should stop.
+    seconds : how long it may take.
+    """
+
+    report: Callable[[Any], None]
+    cancel: Event
+    seconds: float
+
+
+def worker_main(connection: Connection, kind: str, memory_bytes: int) -> None:
+    """Work until the pipe ends; the process's main function.
+
+    Parameters
+    ----------
+    connection : messages in are (number, name of the task, seconds, payload); out are ("ready", 0, None), and for a task
+        ("report", number, value) any number of times, then one of ("done", number, value),
+        ("refused", number, sentence) and ("failed", number, sentence).
+    kind : of worker, see :func:`workhold.web.tasks.warm_up`.
+    memory_bytes : the most address space the process may take.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    limit_memory(memory_bytes)
+    orders: SimpleQueue[tuple[int, str, float, Any, Event]] = SimpleQueue()
+    Thread(target=listen, args=(connection, orders), daemon=True).start()
+    from workhold.web.tasks import TASKS, warm_up
+
+    warm_up(kind)
+    connection.send(("ready", 0, None))
+    while True:
+        number, name, seconds, payload, cancel = orders.get()
+        limit_processor(seconds)
+
+        def report(value: Any, number: int = number) -> None:
+            connection.send(("report", number, value))
+
+        try:
+            answer = ("done", number, TASKS[name](payload, Order(report, cancel, seconds)))
+        except InputError as error:
+            answer = ("refused", number, str(error))
+        except MemoryError:
+            answer = (
+                "failed",
+                number,
+                f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives.",
+            )
+        except OSError:
+            # The server is gone, or the disk is full; neither can be told from here.
+            traceback.print_exc(file=sys.stderr)
+            answer = ("failed", number, "The system refused something the work needs.")
+        except Exception:
+            traceback.print_exc(file=sys.stderr)
+            answer = ("failed", number, "The program has a mistake that this request brought out; please report it.")
+        del payload
+        connection.send(answer)
+
+
+def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
+    """Take messages from the server; ends the process when there is no server any more."""
+    newest, cancel = 0, Event()
+    while True:
+        try:
+            message = connection.recv()
+        except (EOFError, OSError):
+            os._exit(0)
+        if message[1] == CANCEL:
+            if message[0] == newest:
+                cancel.set()
+            continue
+        newest, cancel = message[0], Event()
+        orders.put((*message, cancel))
+
+
+def limit_memory(size: int) -> None:
+    """Let the process take no more address space than this, where the system can see to it."""
+    try:
+        import resource
+    except ImportError:
+        return
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def limit_processor(seconds: float) -> None:
+    """Let the system end the process if a task takes far more processor time than its wall time allows."""
+    try:
+        import resource
+    except ImportError:
+        return
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    spent = used.ru_utime + used.ru_stime
+    soft = int(spent + (os.cpu_count() or 1) * (seconds + SPARE_SECONDS)) + 1
+    resource.setrlimit(resource.RLIMIT_CPU, (soft, resource.getrlimit(resource.RLIMIT_CPU)[1]))
