@@ -25,20 +25,21 @@ from workhold.cli.options import (
 )
 from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
 from workhold.cli.search_options import (
-    RULING_OUT,
     AngleOption,
     AvoidOption,
+    ContactMarginOption,
     KeepOutOption,
     LoadOption,
     LoadsOption,
     RankByOption,
     RestrictionWords,
     ToleranceOption,
+    asked_contact_margin,
     asked_loads,
     asked_ranking,
     asked_tolerance,
 )
-from workhold.cli.values import choice, counting_number, length, length_unit, whole_number
+from workhold.cli.values import choice, counting_number, length_unit, whole_number
 from workhold.cli.vise_options import (
     BlockedOption,
     BodyRadiusOption,
@@ -53,7 +54,6 @@ from workhold.cli.vise_options import (
     ViseOption,
     ViseWords,
 )
-from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
@@ -86,14 +86,7 @@ def design(
     avoid: AvoidOption = None,
     keep_out: KeepOutOption = None,
     angle: AngleOption = None,
-    contact_margin: Annotated[
-        str,
-        typer.Option(
-            metavar="LENGTH",
-            help="Smallest distance from a contact to the end of its face.",
-            rich_help_panel=RULING_OUT,
-        ),
-    ] = "0",
+    contact_margin: ContactMarginOption = "0",
     load: LoadOption = None,
     loads: LoadsOption = None,
     rank_by: RankByOption = None,
@@ -169,9 +162,7 @@ def design(
     vise_words = ViseWords(
         vise, pitch, columns, peg_radius, body_radius, rows, blocked, min_gap, min_opening, max_opening, row_offset
     )
-    margin = length("--contact-margin", contact_margin, shown)
-    if margin < 0:
-        raise InputError(f"--contact-margin {contact_margin} is negative: give 0 or more.")
+    margin = asked_contact_margin(contact_margin, shown)
     kept = counting_number("--best", best, "fixtures to keep")
     workers = counting_number("--threads", threads, "threads")
     engine = choice("--engine", engine, ENGINES)

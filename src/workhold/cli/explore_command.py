@@ -24,15 +24,16 @@ from workhold.cli.options import (
 )
 from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
 from workhold.cli.search_options import (
-    RULING_OUT,
     AngleOption,
     AvoidOption,
+    ContactMarginOption,
     KeepOutOption,
     LoadOption,
     LoadsOption,
     RankByOption,
     RestrictionWords,
     ToleranceOption,
+    asked_contact_margin,
     asked_loads,
     asked_ranking,
     asked_tolerance,
@@ -75,14 +76,7 @@ def explore(
     avoid: AvoidOption = None,
     keep_out: KeepOutOption = None,
     angle: AngleOption = None,
-    contact_margin: Annotated[
-        str,
-        typer.Option(
-            metavar="LENGTH",
-            help="Smallest distance from a contact to the end of its face.",
-            rich_help_panel=RULING_OUT,
-        ),
-    ] = "0",
+    contact_margin: ContactMarginOption = "0",
     load: LoadOption = None,
     loads: LoadsOption = None,
     rank_by: RankByOption = None,
@@ -108,7 +102,7 @@ def explore(
 
     shown = length_unit(unit)
     vises, tolerances = asked_vises(vise, pitch, columns, peg_radius, shown)
-    margin = length("--contact-margin", contact_margin, shown)
+    margin = asked_contact_margin(contact_margin, shown)
     restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
     ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
     if tolerance is not None:
@@ -116,10 +110,8 @@ def explore(
     if out is not None:
         refuse_unwritable(out)
     from workhold.kernels.compiling import is_first_run
-    from workhold.listing.problem import check_options
     from workhold.listing.ranking import preference_of
 
-    check_options(("I", "II"), margin)
     preference = preference_of(ranking, asked_tolerance(tolerance, shown, None), forces)
     workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
     refuse_unknown_faces(workpiece, restrictions)
@@ -247,7 +239,7 @@ def refuse_unknown_faces(workpiece: Any, restrictions: Any) -> None:
 
 def print_explored(found: list[Explored], ranking: tuple[str, ...], unit: Unit) -> None:
     """Write the table and say which vise is best."""
-    from workhold.cli.tables import Table, figure_number, heading, print_tables
+    from workhold.cli.tables import Table, figure_text, heading, print_tables
     from workhold.model.quality import FIGURES
     from workhold.search.exploring import best_of
 
@@ -257,7 +249,7 @@ def print_explored(found: list[Explored], ranking: tuple[str, ...], unit: Unit) 
     )
     for item in found:
         counts = (f"{count:,}" for count in (item.fixtures, item.found["I"], item.found["II"]))
-        values = (figure_number(f, item.best[f.key], unit) if f.key in item.best else "-" for f in figures)
+        values = (figure_text(f, item.best[f.key], unit) if f.key in item.best else "-" for f in figures)
         table.add_row(item.name, *counts, *values)
     print_tables(table)
     for item in found:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AngleOption",
     "AvoidOption",
+    "ContactMarginOption",
     "FrictionOption",
     "JawForceOption",
     "KeepOutOption",
@@ -29,6 +30,7 @@ __all__ = [
     "RankByOption",
     "RestrictionWords",
     "ToleranceOption",
+    "asked_contact_margin",
     "asked_loads",
     "asked_ranking",
     "asked_tolerance",
@@ -58,6 +60,10 @@ KeepOutOption = Annotated[
 AngleOption = Annotated[
     list[str] | None,
     option(RULING_OUT, metavar="FROM..TO", help="Angles the part may lie at, in degrees: -10..10. May be repeated."),
+]
+ContactMarginOption = Annotated[
+    str,
+    option(RULING_OUT, metavar="LENGTH", help="Smallest distance from a contact to the end of its face."),
 ]
 LoadOption = Annotated[
     list[str] | None,
@@ -161,6 +167,20 @@ def angles(text: str) -> tuple[float, float]:
     if not (isfinite(least) and isfinite(most)):
         raise InputError(f"--angle {text!r} is no range of angles: give it in degrees, such as -10..10.")
     return least, most
+
+
+def asked_contact_margin(text: str, unit: Unit) -> float:
+    """The contact margin in mm.
+
+    Raises
+    ------
+    InputError
+        For words that are no length, and below zero.
+    """
+    margin = length("--contact-margin", text, unit)
+    if margin < 0:
+        raise InputError(f"--contact-margin {text} is negative: give 0 or more.")
+    return margin
 
 
 def asked_tolerance(text: str | None, unit: Unit, of_vise: Tolerance | None) -> Tolerance:

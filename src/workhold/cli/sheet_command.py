@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from workhold.cli.options import ShownUnitOption
+from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
-from workhold.cli.values import choice, length_unit, positive_number, whole_number
+from workhold.cli.values import choice, length_unit, positive_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.model.fixture import Fixture
     from workhold.model.load import Load
     from workhold.model.result import Result
 
@@ -29,10 +29,8 @@ ON_PAPER = "On the paper"
 
 
 def sheet(
-    result_file: Annotated[
-        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
-    ],
-    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    result_file: ResultArgument,
+    number: RankArgument,
     out: Annotated[
         str,
         typer.Option(
@@ -67,9 +65,7 @@ def sheet(
     """
     from workhold.files.atomic import refuse_unwritable
 
-    rank = whole_number("fixture", number)
-    if rank < 1:
-        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    rank = asked_rank(number)
     path = Path(out)
     ending = path.suffix.lower()
     if ending not in PAPER_ENDINGS + MODEL_ENDINGS:
@@ -87,11 +83,7 @@ def sheet(
     }
     given = asked_loads(load, loads, shown_unit)
     refuse_unwritable(path)
-    from workhold.files.result_reader import read_result
-
-    result = read_result(result_file)
-    if rank > len(result):
-        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    result = result_with(result_file, rank)
     if ending in MODEL_ENDINGS:
         write_model(path, ending, result, rank)
     else:
@@ -138,47 +130,18 @@ def write_paper(
     """Write the sheet."""
     from hashlib import sha256
 
-    from workhold import __version__
     from workhold.drawing.render import svg_to_png
+    from workhold.drawing.result_sheet import result_sheet
     from workhold.drawing.scene import stacked
-    from workhold.drawing.sheet import draw_sheet
-    from workhold.drawing.sheet_details import SheetDetails
-    from workhold.drawing.sheet_facts import same_holes
     from workhold.files.atomic import write_bytes
-    from workhold.statics.loads import load_cases
 
-    fixture = with_quality(result, rank, loads)
-    jaw_force, friction = settings["jaw_force"], settings["friction"]
-    details = SheetDetails(
-        number=rank,
-        count=len(result),
-        result_hash=sha256(Path(result_file).read_bytes()).hexdigest(),
-        version=__version__,
-        tolerance=result.tolerance,
-        loads=load_cases(fixture, result.workpiece, result.vise, loads, jaw_force, friction),
-        others=same_holes(result.table, rank - 1, result.twins),
-        **settings,
-    )
-    pages = draw_sheet(fixture, result.workpiece, result.vise, details)
+    digest = sha256(Path(result_file).read_bytes()).hexdigest()
+    pages = result_sheet(result, rank, result_hash=digest, loads=loads, **settings)
     if ending == ".pdf":
         from workhold.drawing.pdf import svg_to_pdf
 
-        write_bytes(path, svg_to_pdf(pages, details.day))
+        write_bytes(path, svg_to_pdf(pages, settings["day"]))
     elif ending == ".svg":
         write_bytes(path, stacked(pages).encode("utf-8"))
     else:
         write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))
-
-
-def with_quality(result: Result, rank: int, loads: tuple[Load, ...]) -> Fixture:
-    """A fixture of a result with all figures of quality that can be known, for the loads of the sheet."""
-    import numpy as np
-    from attrs import evolve
-
-    from workhold.model.quality import FIGURES
-    from workhold.statics.quality import quality_of
-
-    row = result.table.take(slice(rank - 1, rank))
-    figures = quality_of(row, result.workpiece, result.vise, result.tolerance, loads)[0]
-    known = {figure.key: float(value) for figure, value in zip(FIGURES, figures, strict=True) if not np.isnan(value)}
-    return evolve(result[rank - 1], quality=known)

@@ -8,18 +8,16 @@ from typing import Annotated
 import typer
 
 from workhold.cli.options import ShownUnitOption
+from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
-from workhold.cli.values import length_unit, picture_ending, positive_number, whole_number
-from workhold.errors import InputError
+from workhold.cli.values import length_unit, picture_ending, positive_number
 
 __all__ = ["show"]
 
 
 def show(
-    result_file: Annotated[
-        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
-    ],
-    number: Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")],
+    result_file: ResultArgument,
+    number: RankArgument,
     draw: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
     ] = None,
@@ -37,11 +35,8 @@ def show(
     Example: workhold show part.json 1 --draw setup.png
     """
     from workhold.files.atomic import refuse_unwritable, write_bytes
-    from workhold.files.result_reader import read_result
 
-    rank = whole_number("fixture", number)
-    if rank < 1:
-        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    rank = asked_rank(number)
     shown_unit = length_unit(unit)
     force = positive_number("--jaw-force", jaw_force)
     coefficient = positive_number("--friction", friction)
@@ -51,9 +46,7 @@ def show(
     if picture is not None:
         ending = picture_ending(picture)
         refuse_unwritable(picture)
-    result = read_result(result_file)
-    if rank > len(result):
-        raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+    result = result_with(result_file, rank)
     fixture = result[rank - 1]
 
     from workhold.cli.load_tables import load_tables

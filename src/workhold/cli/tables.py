@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "counts_sentence",
     "face_table",
-    "figure_number",
+    "figure_text",
     "fixture_tables",
     "heading",
     "Table",
@@ -161,7 +161,7 @@ def result_table(result: Result, count: int, unit: Unit = MILLIMETRE) -> Table:
             holes["right"],
             unit.number(fixture.jaw_separation),
             f"{fixture.pose.theta_deg:.3f}",
-            *(figure_number(figure, fixture.quality[figure.key], unit) for figure in figures),
+            *(figure_text(figure, fixture.quality[figure.key], unit) for figure in figures),
         )
     return table
 
@@ -182,7 +182,7 @@ def heading(figure: Figure, unit: Unit) -> str:
     return f"{figure.words} {of}".rstrip()
 
 
-def figure_number(figure: Figure, value: float, unit: Unit) -> str:
+def figure_text(figure: Figure, value: float, unit: Unit) -> str:
     """A figure's value as a number of its unit."""
     if figure.unit == "mm":
         return unit.number(value, unit.decimals + 1)
@@ -198,7 +198,7 @@ def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
         if figure.key in fixture.quality:
             of = unit.abbreviation if figure.unit == "mm" else figure.unit
             better = "more" if figure.more_is_better else "less"
-            value = figure_number(figure, fixture.quality[figure.key], unit)
+            value = figure_text(figure, fixture.quality[figure.key], unit)
             table.add_row(figure.words, value, of, better, figure.meaning)
     return table
 

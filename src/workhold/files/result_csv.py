@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
-from workhold.files.result_file import fixture_rows, known_figures
+from workhold.files.result_file import TYPE_JAWS, TYPE_NAMES, fixture_rows, known_figures
 from workhold.model.holes import column_letters
 from workhold.model.result import Result
 
@@ -16,8 +16,6 @@ __all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
 POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y", "jaw_separation")
-JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
-NAMES = {1: "I", 2: "II"}
 
 
 def write_result_csv(result: Result, path: str | Path) -> None:
@@ -52,9 +50,9 @@ def result_csv_text(result: Result) -> Iterator[str]:
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
             theta, x, y, separation, *quality = row[24:]
-            fields = [str(number), NAMES[kind], repr(theta), repr(x), repr(y), repr(separation)]
+            fields = [str(number), TYPE_NAMES[kind], repr(theta), repr(x), repr(y), repr(separation)]
             fields += [f"{value:.12g}" for value in quality]
-            for peg, jaw in enumerate(JAWS[kind]):
+            for peg, jaw in enumerate(TYPE_JAWS[kind]):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
                 hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"
                 fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]

@@ -23,16 +23,19 @@ from workhold.files.atomic import text_file
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import FixtureTable, Result, hole_positions
 from workhold.model.vise import Vise
 
 __all__ = [
     "FORMAT",
+    "TYPE_JAWS",
+    "TYPE_NAMES",
     "fixture_rows",
     "known_figures",
     "load_entry",
     "proof_entry",
     "result_text",
+    "vise_entry",
     "write_result",
     "write_result_to",
 ]
@@ -41,6 +44,10 @@ FORMAT = "workhold-result/1"
 BLOCK = 4096
 LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10
+
+# Of the types as a table has them: their names, and the jaws of their pegs.
+TYPE_NAMES = {1: "I", 2: "II"}
+TYPE_JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
 
 PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
 POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r'
@@ -86,10 +93,7 @@ def fixture_lines(table: FixtureTable, vise: Vise) -> Iterator[str]:
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     figures = known_figures(table)
-    templates = {
-        1: fixture_template("I", ("left", "left", "right", "right"), figures),
-        2: fixture_template("II", ("left", "left", "left", "right"), figures),
-    }
+    templates = {kind: fixture_template(TYPE_NAMES[kind], TYPE_JAWS[kind], figures) for kind in TYPE_NAMES}
     for kind, numbers in fixture_rows(table, vise):
         yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
@@ -97,7 +101,6 @@ def fixture_lines(table: FixtureTable, vise: Vise) -> Iterator[str]:
 
 def head(result: Result) -> dict[str, Any]:
     """Everything in the file but the fixtures, at full precision."""
-    vise = result.vise
     return {
         "format": FORMAT,
         "workpiece": {
@@ -105,17 +108,7 @@ def head(result: Result) -> dict[str, Any]:
             "units": "mm",
             "loops": [(loop + 0.0).tolist() for loop in result.workpiece.loops],
         },
-        "vise": {
-            "pitch": list(vise.pitch),
-            "columns": int(vise.columns),
-            "rows": None if vise.rows is None else int(vise.rows),
-            "peg_radius": vise.peg_radius,
-            "min_gap": vise.min_gap,
-            "max_opening": None if vise.max_opening is None else float(vise.max_opening),
-            "row_offset": vise.row_offset,
-            "body_radius": vise.body_radius,
-            "blocked": [holes.name for holes in vise.blocked],
-        },
+        "vise": vise_entry(result.vise),
         "contact_margin": float(result.contact_margin),
         "restrictions": {
             "avoid": [int(face) for face in result.restrictions.avoid],
@@ -132,6 +125,21 @@ def head(result: Result) -> dict[str, Any]:
         "notes": list(result.notes),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def vise_entry(vise: Vise) -> dict[str, Any]:
+    """A vise as it is written: lengths in mm."""
+    return {
+        "pitch": list(vise.pitch),
+        "columns": int(vise.columns),
+        "rows": None if vise.rows is None else int(vise.rows),
+        "peg_radius": vise.peg_radius,
+        "min_gap": vise.min_gap,
+        "max_opening": None if vise.max_opening is None else float(vise.max_opening),
+        "row_offset": vise.row_offset,
+        "body_radius": vise.body_radius,
+        "blocked": [holes.name for holes in vise.blocked],
+    }
 
 
 def load_entry(load: Load) -> dict[str, Any]:
@@ -189,7 +197,8 @@ def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], I
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         separation = rounded(block.jaw_separation, LENGTH_STEPS)
-        x, y = hole_positions(block, vise, separation)
+        holes = hole_positions(vise, block.jaw, block.column, block.row, separation)
+        x, y = (rounded(places, LENGTH_STEPS) for places in holes)
         columns: list[list[Any]] = []
         for peg in range(4):
             numbers = (block.column, block.row, x, y, block.segment, block.force)
@@ -200,17 +209,6 @@ def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], I
         figures = [block.quality[:, number] for number in known]
         columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, *figures)]
         yield block.type.tolist(), zip(*columns, strict=True)
-
-
-def hole_positions(
-    table: FixtureTable, vise: Vise, separation: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rounded centres of the pegs' holes in the vise frame, two arrays (N, 4)."""
-    right = table.jaw == 1
-    shift = (vise.columns - 1) * vise.pitch[0] + separation[:, None]
-    x = table.column * vise.pitch[0] + np.where(right, shift, 0.0)
-    y = table.row * vise.pitch[1] + np.where(right, vise.row_offset, 0.0)
-    return rounded(x, LENGTH_STEPS), rounded(y, LENGTH_STEPS)
 
 
 def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:

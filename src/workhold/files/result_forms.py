@@ -14,7 +14,7 @@ from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 
-__all__ = ["Head", "ProofPart"]
+__all__ = ["Head", "ProofPart", "vise_of"]
 
 
 class Part(BaseModel):
@@ -52,8 +52,20 @@ class VisePart(Part):
         InputError
             When there is no such vise.
         """
-        values = self.model_dump() | {"pitch": (self.pitch[0], self.pitch[1])}
-        return Vise(**values | {"blocked": [holes_named(name) for name in self.blocked]})
+        return vise_of(self.model_dump())
+
+
+def vise_of(values: dict[str, Any]) -> Vise:
+    """The vise of the values of a file or a request, whose blocked holes are names.
+
+    Raises
+    ------
+    InputError
+        When there is no such vise.
+    """
+    return Vise(
+        **values | {"pitch": tuple(values["pitch"]), "blocked": [holes_named(name) for name in values["blocked"]]}
+    )
 
 
 class RestrictionsPart(Part):

@@ -22,7 +22,7 @@ from workhold.files.result_forms import Head, ProofPart
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import FixtureTable, Result, hole_positions
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -301,9 +301,7 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
         refuse(row >= vise.rows, f"has a peg in a row beyond the vise's {vise.rows}")
     faces = [face.number for face in workpiece.faces]
     refuse(~np.isin(segment, faces), "has a peg on a segment that does not name a face of the workpiece")
-    right = jaw == 1
-    hole_x = column * vise.pitch[0] + right * ((vise.columns - 1) * vise.pitch[0] + separation[:, None])
-    hole_y = row * vise.pitch[1] + right * vise.row_offset
+    hole_x, hole_y = hole_positions(vise, jaw, column, row, separation)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
     refuse(force <= 0, "has a peg whose force is not positive")

@@ -18,7 +18,7 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "unknown_quality"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "hole_positions", "unknown_quality"]
 
 LEFT, RIGHT = 0, 1
 
@@ -166,6 +166,20 @@ def hole_position(vise: Vise, jaw: int, column: int, row: int, jaw_separation: f
     if jaw == RIGHT:
         x += (vise.columns - 1) * vise.pitch[0] + jaw_separation
         y += vise.row_offset
+    return x, y
+
+
+def hole_positions(
+    vise: Vise,
+    jaw: NDArray[Any],
+    column: NDArray[Any],
+    row: NDArray[Any],
+    jaw_separation: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """x and y (N, 4) in mm of the holes of N fixtures, see :func:`hole_position`; jaw, column and row are (N, 4)."""
+    across = (vise.columns - 1) * vise.pitch[0] + jaw_separation[:, None]
+    x = column * vise.pitch[0] + np.where(jaw == RIGHT, across, 0.0)
+    y = row * vise.pitch[1] + np.where(jaw == RIGHT, vise.row_offset, 0.0)
     return x, y
 
 

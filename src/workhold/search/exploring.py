@@ -10,7 +10,7 @@ import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, figure_number
 from workhold.model.result import FixtureTable
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -95,7 +95,9 @@ def best_values(table: FixtureTable) -> dict[str, float]:
 
 def best_of(explored: Sequence[Explored], key: str) -> Explored | None:
     """The vise with the best value of a figure; None when no vise has a fixture."""
-    figure = next(figure for figure in FIGURES if figure.key == key)
+    number = figure_number(key)
+    assert number is not None
+    figure = FIGURES[number]
     able = [item for item in explored if key in item.best]
     if not able:
         return None

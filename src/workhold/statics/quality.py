@@ -7,21 +7,23 @@ from concurrent.futures import ThreadPoolExecutor
 from math import cos, pi
 
 import numpy as np
+from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Arc
 from workhold.kernels.quality import figures
 from workhold.kernels.reactions import LOAD_LENGTH
+from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable
+from workhold.model.result import FixtureTable, Result, fixture_at, hole_positions
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.stances import Touched
 
-__all__ = ["load_rows", "quality_of"]
+__all__ = ["load_rows", "measured_fixture", "quality_of"]
 
 Array = NDArray[np.float64]
 # Fixtures looked at together; what is needed for them beside the table and the figures takes 3 MB.
@@ -65,7 +67,8 @@ def quality_of(
         pose = np.column_stack([block.theta, block.position])
         faces = block.segment.astype(np.int64)
         right = block.jaw.astype(np.float64)
-        stances = known.stances(peg_centers(block, vise), pose, right, faces)
+        x, y = hole_positions(vise, block.jaw, block.column, block.row, block.jaw_separation)
+        stances = known.stances(np.stack([x, y], axis=2), pose, right, faces)
         figures(
             stances.points,
             stances.normals,
@@ -90,12 +93,12 @@ def quality_of(
     return out
 
 
-def peg_centers(table: FixtureTable, vise: Vise) -> Array:
-    """Peg centres (N, 4, 2) in mm in the vise frame, see ``model.result.hole_position``."""
-    across = (vise.columns - 1) * vise.pitch[0] + table.jaw_separation[:, None]
-    x = table.column * vise.pitch[0] + table.jaw * across
-    y = table.row * vise.pitch[1] + table.jaw * vise.row_offset
-    return np.stack([x, y], axis=2)
+def measured_fixture(result: Result, index: int, loads: Sequence[Load] | None = None) -> Fixture:
+    """One fixture of a result with all figures of quality that can be known, for its own loads or for others."""
+    row = result.table.take(slice(index, index + 1))
+    asked = result.loads if loads is None else loads
+    quality = quality_of(row, result.workpiece, result.vise, result.tolerance, asked)
+    return fixture_at(evolve(row, quality=quality), result.vise, 0)
 
 
 def extremes(workpiece: Workpiece) -> tuple[Array, Array]:

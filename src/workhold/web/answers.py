@@ -8,8 +8,9 @@ from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from attrs import evolve
 
-from workhold.files.result_file import fixture_rows, load_entry, proof_entry
+from workhold.files.result_file import TYPE_JAWS, TYPE_NAMES, fixture_rows, load_entry, proof_entry, vise_entry
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
@@ -35,11 +36,8 @@ __all__ = [
     "proof_answer",
     "rows_answer",
     "vise_answer",
-    "vise_fields",
 ]
 
-JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
-NAMES = {1: "I", 2: "II"}
 # Undecided candidates told of a proof; the result file has them all.
 MOST_UNDECIDED = 50
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
@@ -100,24 +98,9 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
-def vise_fields(vise: Vise) -> dict[str, Any]:
-    """A vise as requests have it."""
-    return {
-        "pitch": list(vise.pitch),
-        "columns": vise.columns,
-        "peg_radius": vise.peg_radius,
-        "rows": vise.rows,
-        "min_gap": vise.min_gap,
-        "max_opening": vise.max_opening,
-        "row_offset": vise.row_offset,
-        "body_radius": vise.body_radius,
-        "blocked": [holes.name for holes in vise.blocked],
-    }
-
-
 def vise_answer(loaded: LoadedVise) -> dict[str, Any]:
     """A vise that comes with the program."""
-    given = vise_fields(loaded.vise)
+    given = vise_entry(loaded.vise)
     return {
         "name": loaded.name,
         "title": loaded.title,
@@ -147,7 +130,7 @@ def rows_answer(table: FixtureTable, vise: Vise, ranks: Iterable[int]) -> list[d
     out: list[dict[str, Any]] = []
     quality, numbers = table.quality.tolist(), iter(ranks)
     # Figures are told one by one below, so the rows are made without them.
-    bare = FixtureTable(**{a: getattr(table, a) for a in COLUMNS}, quality=np.full((len(table), len(FIGURES)), np.nan))
+    bare = evolve(table, quality=np.full_like(table.quality, np.nan))
     for kinds, rows in fixture_rows(bare, vise):
         for kind, row in zip(kinds, rows, strict=True):
             pegs = [row[6 * peg : 6 * peg + 6] for peg in range(4)]
@@ -155,8 +138,8 @@ def rows_answer(table: FixtureTable, vise: Vise, ranks: Iterable[int]) -> list[d
             out.append(
                 {
                     "rank": next(numbers),
-                    "type": NAMES[kind],
-                    "holes": [hole_name(jaw, peg[0], peg[1]) for jaw, peg in zip(JAWS[kind], pegs, strict=True)],
+                    "type": TYPE_NAMES[kind],
+                    "holes": [hole_name(jaw, peg[0], peg[1]) for jaw, peg in zip(TYPE_JAWS[kind], pegs, strict=True)],
                     "faces": [peg[4] for peg in pegs],
                     "theta_deg": row[24],
                     "x": row[25],
@@ -168,9 +151,6 @@ def rows_answer(table: FixtureTable, vise: Vise, ranks: Iterable[int]) -> list[d
                 }
             )
     return out
-
-
-COLUMNS = [name.name for name in FixtureTable.__attrs_attrs__ if name.name != "quality"]
 
 
 def fixture_answer(fixture: Fixture) -> dict[str, Any]:

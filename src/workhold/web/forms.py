@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
-from workhold.model.holes import holes_named
+from workhold.files.result_forms import vise_of
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
@@ -96,8 +96,7 @@ class ViseForm(Form):
         InputError
             When there is no such vise.
         """
-        values = self.model_dump() | {"pitch": (self.pitch[0], self.pitch[1])}
-        return Vise(**values | {"blocked": [holes_named(name) for name in self.blocked]})
+        return vise_of(self.model_dump())
 
 
 class RestrictionsForm(Form):

@@ -13,11 +13,11 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from workhold.model.result import FixtureTable, Result
 from workhold.web.answers import explanation_answer, rows_answer
+from workhold.web.asked import plain
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
 from workhold.web.selection import Selection, angle_range
 from workhold.web.state import ServerState, address_of, state_of
-from workhold.web.tasks import plain
 
 __all__ = ["attachment", "found_job", "result_of_job", "router"]
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import date
 from hashlib import sha256
-from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.result import FixtureTable, Result
-from workhold.model.workpiece import Workpiece
+from workhold.web.asked import plain
 from workhold.web.worker import Order
 
 __all__ = ["KINDS", "PaperOrder", "has_step", "make_paper"]
@@ -61,7 +59,7 @@ class PaperOrder:
     @classmethod
     def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
         """An order that carries no more of a result than is needed."""
-        small = evolve(result, workpiece=Workpiece(result.workpiece.name, result.workpiece.loops))
+        small = plain(result)
         if not kind.startswith("sheet"):
             small = evolve(small, table=result.table.take(slice(rank - 1, rank)), twins=FixtureTable.empty())
         return cls(kind, small, rank, len(result), *options)
@@ -74,7 +72,7 @@ class PaperOrder:
 
 def has_step() -> bool:
     """Whether STEP files can be read and written."""
-    return find_spec("OCP") is not None and find_spec("workhold.files.setup_step") is not None
+    return find_spec("OCP") is not None
 
 
 def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
@@ -84,37 +82,26 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     """The setup sheet."""
-    from workhold import __version__
+    from workhold.drawing.result_sheet import result_sheet
     from workhold.drawing.scene import stacked
-    from workhold.drawing.sheet import draw_sheet
-    from workhold.drawing.sheet_details import SheetDetails
-    from workhold.drawing.sheet_facts import same_holes
     from workhold.model.units import unit_named
-    from workhold.statics.loads import load_cases
 
-    result = order.result
-    fixture = with_quality(result, order.rank)
-    workpiece, vise = result.workpiece, result.vise
-    details = SheetDetails(
-        number=order.rank,
-        count=order.count,
+    digest = order.result_hash or hash_of(order.result)
+    pages = result_sheet(
+        order.result,
+        order.rank,
+        result_hash=digest,
         day=order.day,
-        result_hash=order.result_hash or hash_of(result),
-        version=__version__,
         paper=order.paper,
         unit=unit_named(order.unit),
-        tolerance=result.tolerance,
         jaw_force=order.jaw_force,
         friction=order.friction,
-        loads=load_cases(fixture, workpiece, vise, result.loads, order.jaw_force, order.friction),
-        others=same_holes(result.table, order.rank - 1, result.twins),
     )
-    pages = draw_sheet(fixture, workpiece, vise, details)
     if order.kind == "sheet.svg":
-        return stacked(pages).encode("utf-8"), details.result_hash
+        return stacked(pages).encode("utf-8"), digest
     from workhold.drawing.pdf import svg_to_pdf
 
-    return svg_to_pdf(pages, details.day), details.result_hash
+    return svg_to_pdf(pages, order.day), digest
 
 
 def hash_of(result: Result) -> str:
@@ -125,17 +112,6 @@ def hash_of(result: Result) -> str:
     for text in result_text(result):
         digest.update(text.encode("utf-8"))
     return digest.hexdigest()
-
-
-def with_quality(result: Result, rank: int) -> Fixture:
-    """A fixture with all figures of quality that can be known for the loads of the result."""
-    from workhold.model.quality import FIGURES
-    from workhold.statics.quality import quality_of
-
-    row = result.table.take(slice(rank - 1, rank))
-    figures = quality_of(row, result.workpiece, result.vise, result.tolerance, result.loads)[0]
-    known = {figure.key: float(value) for figure, value in zip(FIGURES, figures, strict=True) if not np.isnan(value)}
-    return evolve(result[rank - 1], quality=known)
 
 
 def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -150,10 +126,10 @@ def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as STEP."""
     if not has_step():
         raise InputError("this server writes no STEP files: take the DXF, or install workhold with the extra step.")
-    module = import_module("workhold.files.setup_step")
+    from workhold.files.setup_step import setup_step
+
     result = order.result
-    content: bytes = module.setup_step(order.fixture, result.workpiece, result.vise)
-    return content, None
+    return setup_step(order.fixture, result.workpiece, result.vise), None
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:

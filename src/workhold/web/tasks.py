@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.model.explanation import Explanation
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.web.asked import Asked
+from workhold.web.asked import Asked, plain, plain_part
 from workhold.web.paper import make_paper
 from workhold.web.worker import Order
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from workhold.model.vise import Vise
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
-__all__ = ["TASKS", "Found", "Upload", "plain", "warm_up"]
+__all__ = ["TASKS", "Found", "Upload", "warm_up"]
 
 # Seconds between reports of progress.
 PAUSE = 0.1
@@ -112,17 +112,12 @@ def search(payload: tuple[Asked, int], order: Order) -> Found:
     return Found(plain(result), left_out)
 
 
-def plain(result: Result) -> Result:
-    """A result whose workpiece carries nothing that can be computed again."""
-    return evolve(result, workpiece=Workpiece(result.workpiece.name, result.workpiece.loops))
-
-
 def explore(payload: tuple[Asked, ...], order: Order) -> None:
     """Search in one vise after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from attrs import asdict
 
+    from workhold.files.result_file import vise_entry
     from workhold.search.exploring import explore
-    from workhold.web.answers import vise_fields
 
     total = 0
     for number, asked in enumerate(payload):
@@ -143,7 +138,7 @@ def explore(payload: tuple[Asked, ...], order: Order) -> None:
                     "row",
                     {
                         "title": row.name,
-                        "vise": vise_fields(asked.vise),
+                        "vise": vise_entry(asked.vise),
                         "counts": dict(row.found),
                         "best": dict(row.best),
                         "note": row.reason,
@@ -171,7 +166,7 @@ def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple
     if len(searches) == 1:
         asked = searches[0]
         Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
-    clean = Workpiece(searches[0].workpiece.name, searches[0].workpiece.loops)
+    clean = plain_part(searches[0].workpiece)
     return tuple(evolve(asked, workpiece=clean) for asked in searches)
 
 
