@@ -78,7 +78,7 @@ def face_count(path: str) -> int:
 
 def listed_in(path: str) -> dict[str, bool | int]:
     """Task: whether a result is complete, and how many fixtures it lists."""
-    from workhold.files.result_reader import read_result
+    from workhold.files.result.reader import read_result
 
     result = read_result(path)
     return {"complete": result.complete, "listed": len(result)}

@@ -29,7 +29,7 @@ from strategies import random_outline  # noqa: E402
 from workhold import Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import design_by_algebra  # noqa: E402
 from workhold.algebra.table_two import table_two  # noqa: E402
-from workhold.files.builtin import builtin_parts  # noqa: E402
+from workhold.files.part.builtin import builtin_parts  # noqa: E402
 
 RANDOM_PARTS = 200
 # Differing fixtures shown of each case.

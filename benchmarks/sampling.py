@@ -3,7 +3,7 @@
 Every chord's height is computed at N orientations over half a turn, NaN where the chord does not exist. Two chords touch
 together where their heights differ by a whole number of row pitches. Sampling looks for such a difference passed between
 two neighbouring orientations at which both chords exist, and bisects. It is blind to a pair of roots between two samples,
-and to roots between the last sample and the end of a curve. Fixtures that rest on an upright (two pegs of one jaw on
+and to roots between the last sample and the end of a curve. Fixtures that rest on a sliding pair (two pegs of one jaw on
 parallel lines) have no curve and are left out on both sides.
 """
 
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import workhold
 from workhold import Result, Vise
-from workhold.listing.problem import Problem
+from workhold.contact.problem import Problem
 
 Array = NDArray[np.float64]
 Key = tuple[tuple[int, int, int, int], ...]
@@ -74,7 +74,7 @@ class Chords:
 
 
 def same_lines(rows: Array, a: int, b: int) -> bool:
-    """Whether two features are parallel lines, whose chords are uprights and no curves."""
+    """Whether two features are parallel lines, whose chords are sliding pairs and no curves."""
     both = rows[a, 0] == rows[b, 0] == 0.0
     return bool(both and abs(rows[a, 3] * rows[b, 4] - rows[a, 4] * rows[b, 3]) <= 1e-9)
 
@@ -153,18 +153,18 @@ def sampled(problem: Problem, chords: Chords, count: int) -> dict[Key, list[floa
 
 
 def expected(result: Result) -> list[tuple[Key, float]]:
-    """Keys and orientations psi, in the half turn sampled, of the listed Type I fixtures that rest on no upright."""
+    """Keys and orientations psi, in the half turn sampled, of the listed Type I fixtures that rest on no sliding pair."""
     lines = {face.number: face.segment for face in result.workpiece.faces}
     out = []
     for fixture in (f for f in result if f.type == "I"):
-        jaws, upright = [], False
+        jaws, sliding_pair = [], False
         for p, q in (fixture.pegs[:2], fixture.pegs[2:]):
             jaws.append((p.segment, q.segment, q.column - p.column, q.row - p.row))
             directions = [getattr(lines[peg.segment], "tangent", None) for peg in (p, q)]
             one, two = directions
-            upright |= bool(one and two and abs(one[0] * two[1] - one[1] * two[0]) <= 1e-9)
+            sliding_pair |= bool(one and two and abs(one[0] * two[1] - one[1] * two[0]) <= 1e-9)
         behind = (-np.radians(fixture.pose.theta_deg) - FIRST_ORIENTATION) % tau
-        if not upright:
+        if not sliding_pair:
             out.append((key_of(jaws, turned=behind >= pi), FIRST_ORIENTATION + behind % pi))
     return out
 

@@ -22,7 +22,7 @@ from typing import Any
 import httpx
 from attrs import define, field
 
-from workhold.files.load import load
+from workhold.files.part.load import load
 
 WIDGET = {"name": "widget", "loops": [loop.tolist() for loop in load("widget").loops]}
 KNOB = {"name": "8Handle", "loops": [loop.tolist() for loop in load("8Handle").loops]}

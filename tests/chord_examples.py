@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strategies import random_row
-from workhold.kernels.chord import chord, write_curve
-from workhold.kernels.chord_intervals import chord_intervals
-from workhold.kernels.curve_columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
-from workhold.kernels.through_motion import NONE, coincidence
+from workhold.kernels.chord.coincidences import NONE, coincidence
+from workhold.kernels.chord.evaluation import chord, write_curve
+from workhold.kernels.chord.intervals import chord_intervals
+from workhold.kernels.curves.columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 
 Array = NDArray[np.float64]
 

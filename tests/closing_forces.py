@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.vise_checks import LEAST_SPAN
+from workhold.kernels.contact.rules import LEAST_SPAN
 from workhold.statics.wrenches import wrench_minors
 
 Array = NDArray[np.float64]

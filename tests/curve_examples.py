@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from chord_examples import KINDS, random_chord
 from strategies import random_row
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
-from workhold.kernels.chord import HEIGHT, POSITION
-from workhold.kernels.crossing import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
-from workhold.kernels.curve_columns import COLUMN_STEP, LENGTH, ROW_STEP
-from workhold.kernels.pieces import cell_pieces
+from workhold.kernels.chord.evaluation import HEIGHT, POSITION
+from workhold.kernels.crossing.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
+from workhold.kernels.curves.columns import COLUMN_STEP, LENGTH, ROW_STEP
+from workhold.kernels.curves.pieces import cell_pieces
 
 Array = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def steps_of(table: CurveTable) -> LatticeSteps:
     """The lattice steps of one length that a table's first curve has."""
     length, pitch = float(table.reals[0, LENGTH]), pitch_of(table)
     whole = np.array(
-        [(k, m) for k in (-1, 0, 1) for m in (-1, 0, 1) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
+        [(k, m) for k in range(-2, 3) for m in range(-2, 3) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
     )
     return LatticeSteps(np.array([length]), np.array([0, len(whole)]), whole, np.arctan2(whole[:, 1], whole[:, 0]))
 

@@ -90,7 +90,9 @@ def contacts(fixture: Fixture, workpiece: Workpiece, radius: float) -> tuple[Arr
     return np.array(points), np.array(normals)
 
 
-def pushes(fixture: Fixture, workpiece: Workpiece, radius: float, friction: float = 0.0) -> tuple[Array, Array]:
+def force_directions(
+    fixture: Fixture, workpiece: Workpiece, radius: float, friction: float = 0.0
+) -> tuple[Array, Array]:
     """Wrenches (K, 3) about the part's origin of unit forces of pegs on the part, and their share (K,) in the jaw force.
 
     Without friction K is 4, else 8: both edges of every cone.

@@ -24,7 +24,7 @@ LEFT_FLOOR = [0.0, 0.0, 0.0, -1.0, 0.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
 RIGHT_WALL = [0.0, 0.0, 0.0, 0.0, 1.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
 RIGHT_FLOOR = [0.0, 0.0, 0.0, 1.0, 0.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
 FEATURES = [LEFT_WALL, LEFT_FLOOR, RIGHT_WALL, RIGHT_FLOOR]
-SLIDES = [0.0, 0.0, 1.0, 1.0]
+SLIDING_PAIRS = [0.0, 0.0, 1.0, 1.0]
 
 
 def offsets(height: float) -> list[tuple[float, float]]:

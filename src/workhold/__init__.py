@@ -9,9 +9,11 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from workhold.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from workhold.errors import InputError, WorkholdError
-    from workhold.files.load import load
+    from workhold.files.part.load import load
     from workhold.model.fixture import Fixture, Peg, Pose
     from workhold.model.result import Result
     from workhold.model.vise import Vise
@@ -33,8 +35,6 @@ __all__ = [
     "load",
 ]
 
-__version__ = "0.1.0"
-
 HOMES = {
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
@@ -46,7 +46,7 @@ HOMES = {
     "Workpiece": "workhold.model.workpiece",
     "count_contacts": "workhold.search.contacts",
     "design": "workhold.search.design",
-    "load": "workhold.files.load",
+    "load": "workhold.files.part.load",
 }
 
 

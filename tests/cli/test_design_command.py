@@ -12,7 +12,7 @@ import pytest
 from fakes import fake_proof, fake_result
 from workhold.cli import design_command
 from workhold.errors import InputError
-from workhold.files.result_reader import read_result
+from workhold.files.result.reader import read_result
 
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 

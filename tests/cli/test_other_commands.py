@@ -9,7 +9,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import __version__
-from workhold.files.result_file import write_result
+from workhold.files.result.writer import write_result
 
 
 @pytest.fixture

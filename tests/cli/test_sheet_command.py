@@ -14,7 +14,7 @@ import pytest
 from drawing_examples import diamond
 
 from workhold import __version__
-from workhold.files.result_file import write_result
+from workhold.files.result.writer import write_result
 from workhold.model.result import FixtureTable, Result, unknown_quality
 
 

@@ -15,8 +15,8 @@ from fakes import fake_result
 from workhold.cli.tables import fixture_tables, result_table
 from workhold.cli.values import length, pitches
 from workhold.errors import InputError
-from workhold.files.result_file import write_result
-from workhold.files.vise_presets import load_vise, preset_names
+from workhold.files.result.writer import write_result
+from workhold.files.toolkit.presets import load_vise, preset_names
 from workhold.model.units import INCH, MILLIMETRE
 
 ROOT = Path(__file__).parent.parent.parent

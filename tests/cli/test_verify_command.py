@@ -15,7 +15,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import Result, Vise, Workpiece, design
-from workhold.files.result_file import write_result
+from workhold.files.result.writer import write_result
 from workhold.model.result import FixtureTable, unknown_quality
 
 
@@ -177,8 +177,7 @@ def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, proc
     )
     outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
     loaded = set(re.findall(r"'([^']+)'", outcome.stdout))
-    kernels = {
-        f"workhold.kernels{name}" for name in ("", ".compiling", ".distance", ".stances", ".quality", ".reactions")
-    }
-    assert loaded <= kernels | {"workhold.contact", "workhold.contact.features"}
+    statics = {f"workhold.kernels.statics{name}" for name in ("", ".contact_matrix", ".quality", ".reactions")}
+    base = {f"workhold.kernels{name}" for name in ("", ".base", ".base.compiling", ".base.distance")}
+    assert loaded <= base | statics | {"workhold.contact", "workhold.contact.features", "workhold.contact.problem"}
     assert process("verify", "r.json").returncode == 0

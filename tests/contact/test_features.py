@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from strategies import outlines, vises
 from workhold.contact.features import contact_features, end_slacks, feature_rows
 from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.distance import outline_distance, segment_distance
+from workhold.kernels.base.distance import outline_distance, segment_distance
 from workhold.model.diameter import outline_diameter
 from workhold.model.workpiece import Workpiece
 from workhold.statics.wrenches import outward_normals

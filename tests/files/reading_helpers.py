@@ -8,7 +8,7 @@ from typing import Any
 
 import ezdxf
 
-from workhold.files.load import Loaded, read_workpiece
+from workhold.files.part.load import Loaded, read_workpiece
 from workhold.geometry.loop import signed_area
 from workhold.model.workpiece import Workpiece
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from workhold import Vise, Workpiece, count_contacts, design, load
-from workhold.files.result_file import write_result
+from workhold.files.result.writer import write_result
 from workhold.listing.best import BestFixtures
-from workhold.search.vise_search import ViseSearch
+from workhold.search.toolkit_search import ViseSearch
 
-# Parts with ties, twins, uprights and coincidences; how many to keep.
+# Parts with ties, twins, sliding pairs and coincidences; how many to keep.
 CASES = [
     ("widget", Vise(pitch=8, columns=2, peg_radius=3), 7),
     ("flange", Vise(pitch=10, columns=2, peg_radius=3), 40),

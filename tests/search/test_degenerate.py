@@ -60,7 +60,7 @@ def test_equal_arcs_one_peg_step_apart() -> None:
 
 @pytest.mark.parametrize("turn", [0.0, 1e-13, 1e-7, 0.3])
 def test_a_bar_with_parallel_faces_at_any_angle(turn: float) -> None:
-    """A rectangle is held the same however it is drawn: its upright chords do not depend on being aligned."""
+    """A rectangle is held the same however it is drawn: its sliding pair chords do not depend on being aligned."""
     from math import cos, sin
 
     corners = [(0.0, 0.0), (62.0, 0.0), (62.0, 34.0), (0.0, 34.0)]

@@ -11,7 +11,7 @@ import pytest
 from attrs import evolve
 
 from workhold import Vise, Workpiece, design, load
-from workhold.listing.problem import Problem
+from workhold.contact.problem import Problem
 from workhold.model.explanation import Explanation
 from workhold.model.holes import holes_named
 from workhold.model.restrictions import Restrictions, circle_zone

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from workhold.files.load import load
-from workhold.files.result_file import write_result_to
+from workhold.files.part.load import load
+from workhold.files.result.writer import write_result_to
 from workhold.model.result import Result
 from workhold.model.vise import Vise
 from workhold.search import preview

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from closing_forces import clamping_force, null_vectors
-from workhold.kernels.closure import minors
-from workhold.kernels.vise_checks import LEAST_SPAN
+from workhold.kernels.contact.closure import minors
+from workhold.kernels.contact.rules import LEAST_SPAN
 from workhold.statics.wrenches import outward_normals
 
 
@@ -63,7 +63,7 @@ def test_the_null_vector_is_null_and_sums_to_one():
 
 
 def test_compiled_and_array_forms_agree():
-    """kernels.closure.minors and statics.wrenches.wrench_minors, both scaled, are one function."""
+    """kernels.contact.closure.minors and statics.wrenches.wrench_minors, both scaled, are one function."""
     random = Random(2)
     many = [contacts(random) for _ in range(300)]
     points, normals = (np.array(column) for column in zip(*many, strict=True))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 import workhold
-from held import held, load_wrench, pushes
+from held import force_directions, held, load_wrench
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.load import Load
@@ -53,7 +53,7 @@ class TestHeld:
             load = Load(points=[point], force=90, directions=(direction, direction), moment=random.uniform(-500, 500))
             (case,) = load_cases(fixture, result.workpiece, result.vise, [load], jaw_force=250)
             assert case.smallest == pytest.approx(case.largest, rel=1e-9, abs=1e-9)
-            wrenches, shares = pushes(fixture, result.workpiece, result.vise.peg_radius)
+            wrenches, shares = force_directions(fixture, result.workpiece, result.vise.peg_radius)
             wrench = load_wrench(90, point, direction, load.moment)
             size = max(case.largest) * np.array([1, 1, 100])
             assert (np.abs(wrenches.T @ case.largest + wrench) < 1e-7 * size).all()
@@ -85,7 +85,7 @@ class TestHeld:
         for fixture in result:
             load = Load(points=[(4.0, 7.0), (-9.0, 1.0)], force=60, directions=(20, 200), moment=90)
             (case,) = load_cases(fixture, result.workpiece, result.vise, [load])
-            wrenches, shares = pushes(fixture, result.workpiece, result.vise.peg_radius)
+            wrenches, shares = force_directions(fixture, result.workpiece, result.vise.peg_radius)
             there = load_wrench(60, case.needed.point, case.needed.direction, 90)
             assert least_jaw_force(wrenches, shares, there) == pytest.approx(case.needed.value, rel=1e-6, abs=1e-6)
             other = load_wrench(60, load.points[random.integers(0, 2)], random.uniform(20, 200), 90)
@@ -105,7 +105,7 @@ class TestHeld:
             angle, point = random.uniform(0, 360), (random.uniform(-9, 9), random.uniform(-9, 9))
             load = Load(points=[point], force=60, directions=(angle, angle), moment=90)
             (case,) = load_cases(fixture, result.workpiece, result.vise, [load], friction=friction)
-            wrenches, shares = pushes(fixture, result.workpiece, result.vise.peg_radius, friction)
+            wrenches, shares = force_directions(fixture, result.workpiece, result.vise.peg_radius, friction)
             least = least_jaw_force(wrenches, shares, load_wrench(60, point, angle, 90))
             assert case.needed_with_friction == pytest.approx(least, rel=1e-6, abs=1e-4)
             assert case.needed_with_friction <= case.needed.value + 1e-6

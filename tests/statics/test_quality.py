@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog, root
 from scipy.spatial import ConvexHull
 
-from held import contacts, held, load_wrench, pushes
+from held import contacts, force_directions, held, load_wrench
 from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.distance import outline_distances
+from workhold.kernels.base.distance import outline_distances
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
@@ -99,7 +99,7 @@ class TestHeld:
         ]
         assert together == pytest.approx(np.max(single, axis=0), rel=1e-12)
         for k, fixture in enumerate(result):
-            wrenches, _ = pushes(fixture, result.workpiece, result.vise.peg_radius)
+            wrenches, _ = force_directions(fixture, result.workpiece, result.vise.peg_radius)
             cases = load_cases(fixture, result.workpiece, result.vise, loads)
             for load, case, figures in zip(loads, cases, single, strict=True):
                 worst = case.reaction

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from workhold import Result, Vise, design, load
-from workhold.files.result_file import write_result_to
+from workhold.files.result.writer import write_result_to
 from workhold.verification import Verification, verify_file
 
 Data = dict[str, Any]

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 
 from strategies import outlines, vises
 from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
-from workhold.files.result_file import write_result
+from workhold.files.result.writer import write_result
 from workhold.verification import fixture_proof, verify, verify_file, verify_fixture
 
 RING = [

@@ -11,7 +11,7 @@ from typing import Any
 import httpx
 from attrs import define
 
-from workhold.files.load import load
+from workhold.files.part.load import load
 from workhold.web.guard import Hosts
 from workhold.web.limits import Limits
 from workhold.web.serve import Server, bound_socket, make_server

@@ -12,9 +12,9 @@ import pytest
 from running_server import LONG, SQUARE, VISE, WIDGET, RunningServer, request
 from test_parts import refused
 
-from workhold.files.load import load
-from workhold.files.result_csv import write_result_csv_to
-from workhold.files.result_file import write_result_to
+from workhold.files.part.load import load
+from workhold.files.result.csv import write_result_csv_to
+from workhold.files.result.writer import write_result_to
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
 from workhold.model.result import Result

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from running_server import SQUARE, WIDGET, RunningServer
 
-from workhold.files.load import builtin_parts, read_workpiece
-from workhold.files.vise_presets import load_vise, preset_names
+from workhold.files.part.load import builtin_parts, read_workpiece
+from workhold.files.toolkit.presets import load_vise, preset_names
 from workhold.model.quality import FIGURES
 from workhold.model.vise import Vise
 

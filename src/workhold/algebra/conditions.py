@@ -14,7 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex
-from workhold.kernels import vise_checks as record
+from workhold.kernels.contact import rules as record
 from workhold.model.vise import Vise
 from workhold.statics.wrenches import outward_normals, wrench_minors
 
@@ -77,7 +77,7 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 
 
 def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float) -> Array:
-    """What may be fixtures among parts touched by four pegs, as records (``kernels.vise_checks``).
+    """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.rules``).
 
     Parameters
     ----------

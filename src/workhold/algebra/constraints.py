@@ -77,7 +77,7 @@ class Contacts:
         """The systems of an index array or mask."""
         return Contacts(self.rows[which], self.point[which])
 
-    def slides(self, k: int, m: int) -> BoolArray:
+    def sliding_pairs(self, k: int, m: int) -> BoolArray:
         """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
 
         There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
@@ -99,9 +99,9 @@ class Contacts:
         between = (self.middle[:, k] - self.middle[:, m])[:, None]
         plain = np.exp(1j * psi) * step + between
         zero = np.angle(-between * np.conj(step))
-        length = np.where(self.slides(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0)
+        length = np.where(self.sliding_pairs(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0)
         along = 1j * step / np.abs(step) * np.exp(0.5j * (psi + zero))
-        return length, np.where(self.slides(k, m)[:, None], along, plain)
+        return length, np.where(self.sliding_pairs(k, m)[:, None], along, plain)
 
 
 def line_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Array, Ring]:
@@ -131,10 +131,10 @@ def pair_constraint(contacts: Contacts, k: int, psi: Array) -> Ring:
     if contacts.rows[0, k, 0] == 0.0:
         return line_constraint(contacts, k, psi)[1]
     length, apart = contacts.centers_apart(0, k, psi)
-    slides = contacts.slides(0, k)[:, None]
+    sliding_pairs = contacts.sliding_pairs(0, k)[:, None]
     radius, other = contacts.radius[:, 0, None], contacts.radius[:, k, None]
     plain = np.abs(apart) ** 2 + (radius - other) * (radius + other)
-    return Ring(np.where(slides, length, plain), np.asarray(radius * np.conj(apart), np.complex128))
+    return Ring(np.where(sliding_pairs, length, plain), np.asarray(radius * np.conj(apart), np.complex128))
 
 
 def circle_difference(contacts: Contacts, k: int, m: int, psi: Array) -> tuple[Array, Ring]:

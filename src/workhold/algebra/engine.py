@@ -15,11 +15,17 @@ from workhold.algebra.constraints import Contacts
 from workhold.algebra.poses import peg_centers, poses_at
 from workhold.algebra.quartets import Systems, are_parallel, type_one_systems, type_two_systems
 from workhold.algebra.roots import orientations
-from workhold.algebra.slides import alike, alike_orientations, slides_of, type_one_slides, type_two_slides
+from workhold.algebra.sliding_pairs import (
+    alike,
+    alike_orientations,
+    sliding_pairs_of,
+    three_and_one_sliding_pairs,
+    two_and_two_sliding_pairs,
+)
 from workhold.algebra.undecided import undecided_notes
 from workhold.algebra.wedges import peg_pairs
+from workhold.contact.problem import TYPES, Problem, Progress, check_options
 from workhold.listing.listed import Work, listed_result
-from workhold.listing.problem import TYPES, Problem, Progress, check_options
 from workhold.listing.ranking import preference_of
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions
@@ -155,14 +161,14 @@ def stages(solver: Solver, types: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
     rows, vise = solver.rows, solver.vise
     pairs = peg_pairs(rows[:, :8], vise, solver.diameter)
-    slides = slides_of(pairs, rows, vise)
+    sliding_pairs = sliding_pairs_of(pairs, rows, vise)
     for name, systems, sliding in (
-        ("I", type_one_systems, type_one_slides),
-        ("II", type_two_systems, type_two_slides),
+        ("I", type_one_systems, two_and_two_sliding_pairs),
+        ("II", type_two_systems, three_and_one_sliding_pairs),
     ):
         if name not in types:
             continue
-        held = sliding(pairs, slides, rows, vise)
+        held = sliding(pairs, sliding_pairs, rows, vise)
         if held:
             yield solver.fixtures(together(held))
         for batch, case in by_case(systems(pairs, rows[:, :8], vise), rows):

@@ -99,7 +99,7 @@ class System:
             tuple(contacts.normal[0].tolist()),
             tuple(contacts.radius[0].tolist()),
             tuple(contacts.point[0].tolist()),
-            frozenset(pair for pair in pairs if contacts.slides(*pair)[0]),
+            frozenset(pair for pair in pairs if contacts.sliding_pairs(*pair)[0]),
         )
 
     def start(self, k: int) -> tuple[Laurent, Laurent]:

@@ -58,8 +58,8 @@ class Poses:
 
 def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
     """Peg centres (N, K) in the workpiece's frame."""
-    slides = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
-    reach = contacts.point[poses.owner] + poses.sigma[:, None] * slides
+    sliding_pairs = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
+    reach = contacts.point[poses.owner] + poses.sigma[:, None] * sliding_pairs
     return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
 
 

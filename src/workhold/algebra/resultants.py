@@ -166,8 +166,8 @@ def resultant(contacts: Contacts, case: tuple[int, int], psi: Array) -> tuple[Ar
 def triple_resultant(contacts: Contacts, second: Ring, psi: Array) -> tuple[Array, Array]:
     """Resultant of three left pegs; where the second and third arc slide, that factor is divided out."""
     value, size = resultant_of_rings(second, pair_constraint(contacts, 2, psi))
-    slides = contacts.slides(1, 2)[:, None]
-    length = np.where(slides, contacts.centers_apart(1, 2, psi)[0], 1.0)
+    sliding_pairs = contacts.sliding_pairs(1, 2)[:, None]
+    length = np.where(sliding_pairs, contacts.centers_apart(1, 2, psi)[0], 1.0)
     return value / length**2, size / length**2
 
 

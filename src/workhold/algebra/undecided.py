@@ -1,8 +1,8 @@
 """Naming, for a user, the systems of contacts that their resultants leave undecided.
 
 A system is undecided when its resultant vanishes at every orientation although none of the reasons known for that applies
-(``slides``), or when its roots cannot be told apart at 1,024 bits. Only fixtures with these pegs on these faces may then be
-missing.
+(``sliding_pairs``), or when its roots cannot be told apart at 1,024 bits. Only fixtures with these pegs on these faces
+may then be missing.
 """
 
 from __future__ import annotations

@@ -176,7 +176,7 @@ def design(
     restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
     ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
     off = asked_tolerance(tolerance, shown, of_vise)
-    from workhold.kernels.compiling import is_first_run
+    from workhold.kernels.base.compiling import is_first_run
     from workhold.listing.ranking import preference_of
 
     preference_of(ranking, off, forces)
@@ -258,11 +258,11 @@ def output_format(out: str | None, asked: str | None) -> str:
 def write_output(result: Result, out: str, form: str) -> None:
     """Write the result to a file or to the terminal."""
     if form == "csv":
-        from workhold.files.result_csv import write_result_csv as write
-        from workhold.files.result_csv import write_result_csv_to as write_to
+        from workhold.files.result.csv import write_result_csv as write
+        from workhold.files.result.csv import write_result_csv_to as write_to
     else:
-        from workhold.files.result_file import write_result as write
-        from workhold.files.result_file import write_result_to as write_to
+        from workhold.files.result.writer import write_result as write
+        from workhold.files.result.writer import write_result_to as write_to
 
     if out == STANDARD_OUTPUT:
         write_to(result, sys.stdout)

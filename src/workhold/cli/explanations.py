@@ -26,7 +26,7 @@ def explain_none(
     ----------
     folder : where the nearest miss is drawn, if anywhere.
     """
-    from workhold.listing.problem import Problem
+    from workhold.contact.problem import Problem
     from workhold.search.explaining import explain
 
     problem = Problem.of(result.workpiece, result.vise, result.contact_margin, result.restrictions)

@@ -109,7 +109,7 @@ def explore(
         tolerances = {}
     if out is not None:
         refuse_unwritable(out)
-    from workhold.kernels.compiling import is_first_run
+    from workhold.kernels.base.compiling import is_first_run
     from workhold.listing.ranking import preference_of
 
     preference = preference_of(ranking, asked_tolerance(tolerance, shown, None), forces)
@@ -154,7 +154,7 @@ def asked_vises(
     InputError
         For words that mean nothing, and lists that do not make a vise.
     """
-    from workhold.files.vise_presets import load_vise, preset_names
+    from workhold.files.toolkit.presets import load_vise, preset_names
 
     lists: list[list[tuple[str, dict[str, Any]]]] = []
     if pitch is not None:

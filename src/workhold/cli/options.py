@@ -9,7 +9,7 @@ import typer
 from workhold.cli.values import choice, counting_number, length, length_unit, optional_length
 
 if TYPE_CHECKING:
-    from workhold.files.load import Loaded
+    from workhold.files.part.load import Loaded
 
 __all__ = [
     "JOIN_TOLERANCE",
@@ -116,7 +116,7 @@ def load_part(
     part_number = counting_number("--part", number, "a part")
     direction = None if axis is None else choice("--axis", axis, ("x", "y", "z"))
     height = optional_length("--section", section, length_unit(unit))
-    from workhold.files.load import read_workpiece
+    from workhold.files.part.load import read_workpiece
 
     loaded = read_workpiece(
         part,

@@ -17,8 +17,8 @@ def parts(unit: ShownUnitOption = None) -> None:
     Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
     """
     from workhold.cli.tables import Table, print_tables
-    from workhold.files.builtin import builtin_parts
-    from workhold.files.load import load
+    from workhold.files.part.builtin import builtin_parts
+    from workhold.files.part.load import load
 
     shown = length_unit(unit)
     decimals = shown.decimals - 2

@@ -42,7 +42,7 @@ def result_with(path: str, rank: int) -> Result:
     InputError
         When the file cannot be used, or lists fewer.
     """
-    from workhold.files.result_reader import read_result
+    from workhold.files.result.reader import read_result
 
     result = read_result(path)
     if rank > len(result):

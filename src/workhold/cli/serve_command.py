@@ -92,7 +92,7 @@ def limit_value(option: str, text: str) -> float:
 
 def prepare() -> None:
     """Compile the kernels on a first run, before workers would do so one after the other."""
-    from workhold.kernels.compiling import is_first_run
+    from workhold.kernels.base.compiling import is_first_run
 
     if is_first_run():
         from workhold.cli.warming import compile_kernels

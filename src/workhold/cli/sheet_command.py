@@ -109,11 +109,11 @@ def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
     """Write the set-up for a CAM system."""
     setup = (result[rank - 1], result.workpiece, result.vise, path)
     if ending == ".dxf":
-        from workhold.files.setup_dxf import write_setup_dxf
+        from workhold.files.dxf.setup import write_setup_dxf
 
         write_setup_dxf(*setup)
         return
-    from workhold.files.setup_step import write_setup_step
+    from workhold.files.step.setup import write_setup_step
 
     write_setup_step(*setup)
 

@@ -144,7 +144,7 @@ class ViseWords:
         from workhold.model.vise import Vise
 
         if self.vise is not None:
-            from workhold.files.vise_presets import load_vise
+            from workhold.files.toolkit.presets import load_vise
 
             loaded = load_vise(self.vise)
             fields, tolerance = loaded.fields | fields, loaded.tolerance

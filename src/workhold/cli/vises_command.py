@@ -11,7 +11,7 @@ from workhold.cli.values import length_unit
 
 if TYPE_CHECKING:
     from workhold.cli.tables import Table
-    from workhold.files.vise_file import LoadedVise
+    from workhold.files.toolkit.reader import LoadedVise
     from workhold.model.dowel import Limits
     from workhold.model.units import Unit
 
@@ -34,7 +34,7 @@ def vises(
     """
     shown = None if unit is None else length_unit(unit)
     from workhold.cli.tables import print_tables
-    from workhold.files.vise_presets import load_vise
+    from workhold.files.toolkit.presets import load_vise
     from workhold.model.units import MILLIMETRE
 
     if name is None:
@@ -49,7 +49,7 @@ def vises(
 def vises_table(unit: Unit) -> Table:
     """All presets, one line each, with lengths in a unit."""
     from workhold.cli.tables import Table
-    from workhold.files.vise_presets import load_vise, preset_names
+    from workhold.files.toolkit.presets import load_vise, preset_names
 
     of = unit.abbreviation
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))

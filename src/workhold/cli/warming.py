@@ -12,7 +12,7 @@ import sys
 from threading import Event
 from time import sleep
 
-from workhold.kernels.compiling import cache_folder
+from workhold.kernels.base.compiling import cache_folder
 
 __all__ = ["compile_kernels"]
 

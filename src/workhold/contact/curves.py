@@ -1,4 +1,4 @@
-"""All chord curves of a workpiece for one toolkit's lattice steps (see ``kernels.chord`` for what a chord is)."""
+"""All chord curves of a workpiece for one toolkit's lattice steps (see ``kernels.chord.evaluation`` for what a chord is)."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.kernels.curve_columns import END_STRETCH, FIRST_STRETCH
-from workhold.kernels.curve_table import tail_curves
-from workhold.kernels.through_motion import are_concentric
+from workhold.kernels.chord.coincidences import are_concentric
+from workhold.kernels.curves.columns import END_STRETCH, FIRST_STRETCH
+from workhold.kernels.curves.table import tail_curves
 
 __all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "loosened"]
 
@@ -40,13 +40,13 @@ class LatticeSteps:
 
 @define(frozen=True, eq=False)
 class CurveTable:
-    """Chord curves and uprights of all pairs of features, and the curves' stretches; columns are named in
-    ``kernels.curve_columns``, ``uprights`` and ``stretches``."""
+    """Chord curves and sliding pairs of all pairs of features, and the curves' stretches; columns are named in
+    ``kernels.curves.columns``, ``sliding_pairs`` and ``stretches``."""
 
     integers: NDArray[np.int64]
     reals: NDArray[np.float64]
-    upright_integers: NDArray[np.int64]
-    upright_reals: NDArray[np.float64]
+    sliding_pair_integers: NDArray[np.int64]
+    sliding_pair_reals: NDArray[np.float64]
     stretches: NDArray[np.float64]
 
     def __len__(self) -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import date
 
-from workhold import __version__
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import same_holes
@@ -14,6 +13,7 @@ from workhold.model.result import Result
 from workhold.model.units import Unit
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
+from workhold.version import __version__
 
 __all__ = ["result_sheet"]
 

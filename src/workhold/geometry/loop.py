@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.errors import InputError
 from workhold.geometry.intersect import bounding_box, common_points
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
-from workhold.kernels.distance import turns_around
+from workhold.kernels.base.distance import turns_around
 
 __all__ = [
     "LoopShape",
@@ -189,7 +189,7 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
     segments, box = shape.segments, shape.boxes
     count = len(segments)
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
-    blur = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
+    backward_error = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
     for i, j in near_pairs(box, box):
         if j <= i:
             continue
@@ -199,7 +199,7 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
         if (j + 1) % count == i:
             joints.append(segments[j].end)
         for x, y in common_points(segments[i], segments[j], TOUCHING):
-            if all(hypot(x - px, y - py) > blur for px, py in joints):
+            if all(hypot(x - px, y - py) > backward_error for px, py in joints):
                 raise InputError(
                     f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet itself only "
                     "where one segment ends and the next begins."

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_rows
-from workhold.kernels.distance import is_inside, outline_distances
+from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
 

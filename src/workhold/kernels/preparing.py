@@ -12,19 +12,19 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from workhold.kernels.certifying import certified
-from workhold.kernels.contacts import SETTING_LENGTH
-from workhold.kernels.curve_columns import CURVE_INTEGERS, CURVE_REALS
-from workhold.kernels.curve_table import tail_curves
-from workhold.kernels.quality import figures
-from workhold.kernels.reactions import LOAD_LENGTH
-from workhold.kernels.stances import stances_of
-from workhold.kernels.standing import contacts_of, stand
-from workhold.kernels.stretches import STRETCH_LENGTH
-from workhold.kernels.type_one import STATISTICS, type_one_cells
-from workhold.kernels.type_two import type_two_cells
-from workhold.kernels.uprights import UPRIGHT_REALS, upright_type_one, upright_type_two
-from workhold.kernels.vise_checks import LIMITS, RECORD_LENGTH
+from workhold.kernels.chord.stretches import STRETCH_LENGTH
+from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
+from workhold.kernels.contact.equations import SETTING_LENGTH
+from workhold.kernels.contact.rules import LIMITS, RECORD_LENGTH
+from workhold.kernels.crossing.sliding_pairs import SLIDING_PAIR_REALS, sliding_three_and_one, sliding_two_and_two
+from workhold.kernels.crossing.three_and_one import three_and_one_cells
+from workhold.kernels.crossing.two_and_two import STATISTICS, two_and_two_cells
+from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS
+from workhold.kernels.curves.table import tail_curves
+from workhold.kernels.proof.newton_kantorovich import certified
+from workhold.kernels.statics.contact_matrix import contact_matrices_of
+from workhold.kernels.statics.quality import figures
+from workhold.kernels.statics.reactions import LOAD_LENGTH
 
 __all__ = ["prepare_crossings", "prepare_table_and_listing"]
 
@@ -44,18 +44,18 @@ def without_collector() -> Iterator[None]:
 
 
 def prepare_crossings() -> None:
-    """Compile the kernels of crossings and uprights."""
+    """Compile the kernels of crossings and sliding pairs."""
     none, rows, checked = np.zeros(0, np.int64), np.zeros((0, FEATURE_LENGTH)), np.zeros((0, CHECKED_LENGTH))
     integers, reals = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
-    uprights = np.zeros((0, UPRIGHT_REALS))
+    sliding_pairs = np.zeros((0, SLIDING_PAIR_REALS))
     limits, stats = np.zeros(LIMITS), np.zeros(STATISTICS, np.int64)
     with without_collector():
-        for cells in (type_one_cells, type_two_cells):
+        for cells in (two_and_two_cells, three_and_one_cells):
             stretches = np.zeros((0, STRETCH_LENGTH))
             table = (rows, checked, integers, reals, stretches)
             cells(np.zeros(1), none, *table, 1.0, 1.0, 0.0, limits, False, stats)
-        for meet in (upright_type_one, upright_type_two):
-            meet(none, integers, uprights, none, rows, checked, integers, reals, 1.0, 0.0, limits, False, stats)
+        for meet in (sliding_two_and_two, sliding_three_and_one):
+            meet(none, integers, sliding_pairs, none, rows, checked, integers, reals, 1.0, 0.0, limits, False, stats)
 
 
 def prepare_table_and_listing() -> None:
@@ -68,9 +68,9 @@ def prepare_table_and_listing() -> None:
         tail_curves(0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0))
         certified(records, checked, outline, np.zeros((0, 4)), setting, np.zeros((0, 4)))
         contacts_of(records, checked, setting, np.zeros((0, 4, 2)), np.zeros(0), np.zeros((0, 4)), np.zeros((0, 4)))
-        stand(none, np.zeros(0), whole, whole.copy(), whole.copy(), 0.0)
+        to_canonical_form(none, np.zeros(0), whole, whole.copy(), whole.copy(), 0.0)
         pairs, fours, matrices = np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros((0, 4, 4))
         pose, two = np.zeros((0, 3)), np.zeros(2)
-        stances_of(pairs, pose, fours, whole, features, none, two, 1.0, pairs, pairs, fours, matrices)
+        contact_matrices_of(pairs, pose, fours, whole, features, none, two, 1.0, pairs, pairs, fours, matrices)
         rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 6))
         figures(pairs, pairs, fours, matrices, whole, 1.0, two, *rows)

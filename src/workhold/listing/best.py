@@ -8,13 +8,13 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.listing.candidates import Candidates, joined, listed_once, twins
-from workhold.listing.deciding import Account
+from workhold.contact.problem import Problem
+from workhold.listing.canonical_form import Candidates, joined, listed_once, twins
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
-from workhold.listing.problem import Problem
 from workhold.listing.ranking import Preference, best_marked
 from workhold.model.quality import CLOSURE_MARGIN
+from workhold.proof.deciding import Account
 
 __all__ = ["BestFixtures"]
 

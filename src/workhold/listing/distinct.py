@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.geometry.symmetry import Rotation, rotations_onto_itself
-from workhold.kernels.standing import stand
-from workhold.listing.candidates import SAME_POSE, Candidates, changes, packed
+from workhold.kernels.contact.canonical_form import to_canonical_form
+from workhold.listing.canonical_form import SAME_POSE, Candidates, changes, packed
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["count_distinct"]
@@ -29,7 +29,7 @@ def keys_and_pose(
     """
     theta, column, row = c.theta - angle, c.column.copy(), c.row.copy()
     order = np.empty((len(face), 4), np.int64)
-    stand(c.kind, theta, column, row, order, SAME_POSE)
+    to_canonical_form(c.kind, theta, column, row, order, SAME_POSE)
     face = np.ravel(face)[4 * np.arange(len(face))[:, None] + order]
     # Same faces, holes and orientation still leave a choice of places; the opening tells those apart.
     holes = ((column, column.max()), (row, row.max()))

@@ -9,11 +9,11 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels import vise_checks as record
-from workhold.listing.candidates import Candidates, candidates_of, joined, listed_once, standing
-from workhold.listing.deciding import Account, Course, decided
+from workhold.contact.problem import Problem, Progress
+from workhold.kernels.contact import rules as record
+from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.placing import arranged
-from workhold.listing.problem import Problem, Progress
+from workhold.proof.deciding import Account, Course, decided
 
 __all__ = ["finish"]
 
@@ -49,7 +49,7 @@ def finish(
 
     def listed_form(block: Array) -> tuple[Candidates, Account]:
         proven, account = decided(block, problem, course)
-        return standing(candidates_of(proven, problem)), account
+        return canonical_form(candidates_of(proven, problem)), account
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
         running = [pool.submit(listed_form, block) for block in blocks_of(records)]

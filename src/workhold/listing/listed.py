@@ -9,16 +9,16 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.problem import TYPES, Problem, Progress
 from workhold.listing.best import BestFixtures
-from workhold.listing.candidates import Candidates, twins
-from workhold.listing.deciding import Account
+from workhold.listing.canonical_form import Candidates, twins
 from workhold.listing.distinct import count_distinct
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
-from workhold.listing.problem import TYPES, Problem, Progress
 from workhold.listing.ranking import Preference, rank
 from workhold.model.proof import Proof
 from workhold.model.result import FixtureTable, Result
+from workhold.proof.deciding import Account
 
 __all__ = ["Work", "best_result", "listed_result", "result_of"]
 
@@ -58,7 +58,7 @@ def listed_result(
     ----------
     problem : what was searched.
     preference : what makes one better than another.
-    records : (N, 19) arrays of fixtures, laid out as ``kernels.vise_checks`` says.
+    records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.rules`` says.
     best : list only this many, the best ones.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.

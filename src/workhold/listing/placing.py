@@ -13,12 +13,12 @@ import numpy as np
 from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
-from workhold.kernels.vise_checks import GAP_SLACK
-from workhold.listing.candidates import Candidates
-from workhold.listing.deciding import is_left
-from workhold.listing.problem import Problem
+from workhold.contact.problem import Problem
+from workhold.kernels.contact.rules import GAP_SLACK
+from workhold.listing.canonical_form import Candidates
 from workhold.model.result import FixtureTable, unknown_quality
 from workhold.model.vise import Vise
+from workhold.proof.deciding import is_left
 
 __all__ = ["Arranged", "arranged", "placed"]
 

@@ -12,14 +12,14 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.listing.problem import Problem
 from workhold.model.load import Load
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figure_number
 from workhold.model.result import FixtureTable
 from workhold.model.tolerance import Tolerance
+from workhold.statics.contact_matrix import Touched
 from workhold.statics.quality import quality_of
-from workhold.statics.stances import Touched
 
 __all__ = ["DEFAULT_RANKING", "Preference", "best_marked", "preference_of", "rank"]
 

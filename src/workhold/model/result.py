@@ -109,7 +109,7 @@ class Result:
     contact_margin : smallest distance in mm that was asked for between a contact and the end of its feature.
     notes : remarks a user should read, one sentence each.
     twins : fixtures with the same holes, faces and orientation as one listed, where the workpiece lies in another place.
-    statistics : how much work the search was: numbers of contact features, chord curves, uprights, pairs of curves
+    statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
     restrictions : what the user ruled out.

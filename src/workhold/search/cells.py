@@ -13,8 +13,8 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
-from workhold.kernels.curve_columns import FROM, SHIFT, TO
-from workhold.listing.problem import Progress
+from workhold.contact.problem import Progress
+from workhold.kernels.curves.columns import FROM, SHIFT, TO
 
 __all__ = ["Block", "cell_edges", "members_of_cell", "run_blocks", "thread_count"]
 

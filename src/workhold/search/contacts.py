@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from workhold.kernels.type_one import CONTACTS
-from workhold.listing.problem import TYPES, Problem
+from workhold.contact.problem import TYPES, Problem
+from workhold.kernels.crossing.two_and_two import CONTACTS
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
-from workhold.search.vise_search import ViseSearch
+from workhold.search.toolkit_search import ViseSearch
 
 __all__ = ["contacts_of", "count_contacts"]
 

@@ -10,10 +10,10 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.contact.curves import center_numbers
-from workhold.kernels.type_one import CANDIDATES, CONTACTS, CROSSED, PAIRS
+from workhold.contact.problem import TYPES, Problem, Progress, check_options
+from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, CROSSED, PAIRS
 from workhold.listing.best import BestFixtures
 from workhold.listing.listed import Work, best_result, listed_result
-from workhold.listing.problem import TYPES, Problem, Progress, check_options
 from workhold.listing.ranking import preference_of
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions
@@ -24,7 +24,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.preview import Preview, Previews
-from workhold.search.vise_search import LEAST_BLOCKS, ViseSearch
+from workhold.search.toolkit_search import LEAST_BLOCKS, ViseSearch
 
 __all__ = ["design"]
 
@@ -135,7 +135,7 @@ def why_none(search: ViseSearch, types: Sequence[str], contacts: int, proven: in
             "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
             "from turning."
         )
-    if len(table) + len(table.upright_integers) == 0:
+    if len(table) + len(table.sliding_pair_integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
     if contacts == 0 and contacts_of(problem, types, threads) == 0:
@@ -153,7 +153,7 @@ def statistics(search: ViseSearch, totals: NDArray[np.int64]) -> dict[str, int]:
     return {
         "features": len(search.problem.rows),
         "chord_curves": len(search.table),
-        "uprights": len(search.table.upright_integers),
+        "sliding_pairs": len(search.table.sliding_pair_integers),
         "curve_pairs": int(totals[PAIRS]),
         "crossings_sought": int(totals[CROSSED]),
         "contacts_examined": int(totals[CONTACTS]),

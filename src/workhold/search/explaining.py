@@ -15,21 +15,21 @@ import numpy as np
 from attrs import define, evolve
 from numpy.typing import NDArray
 
+from workhold.contact.problem import TYPES, Problem
 from workhold.errors import InputError
-from workhold.kernels import vise_checks as record
-from workhold.listing.candidates import Candidates, candidates_of, listed_once, standing
-from workhold.listing.deciding import is_left
+from workhold.kernels.contact import rules as record
+from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import arranged, placed
-from workhold.listing.problem import TYPES, Problem
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import fixture_at
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.vise import Vise
+from workhold.proof.deciding import is_left
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.design import design
-from workhold.search.vise_search import ViseSearch
+from workhold.search.toolkit_search import ViseSearch
 from workhold.statics.wrenches import outward_normals, wrench_minors
 
 __all__ = ["explain"]
@@ -107,7 +107,7 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
     records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.KIND] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = listed_once(facing(standing(candidates_of(together, problem))))
+    c = listed_once(facing(canonical_form(candidates_of(together, problem))))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
     minors = wrench_minors(c.point, normals, problem.wrench_length)

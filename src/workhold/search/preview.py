@@ -10,10 +10,10 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.listing.candidates import Candidates, joined, listed_once
+from workhold.contact.problem import Problem
+from workhold.listing.canonical_form import Candidates, joined, listed_once
 from workhold.listing.finish import finish
 from workhold.listing.listed import Work, result_of
-from workhold.listing.problem import Problem
 from workhold.listing.ranking import Preference
 from workhold.model.result import Result
 

@@ -19,8 +19,8 @@ from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
+from workhold.statics.contact_matrix import Touched
 from workhold.statics.friction import possible_motions
-from workhold.statics.stances import Touched
 
 __all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
 
@@ -109,14 +109,16 @@ def load_cases(
     pose = np.array([[radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]])
     right = np.array([[peg.jaw == "right" for peg in fixture.pegs]])
     faces = np.array([[peg.segment for peg in fixture.pegs]])
-    stances = touched.stances(np.array([[(peg.x, peg.y) for peg in fixture.pegs]]), pose, right, faces)
-    # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.stances.
-    forces = stances.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
+    contact_matrices = touched.contact_matrices(
+        np.array([[(peg.x, peg.y) for peg in fixture.pegs]]), pose, right, faces
+    )
+    # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.statics.contact_matrix.
+    forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
     motions = None
     if friction is not None:
-        contacts = stances.points[0] - vise.peg_radius * stances.normals[0]
+        contacts = contact_matrices.points[0] - vise.peg_radius * contact_matrices.normals[0]
         closing = np.array([cos(pose[0, 0]), -sin(pose[0, 0])])
-        motions = possible_motions(contacts, stances.normals[0], right[0], closing, friction, touched.length)
+        motions = possible_motions(contacts, contact_matrices.normals[0], right[0], closing, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
     needs = [needed(forces, load, center) for load in loads]
     if jaw_force is None:
@@ -172,7 +174,7 @@ def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
 
 
 def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.reactions``)."""
+    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.statics.reactions``)."""
     pairs = [(j, i) for j in range(4) for i in range(4) if i != j]
     return max(
         (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),

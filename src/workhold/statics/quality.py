@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Arc
-from workhold.kernels.quality import figures
-from workhold.kernels.reactions import LOAD_LENGTH
+from workhold.kernels.statics.quality import figures
+from workhold.kernels.statics.reactions import LOAD_LENGTH
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
@@ -21,7 +21,7 @@ from workhold.model.result import FixtureTable, Result, fixture_at, hole_positio
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
-from workhold.statics.stances import Touched
+from workhold.statics.contact_matrix import Touched
 
 __all__ = ["load_rows", "measured_fixture", "quality_of"]
 
@@ -68,12 +68,12 @@ def quality_of(
         faces = block.segment.astype(np.int64)
         right = block.jaw.astype(np.float64)
         x, y = hole_positions(vise, block.jaw, block.column, block.row, block.jaw_separation)
-        stances = known.stances(np.stack([x, y], axis=2), pose, right, faces)
+        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, right, faces)
         figures(
-            stances.points,
-            stances.normals,
-            stances.ends,
-            stances.inverses,
+            contact_matrices.points,
+            contact_matrices.normals,
+            contact_matrices.ends,
+            contact_matrices.inverses,
             faces,
             known.length,
             tolerances,
@@ -106,7 +106,8 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
     Returns
     -------
-    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.quality`` takes them.
+    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.statics.quality``
+        takes them.
     """
     outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
     cx, cy = workpiece.center
@@ -121,7 +122,7 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
 
 def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
-    """Rows (M, 11) of loads for ``kernels.reactions``, one for each corner of a path's convex hull.
+    """Rows (M, 11) of loads for ``kernels.statics.reactions``, one for each corner of a path's convex hull.
 
     The largest force is a convex function of the point, so no other point of a path can be worse.
     """

@@ -17,7 +17,7 @@ from attrs import field, frozen
 from workhold.errors import InputError
 from workhold.geometry.intersect import distance_to_segment
 from workhold.geometry.segment import Point, segment_rows
-from workhold.kernels.distance import is_inside
+from workhold.kernels.base.distance import is_inside
 from workhold.listing.ranking import ranking_keys
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.load import Load

@@ -128,9 +128,11 @@ def pose_findings(fixture: Fixture, contacts: list[Contact], faces: list[int]) -
 
     The gaps are enclosed over all of them at once; a gap that is certainly not the peg radius refutes the fixture.
     """
-    written, blur = fixture.pose, arb(0, AGREEMENT)
-    theta = (written.theta_deg + blur) * degree()
-    around = Pose.of(theta, written.x + blur, written.y + blur, fixture.jaw_separation + blur)
+    written, backward_error = fixture.pose, arb(0, AGREEMENT)
+    theta = (written.theta_deg + backward_error) * degree()
+    around = Pose.of(
+        theta, written.x + backward_error, written.y + backward_error, fixture.jaw_separation + backward_error
+    )
     for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
         off = contact.side.gap(contact.in_part(around)) - contact.radius
         if off > 0 or off < 0:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from attrs import evolve
 
-from workhold.files.result_file import TYPE_JAWS, TYPE_NAMES, fixture_rows, load_entry, proof_entry, vise_entry
+from workhold.files.result.writer import TYPE_JAWS, TYPE_NAMES, fixture_rows, load_entry, proof_entry, vise_entry
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
@@ -22,7 +22,7 @@ from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
-    from workhold.files.vise_file import LoadedVise
+    from workhold.files.toolkit.reader import LoadedVise
     from workhold.statics.loads import LoadCase, Worst
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
-from workhold.files.result_forms import vise_of
+from workhold.files.result.forms import vise_of
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
@@ -228,7 +228,7 @@ class ExploreForm(SearchForm):
         if self.vises is not None:
             named = [(form.title, ViseForm(**form.model_dump(exclude={"title"})).vise()) for form in self.vises]
             return tuple(Asked(vise=vise, title=title, **common) for title, vise in named)
-        from workhold.files.vise_presets import preset, preset_names
+        from workhold.files.toolkit.presets import preset, preset_names
 
         asked = []
         for name in preset_names():

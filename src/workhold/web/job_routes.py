@@ -200,7 +200,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
 @router.get("/jobs/{name}/result.json", summary="The result file", response_class=Response)
 async def result_json(request: Request, name: str) -> Response:
     """As ``workhold design --out`` writes it."""
-    from workhold.files.result_file import result_text
+    from workhold.files.result.writer import result_text
 
     return download(found_job(request, name), result_text, "json", "application/json")
 
@@ -208,7 +208,7 @@ async def result_json(request: Request, name: str) -> Response:
 @router.get("/jobs/{name}/result.csv", summary="The fixtures as a table", response_class=Response)
 async def result_csv(request: Request, name: str) -> Response:
     """Comma-separated values, one line for each fixture."""
-    from workhold.files.result_csv import result_csv_text
+    from workhold.files.result.csv import result_csv_text
 
     return download(found_job(request, name), result_csv_text, "csv", "text/csv; charset=utf-8")
 

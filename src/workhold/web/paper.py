@@ -106,7 +106,7 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
 
 def hash_of(result: Result) -> str:
     """SHA-256 of the result's file."""
-    from workhold.files.result_file import result_text
+    from workhold.files.result.writer import result_text
 
     digest = sha256()
     for text in result_text(result):
@@ -116,7 +116,7 @@ def hash_of(result: Result) -> str:
 
 def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as DXF."""
-    from workhold.files.setup_dxf import setup_dxf
+    from workhold.files.dxf.setup import setup_dxf
 
     result = order.result
     return setup_dxf(order.fixture, result.workpiece, result.vise), None
@@ -126,7 +126,7 @@ def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as STEP."""
     if not has_step():
         raise InputError("this server writes no STEP files: take the DXF, or install workhold with the extra step.")
-    from workhold.files.setup_step import setup_step
+    from workhold.files.step.setup import setup_step
 
     result = order.result
     return setup_step(order.fixture, result.workpiece, result.vise), None

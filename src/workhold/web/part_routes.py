@@ -44,7 +44,7 @@ async def about(request: Request) -> dict[str, Any]:
 @router.get("/parts", summary="The parts that come with the program")
 async def parts() -> list[dict[str, str]]:
     """Their names and what they are."""
-    from workhold.files.builtin import builtin_parts
+    from workhold.files.part.builtin import builtin_parts
 
     return [{"name": part.name, "title": part.description} for part in builtin_parts()]
 
@@ -52,7 +52,7 @@ async def parts() -> list[dict[str, str]]:
 @router.get("/parts/{name}", summary="A part that comes with the program")
 async def part(request: Request, name: str) -> dict[str, Any]:
     """Its loops, segments and faces."""
-    from workhold.files.builtin import builtin_parts
+    from workhold.files.part.builtin import builtin_parts
 
     state = state_of(request)
     known = {part.name.lower(): part.name for part in builtin_parts()}.get(name.lower())
@@ -108,7 +108,7 @@ async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
 @router.get("/vises", summary="The vises that come with the program")
 async def vises() -> list[dict[str, Any]]:
     """Plates that people own; lengths in mm."""
-    from workhold.files.vise_presets import preset, preset_names
+    from workhold.files.toolkit.presets import preset, preset_names
 
     return [vise_answer(preset(name)) for name in preset_names()]
 

@@ -45,7 +45,7 @@ class Upload:
     content : its bytes.
     name : what the user calls it; never used as a path.
     most_segments : the most segments of the part.
-    options : keyword arguments of :func:`workhold.files.load.read_workpiece`.
+    options : keyword arguments of :func:`workhold.files.part.load.read_workpiece`.
     """
 
     content: bytes
@@ -73,8 +73,8 @@ def warm_up(kind: str) -> None:
         design(Workpiece.from_loops("warm", [corners]), Vise(pitch=8, columns=2, peg_radius=2))
         return
     import workhold.drawing.sheet
-    import workhold.files.dxf
-    import workhold.files.svg
+    import workhold.files.dxf.reader
+    import workhold.files.svg.reader
     import workhold.statics.loads
     import workhold.web.forms  # noqa: F401
 
@@ -116,7 +116,7 @@ def explore(payload: tuple[Asked, ...], order: Order) -> None:
     """Search in one vise after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from attrs import asdict
 
-    from workhold.files.result_file import vise_entry
+    from workhold.files.result.writer import vise_entry
     from workhold.search.exploring import explore
 
     total = 0
@@ -150,7 +150,7 @@ def explore(payload: tuple[Asked, ...], order: Order) -> None:
 
 def explanation(asked: Asked, order: Order) -> Explanation:
     """Why there is no fixture."""
-    from workhold.listing.problem import Problem
+    from workhold.contact.problem import Problem
     from workhold.search.explaining import explain
 
     problem = Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
@@ -159,7 +159,7 @@ def explanation(asked: Asked, order: Order) -> Explanation:
 
 def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple[Asked, ...]:
     """The searches of a request, after everything that can be known to be wrong with them is asked for."""
-    from workhold.listing.problem import Problem
+    from workhold.contact.problem import Problem
 
     form, most_segments = payload
     searches = form.asked(most_segments)
@@ -180,8 +180,8 @@ def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, An
 
 def builtin_part(name: str, order: Order) -> dict[str, Any]:
     """A part that comes with the program; the name is known to exist."""
-    from workhold.files.builtin import builtin_path
-    from workhold.files.load import read_workpiece
+    from workhold.files.part.builtin import builtin_path
+    from workhold.files.part.load import read_workpiece
     from workhold.web.answers import part_answer
 
     path = builtin_path(name)
@@ -191,7 +191,7 @@ def builtin_part(name: str, order: Order) -> dict[str, Any]:
 
 def read_part(upload: Upload, order: Order) -> dict[str, Any]:
     """The part of a file that was sent."""
-    from workhold.files.load import read_workpiece
+    from workhold.files.part.load import read_workpiece
     from workhold.web.answers import part_answer
     from workhold.web.forms import checked_part
 

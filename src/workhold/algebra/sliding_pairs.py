@@ -1,0 +1,250 @@
+r"""Peg pairs at which the resultant says nothing: the orientation is fixed and the part slides.
+
+Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs, fix the
+orientation by themselves; along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
+resultant such a pair is a factor that carries no information about the others. So the orientation is taken from the pair,
+and the rest of the pose from the other contacts at that orientation: two circles or lines met at a time.
+
+Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
+
+The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same step, level with
+each other: pegs in the same place (sigma = 0) fit at every orientation. The fixtures among these have the two jaws' pegs
+in the two different places that an orientation allows, which are level at a few orientations only.
+"""
+
+from __future__ import annotations
+
+from math import acos, atan2, ceil, floor
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.algebra.conditions import Held, row_points
+from workhold.algebra.constraints import COINCIDENT, Complex, Contacts
+from workhold.algebra.quartets import PARALLEL
+from workhold.algebra.wedges import PegPairs, sector_of
+from workhold.model.vise import Vise
+
+__all__ = [
+    "SlidingPair",
+    "alike",
+    "alike_orientations",
+    "meets",
+    "sliding_pairs_of",
+    "two_and_two_sliding_pairs",
+    "three_and_one_sliding_pairs",
+]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Orientations of slides may be off by this, in radians: lines are parallel and steps equal to rounding only.
+REACH = 1e-9
+
+
+@define(frozen=True)
+class SlidingPair:
+    """A peg pair that fixes the orientation.
+
+    Parameters
+    ----------
+    pair : its index.
+    psi : the orientation in radians.
+    """
+
+    pair: int
+    psi: float
+
+
+def fixed_orientations(a: Array, b: Array, step: complex) -> list[float]:
+    """Orientations fixed by a peg pair, with the step between its pegs in mm, on features a and b; none for most."""
+    between = complex(b[1] - a[1], b[2] - a[2])
+    if a[0] == 0.0 and b[0] == 0.0:
+        if abs(a[3] * b[4] - a[4] * b[3]) > PARALLEL:
+            return []
+        cosine = (a[4] * between.real - a[3] * between.imag) / abs(step)
+        # A step square to the lines puts both contacts on one line of action: no closure.
+        if abs(cosine) >= 1.0 - 1e-12:
+            return []
+        middle = atan2(-a[3], a[4]) - atan2(step.imag, step.real)
+        return [middle + acos(cosine), middle - acos(cosine)]
+    if a[0] != 0.0 and b[0] != 0.0 and abs(a[6] - b[6]) <= COINCIDENT and abs(abs(between) - abs(step)) <= COINCIDENT:
+        return [atan2(between.imag, between.real) - atan2(step.imag, step.real)]
+    return []
+
+
+def step_of(pairs: PegPairs, k: int, vise: Vise) -> complex:
+    """Step between the pegs of a pair as a complex number in mm."""
+    return complex(pairs.column[k] * vise.pitch[0], pairs.row[k] * vise.pitch[1])
+
+
+def sliding_pairs_of(pairs: PegPairs, rows: Array, vise: Vise) -> list[SlidingPair]:
+    """All peg pairs that fix the orientation, once for each orientation."""
+    return [
+        SlidingPair(k, psi)
+        for k in range(len(pairs))
+        for psi in fixed_orientations(rows[pairs.tail[k]], rows[pairs.head[k]], step_of(pairs, k, vise))
+    ]
+
+
+def meets(a: Array, b: Array, shift: complex) -> list[complex]:
+    """Points of feature a's line or circle whose shifted image is on feature b's: none, one or two."""
+    one, two = complex(a[1], a[2]), complex(b[1], b[2]) - shift
+    if a[0] == 0.0 and b[0] == 0.0:
+        turn = a[3] * b[4] - a[4] * b[3]
+        if abs(turn) <= PARALLEL:
+            return []
+        off = two - one
+        return [one + (off.real * b[4] - off.imag * b[3]) / turn * complex(a[3], a[4])]
+    if a[0] == 0.0:
+        return line_meets_circle(one, complex(a[3], a[4]), two, b[6])
+    if b[0] == 0.0:
+        return line_meets_circle(two, complex(b[3], b[4]), one, a[6])
+    gap = abs(two - one)
+    if gap <= COINCIDENT:
+        return []
+    along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
+    if abs(along) >= a[6]:
+        return []
+    half = ((a[6] - along) * (a[6] + along)) ** 0.5
+    direction = (two - one) / gap
+    return [one + direction * complex(along, sign * half) for sign in (1.0, -1.0)]
+
+
+def line_meets_circle(point: complex, tangent: complex, center: complex, radius: float) -> list[complex]:
+    """Where a line through a point meets a circle; a tangent one does not (a double contact carries no force)."""
+    off = (point - center) * tangent.conjugate()
+    if abs(off.imag) >= radius:
+        return []
+    half = ((radius - off.imag) * (radius + off.imag)) ** 0.5
+    return [center + tangent * complex(sign * half, off.imag) for sign in (1.0, -1.0)]
+
+
+def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, vise: Vise) -> list[Held]:
+    """Left pairs that slide, stopped by a right pair (sliding right pairs are these after a half turn)."""
+    found = []
+    sectors = pairs.sectors
+    for sliding_pair in sliding_pairs:
+        i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
+        a, b = int(pairs.tail[i]), int(pairs.head[i])
+        sector = int(sector_of(np.array(sliding_pair.psi)))
+        near = sectors[:, sector] | sectors[:, sector - 1] | sectors[:, (sector + 1) % sectors.shape[1]]
+        for j in np.flatnonzero(near):
+            c, d = int(pairs.tail[j]), int(pairs.head[j])
+            step = z * step_of(pairs, int(j), vise)
+            for point in meets(rows[c], rows[d], step):
+                line, tail = stopped(rows[a], sliding_pair.psi, (point / z).imag, vise)
+                if len(line) == 0:
+                    continue
+                zero = np.zeros(len(line), np.int64)
+                center = np.stack([tail, tail + z * step_of(pairs, i, vise), zero + point, zero + point + step], axis=1)
+                found.append(
+                    Held(
+                        2,
+                        np.stack([zero + a, zero + b, zero + c, zero + d], axis=1),
+                        np.stack([zero, zero + pairs.column[i], zero, zero + pairs.column[j]], axis=1),
+                        np.stack([zero, zero + pairs.row[i], line, line + pairs.row[j]], axis=1),
+                        np.full(len(line), sliding_pair.psi),
+                        np.full(len(line), REACH),
+                        center,
+                    )
+                )
+    return found
+
+
+def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray, Complex]:
+    """Rows of the first right peg, counted from the first left peg, and places of the latter on its feature.
+
+    ``height`` is that of the first right peg along the vise's y axis in mm.
+    """
+    middle = ((row[1] + 1j * row[2]) * np.exp(-1j * psi)).imag
+    tangent = ((row[3] + 1j * row[4]) * np.exp(-1j * psi)).imag
+    reach = abs(row[5] * tangent) if row[0] == 0.0 else row[6]
+    pitch = vise.pitch[1]
+    first = ceil((height - vise.row_offset - middle - reach) / pitch - 1e-9)
+    last = floor((height - vise.row_offset - middle + reach) / pitch + 1e-9)
+    line = np.arange(first, last + 1)
+    index, point, _ = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
+    return line[index], point
+
+
+def three_and_one_sliding_pairs(
+    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, vise: Vise
+) -> list[Held]:
+    """Left pairs that slide, stopped by a third left peg; the third peg may be anywhere in the order of pegs."""
+    found = []
+    most = vise.columns - 1
+    for sliding_pair in sliding_pairs:
+        i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
+        a, b, step = int(pairs.tail[i]), int(pairs.head[i]), step_of(pairs, i, vise)
+        for c, column, row in third_pegs(pairs, a):
+            spread = (0, int(pairs.column[i]), column)
+            if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(spread) > most:
+                continue
+            third = z * complex(column * vise.pitch[0], row * vise.pitch[1])
+            for point in meets(rows[a], rows[c], third):
+                found.append(
+                    Held(
+                        3,
+                        np.array([[a, b, c]]),
+                        np.array([[0, pairs.column[i], column]]),
+                        np.array([[0, pairs.row[i], row]]),
+                        np.array([sliding_pair.psi]),
+                        np.array([REACH]),
+                        np.array([[point, point + z * step, point + third]]),
+                    )
+                )
+    return found
+
+
+def third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
+    """Features and steps (columns, rows) of pegs that can stand beside a peg on a feature, before or after it."""
+    after = [
+        (int(h), int(k), int(m))
+        for t, h, k, m in zip(pairs.tail, pairs.head, pairs.column, pairs.row, strict=True)
+        if t == tail
+    ]
+    before = [
+        (int(t), -int(k), -int(m))
+        for t, h, k, m in zip(pairs.tail, pairs.head, pairs.column, pairs.row, strict=True)
+        if h == tail
+    ]
+    return after + before
+
+
+def alike(contacts: Contacts) -> NDArray[np.bool_]:
+    """Which systems of four pegs have the same lines or circles and the same step on both jaws, at one level, (N,)."""
+    rows, point = contacts.rows, contacts.point
+    same = np.abs(point[:, 2]) + np.abs(point[:, 3] - point[:, 1]) <= COINCIDENT
+    for k in range(2):
+        one, two = rows[:, k], rows[:, k + 2]
+        off = two[:, 1:3] - one[:, 1:3]
+        across = off[:, 0] * one[:, 4] - off[:, 1] * one[:, 3]
+        turn = one[:, 3] * two[:, 4] - one[:, 4] * two[:, 3]
+        lines = (one[:, 0] == 0.0) & (np.abs(across) <= COINCIDENT) & (np.abs(turn) <= PARALLEL)
+        circles = (one[:, 0] != 0.0) & (np.abs(off).max(axis=1) + np.abs(two[:, 6] - one[:, 6]) <= COINCIDENT)
+        same &= (one[:, 0] == two[:, 0]) & (lines | circles)
+    return np.asarray(same)
+
+
+def alike_orientations(contacts: Contacts) -> tuple[IntArray, Array]:
+    """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
+
+    The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs brought
+    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0, with x the
+    step and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
+    """
+    first = np.flatnonzero(contacts.rows[:, 0, 0] != 0.0)
+    line = first[contacts.rows[first, 1, 0] == 0.0]
+    turn = np.angle(contacts.normal[line, 1])
+    owners, found = [line, line], [turn + np.pi / 2, turn - np.pi / 2]
+    both = first[contacts.rows[first, 1, 0] != 0.0]
+    between = contacts.middle[both, 0] - contacts.middle[both, 1]
+    size = np.abs(between)
+    cosine = -contacts.point[both, 1].real / np.where(size == 0.0, 1e-300, size)
+    fits = np.abs(cosine) < 1.0
+    both, middle, spread = both[fits], np.angle(between[fits]), np.arccos(cosine[fits])
+    owners += [both, both]
+    found += [middle + spread, middle - spread]
+    return np.concatenate(owners), np.concatenate(found)

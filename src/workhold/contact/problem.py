@@ -1,0 +1,130 @@
+"""What every engine begins with: a workpiece in a vise, made ready for arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import isfinite
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.contact.features import ContactFeature, allowed_features, contact_features, end_slacks, feature_rows
+from workhold.errors import InputError
+from workhold.geometry.segment import segment_rows
+from workhold.model.diameter import outline_diameter
+from workhold.model.restrictions import Restrictions
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["TYPES", "Problem", "Progress", "check_options"]
+
+Progress = Callable[[float, int], None]
+TYPES = ("I", "II")
+# Roundings of half a unit in the last place in a feature's row, generously counted.
+ROUNDINGS = 16.0 * 1.2e-16
+
+
+@define(frozen=True, eq=False)
+class Problem:
+    """A workpiece in a vise; lengths in mm, everything about the centre of the part's bounding box.
+
+    Parameters
+    ----------
+    workpiece, vise : what to hold and what to hold it in.
+    contact_margin : smallest distance between a contact and the end of its feature.
+    restrictions : what is ruled out.
+    locus : all contact features, also those that are ruled out.
+    rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
+    faces : (F,) number of each feature's face.
+    outline : (S, 8) the part's faces.
+    diameter : largest distance between two peg centres that touch the part.
+    """
+
+    workpiece: Workpiece
+    vise: Vise
+    contact_margin: float
+    restrictions: Restrictions
+    locus: tuple[ContactFeature, ...]
+    rows: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    outline: NDArray[np.float64]
+    diameter: float
+
+    @classmethod
+    def of(
+        cls,
+        workpiece: Workpiece,
+        vise: Vise,
+        contact_margin: float = 0.0,
+        restrictions: Restrictions | None = None,
+    ) -> Problem:
+        """Make a problem ready.
+
+        Raises
+        ------
+        InputError
+            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
+        """
+        restrictions = restrictions or Restrictions()
+        features = contact_features(workpiece, vise.peg_radius)
+        if not features:
+            raise InputError(
+                f"a peg of radius {vise.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
+                "corners too narrow for it; use a smaller peg."
+            )
+        locus = tuple(features)
+        if restrictions:
+            features = allowed_features(features, workpiece, restrictions, vise.body_radius)
+        center = workpiece.center
+        return cls(
+            workpiece,
+            vise,
+            contact_margin,
+            restrictions,
+            locus,
+            rows=np.concatenate([centered(feature_rows(features), center), end_slacks(features)], axis=1),
+            faces=np.array([feature.face for feature in features], dtype=np.int64),
+            outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
+            diameter=outline_diameter(workpiece) + 2 * vise.peg_radius,
+        )
+
+    @property
+    def wrench_length(self) -> float:
+        """L of the wrenches: half the diameter of the peg-centre locus."""
+        return self.diameter / 2
+
+    @property
+    def backward_error(self) -> float:
+        """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
+        center = self.workpiece.center
+        return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [1, 2, 6]]).max()))
+
+
+def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
+    """Rows (N, 8) of segments moved so that a point becomes the origin; read-only."""
+    out = np.array(rows)
+    out[:, 1] -= center[0]
+    out[:, 2] -= center[1]
+    out.setflags(write=False)
+    return out
+
+
+def check_options(
+    types: Sequence[str], contact_margin: float, best: int | None = None, threads: int | None = None
+) -> None:
+    """Refuse options out of range.
+
+    Raises
+    ------
+    InputError
+        Naming the option.
+    """
+    for name in types:
+        if name not in TYPES:
+            raise InputError(f"type {name} is unknown: choose I, II or both.")
+    if not (isfinite(contact_margin) and contact_margin >= 0):
+        raise InputError(f"contact margin {contact_margin} is not a length: give 0 or more, in mm.")
+    for option, count in (("best", best), ("threads", threads)):
+        if count is not None and (count != int(count) or count < 1):
+            raise InputError(f"{option} {count} is not a positive whole number.")

@@ -1,0 +1,175 @@
+"""What each DXF entity is as a chain: its points and bulges in the coordinates of the layout or block it stands in.
+
+Glossary
+--------
+OCS : object coordinate system. Flat entities carry an extrusion direction; (0, 0, 1) is the drawing plane seen from
+    above, (0, 0, -1) the same plane seen from below, whose x runs the other way (DXF reference, "arbitrary axis
+    algorithm"). Any other direction is tilted and refused.
+raw chain : points (x, y, z) and bulges before units and block placements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import cos, radians, sin, tau
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import arc_bulges
+
+__all__ = ["REFUSED", "SHAPES", "RawChain"]
+
+Point3 = tuple[float, float, float]
+
+REFUSED = {
+    "SPLINE": "a spline",
+    "ELLIPSE": "an ellipse",
+    "HELIX": "a helix",
+    "MLINE": "a multiline",
+    "REGION": "a region",
+    "3DFACE": "a 3D face",
+    "3DSOLID": "a 3D solid",
+    "BODY": "a 3D body",
+    "MESH": "a 3D mesh",
+    "SURFACE": "a 3D surface",
+    "EXTRUDEDSURFACE": "a 3D surface",
+    "LOFTEDSURFACE": "a 3D surface",
+    "REVOLVEDSURFACE": "a 3D surface",
+    "SWEPTSURFACE": "a 3D surface",
+}
+
+# Components of a unit vector below this are rounding.
+TILT = 1e-9
+
+
+@frozen
+class RawChain:
+    """N + 1 points (x, y, z) and N bulges, in drawing units."""
+
+    points: Sequence[Point3]
+    bulges: Sequence[float]
+    numbered: bool = False
+
+
+def seen_from_below(entity: Any) -> bool:
+    """Whether an entity's extrusion is (0, 0, -1).
+
+    Raises
+    ------
+    InputError
+        When it is tilted.
+    """
+    x, y, z = entity.dxf.extrusion
+    if z == 0 or abs(x) > TILT * abs(z) or abs(y) > TILT * abs(z):
+        raise InputError(
+            f"is tilted out of the drawing plane (extrusion {x:.4g}, {y:.4g}, {z:.4g}): "
+            "draw the part flat, in the XY plane."
+        )
+    return bool(z < 0)
+
+
+def in_layout(entity: Any, points: Sequence[Point3], bulges: Sequence[float], numbered: bool = False) -> RawChain:
+    """A chain in OCS as a chain in the layout's or block's coordinates."""
+    if seen_from_below(entity):
+        points = [(-x, y, -z) for x, y, z in points]
+        bulges = [-b for b in bulges]
+    return RawChain(points, bulges, numbered)
+
+
+def line(entity: Any) -> RawChain:
+    """A LINE; its ends are never in OCS."""
+    return RawChain([tuple(entity.dxf.start), tuple(entity.dxf.end)], [0.0])
+
+
+def circle(entity: Any) -> RawChain:
+    """A CIRCLE, as two halves."""
+    x, y, z = entity.dxf.center
+    radius = positive_radius(entity)
+    right, left = (x + radius, y, z), (x - radius, y, z)
+    return in_layout(entity, [right, left, right], [1.0, 1.0])
+
+
+def arc(entity: Any) -> RawChain:
+    """An ARC, counter-clockwise in its OCS; equal angles, or a full turn between them, make a circle."""
+    start, end = float(entity.dxf.start_angle), float(entity.dxf.end_angle)
+    sweep = radians((end - start) % 360.0)
+    if min(sweep, tau - sweep) < 1e-9:
+        return circle(entity)
+    x, y, z = entity.dxf.center
+    radius = positive_radius(entity)
+    bulges = arc_bulges(sweep)
+    angles = [radians(start), radians(end)]
+    if len(bulges) == 2:
+        angles.insert(1, radians(start) + sweep / 2)
+    return in_layout(entity, [(x + radius * cos(t), y + radius * sin(t), z) for t in angles], bulges)
+
+
+def positive_radius(entity: Any) -> float:
+    """The radius in drawing units.
+
+    Raises
+    ------
+    InputError
+        When it is negative or not a number (zero gives a chain of zero length, dropped later).
+    """
+    radius = float(entity.dxf.radius)
+    if not radius >= 0:
+        raise InputError(f"has the radius {radius:g}: correct it.")
+    return radius
+
+
+def lwpolyline(entity: Any) -> RawChain:
+    """An LWPOLYLINE with bulges."""
+    height = float(entity.dxf.elevation)
+    rows = [(float(x), float(y), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
+    return polyline_chain(entity, [((x, y, height), bulge) for x, y, bulge in rows], bool(entity.closed))
+
+
+def polyline(entity: Any) -> RawChain:
+    """An old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie flat).
+
+    Raises
+    ------
+    InputError
+        For meshes and for polylines smoothed into splines.
+    """
+    if entity.is_poly_face_mesh or entity.is_polygon_mesh:
+        raise InputError("is a 3D mesh, which has no outline: draw the part flat, with lines and arcs.")
+    if entity.dxf.flags & 4:
+        raise InputError(
+            "is smoothed into a spline, which is not made of lines and arcs: redraw it with lines and arcs."
+        )
+    if entity.is_3d_polyline:
+        rows = [(tuple(vertex.dxf.location), 0.0) for vertex in entity.vertices]
+        chain = polyline_points(rows, bool(entity.is_closed))
+        return RawChain(*chain, numbered=True)
+    height = float(entity.dxf.elevation[2])
+    rows = [
+        ((float(v.dxf.location[0]), float(v.dxf.location[1]), height), float(v.dxf.get("bulge", 0.0)))
+        for v in entity.vertices
+    ]
+    return polyline_chain(entity, rows, bool(entity.is_closed))
+
+
+def polyline_chain(entity: Any, rows: Sequence[tuple[Point3, float]], closed: bool) -> RawChain:
+    """A flat polyline's chain from (point, bulge) rows in OCS."""
+    return in_layout(entity, *polyline_points(rows, closed), numbered=True)
+
+
+def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple[list[Point3], list[float]]:
+    """Points and bulges of a polyline; the bulge of an open polyline's last vertex means nothing."""
+    points, bulges = [point for point, _ in rows], [bulge for _, bulge in rows]
+    if closed and points:
+        points.append(points[0])
+    return points, bulges[: max(len(points) - 1, 0)]
+
+
+SHAPES: dict[str, Callable[[Any], RawChain]] = {
+    "LINE": line,
+    "ARC": arc,
+    "CIRCLE": circle,
+    "LWPOLYLINE": lwpolyline,
+    "POLYLINE": polyline,
+}

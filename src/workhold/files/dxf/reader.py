@@ -1,0 +1,144 @@
+"""DXF drawings: from bytes to chains in mm (ezdxf reads the file; the geometry is ours, exact and without Béziers).
+
+Glossary
+--------
+hidden layer : frozen, switched off, or Defpoints, which is never printed. Read only when named.
+label : entity kind and handle (the hexadecimal name every CAD program shows), then the INSERTs it was placed by.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from workhold.errors import InputError
+from workhold.files.dxf.walk import Nest, Walk
+from workhold.files.outline.chain import Drawing
+from workhold.files.outline.placement import Placement
+from workhold.model.units import unit_named
+
+__all__ = ["read_dxf"]
+
+# $INSUNITS (DXF reference, header variables): name and millimetres.
+INSUNITS = {
+    1: ("inch", 25.4),
+    2: ("feet", 304.8),
+    4: ("mm", 1.0),
+    5: ("cm", 10.0),
+    6: ("m", 1000.0),
+    8: ("microinches", 25.4e-6),
+    9: ("mils", 25.4e-3),
+    10: ("yards", 914.4),
+    13: ("microns", 1e-3),
+    14: ("decimetres", 100.0),
+    21: ("US survey feet", 1200e3 / 3937),
+    22: ("US survey inches", 100e3 / 3937),
+}
+
+
+def read_dxf(
+    path: Path, content: bytes, *, unit: str | None, usual_unit: str | None = None, layers: Sequence[str] | None
+) -> Drawing:
+    """Read the outline entities of a DXF file's model space.
+
+    Parameters
+    ----------
+    path : the file, which ezdxf opens by itself.
+    content : its bytes.
+    unit : overrides the file's unit.
+    usual_unit : the unit of a file that does not say.
+    layers : layers to read; all visible ones when None.
+
+    Raises
+    ------
+    InputError
+        For files that are no DXF or damaged, unknown units, unknown layers, and entities that are refused.
+    """
+    refuse_other_formats(content)
+    document, remarks = opened(path)
+    # Into a file without a header ezdxf writes one of its own, with metres in it.
+    code = document.header.get("$INSUNITS", 0) if b"$INSUNITS" in content else 0
+    scale, unit_remarks = scale_of(code, unit, usual_unit)
+    walk = Walk(document, layers)
+    walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
+    walk.refuse_missing_layers()
+    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()))
+
+
+def refuse_other_formats(content: bytes) -> None:
+    """Refuse what is plainly no DXF, or cut short, before ezdxf tries its best with it.
+
+    Raises
+    ------
+    InputError
+        Saying what it is.
+    """
+    if content[:4] == b"AC10" or content[:2] == b"MC":
+        raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
+    if content.startswith(b"AutoCAD Binary DXF"):
+        return
+    if b"SECTION" not in content[:65536]:
+        raise InputError("this is not a DXF file: export the part's outline as DXF.")
+    if not content[-4096:].rstrip(b" \t\r\n\x00\x1a").endswith(b"EOF") and b"\nEOF" not in content[-65536:]:
+        raise InputError("the DXF file is cut short (it has no end mark): export or copy it again.")
+
+
+def opened(path: Path) -> tuple[Any, list[str]]:
+    """The ezdxf document, with a remark when the file had to be repaired.
+
+    Raises
+    ------
+    InputError
+        When even the repair fails.
+    """
+    from ezdxf import recover
+    from ezdxf.filemanagement import readfile
+
+    # ezdxf reports each oddity of a file to its logger; without a handler Python would print them.
+    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
+    try:
+        return readfile(path), []
+    except Exception as first:  # a damaged file may fail anywhere inside
+        try:
+            document, _ = recover.readfile(path)
+        except Exception:
+            raise InputError(
+                f"the DXF file is damaged ({one_line(first)}): open it in a CAD program and export it again."
+            ) from first
+        return document, [f"The DXF file was damaged and had to be repaired ({one_line(first)}); check the outline."]
+
+
+def one_line(error: Exception) -> str:
+    """An error's text without line breaks, not too long, and without a full stop."""
+    text = " ".join(str(error).split()) or type(error).__name__
+    return text[:120].rstrip(".")
+
+
+def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]]:
+    """Millimetres per drawing unit, and a remark when the user's unit is not the file's ($INSUNITS, 0 for none).
+
+    Raises
+    ------
+    InputError
+        When neither the file nor the user gives a unit.
+    """
+    known = INSUNITS.get(code)
+    if unit is not None:
+        scale = unit_named(unit).millimetres
+        if known is not None and known[1] != scale:
+            return scale, [f"The file says its unit is {known[0]}; it was read in {unit} as asked."]
+        return scale, []
+    if known is not None:
+        if usual_unit is not None and known[1] != unit_named(usual_unit).millimetres:
+            # Whoever gave the unit for the drawing's sake learns here that it did not count.
+            return known[1], [f"The file says its unit is {known[0]}; it was read so (--drawing-unit overrides it)."]
+        return known[1], []
+    if usual_unit is not None:
+        return unit_named(usual_unit).millimetres, []
+    if code:
+        raise InputError(
+            f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with --unit mm (or inch)."
+        )
+    raise InputError("the drawing does not say its unit: give it with --unit mm (or inch, cm, m).")

@@ -1,0 +1,284 @@
+"""Walking through a DXF layout and the blocks inserted in it, collecting chains.
+
+Glossary
+--------
+effective layer : an entity's layer, or the INSERT's when the entity stands on layer 0 of a block.
+nest : where a walk stands: the placement, layer and name of the INSERTs around it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
+
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
+from workhold.files.outline.chain import Chain, counted, listed
+from workhold.files.outline.placement import Placement
+
+__all__ = ["Nest", "Walk"]
+
+T = TypeVar("T")
+
+# More entities than this, blocks written out, is no drawing of a part (or a file made to exhaust the machine).
+MOST_ENTITIES = 500_000
+DEEPEST_NEST = 50
+# Heights (z) may differ by rounding only, in mm.
+LEVEL = 1e-6
+
+
+@frozen
+class Nest:
+    """Where the walk stands.
+
+    Parameters
+    ----------
+    placement : block or model space coordinates to mm.
+    layer : effective layer of the innermost INSERT; None in model space.
+    frozen : whether an INSERT around stands on a hidden layer.
+    suffix : `` of INSERT 41`` and so on, for labels.
+    blocks : names of the blocks around.
+    """
+
+    placement: Placement
+    layer: str | None = None
+    frozen: bool = False
+    suffix: str = ""
+    blocks: tuple[str, ...] = ()
+
+
+class Walk:
+    """Collects the chains of a document's entities, and what was left out."""
+
+    def __init__(self, document: Any, layers: Sequence[str] | None) -> None:
+        self.document = document
+        self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
+        self.chains: list[Chain] = []
+        self.names: dict[str, str] = {}
+        self.hidden: Counter[str] = Counter()
+        self.ignored: Counter[str] = Counter()
+        self.missing_blocks: Counter[str] = Counter()
+        self.count = 0
+        self.level: tuple[float, str] | None = None
+        self.hidden_layers = {
+            layer.dxf.name.casefold()
+            for layer in document.layers
+            if layer.is_frozen() or layer.is_off() or layer.dxf.name.casefold() == "defpoints"
+        }
+
+    def visit_all(self, entities: Iterable[Any], nest: Nest) -> None:
+        """Visit entities in drawing order."""
+        for entity in entities:
+            self.visit(entity, nest)
+
+    def visit(self, entity: Any, nest: Nest) -> None:
+        """Collect one entity, or note why it was left out.
+
+        Raises
+        ------
+        InputError
+            For an entity that is refused, naming it.
+        """
+        self.count += 1
+        if self.count > MOST_ENTITIES:
+            raise InputError(
+                f"the drawing has more than {MOST_ENTITIES} entities once its blocks are written out: export the "
+                "part's outline only."
+            )
+        kind = entity.dxftype()
+        label = f"{kind} {entity.dxf.handle}{nest.suffix}"
+        try:
+            layer = self.effective_layer(entity, nest)
+            if kind == "INSERT":
+                self.visit_insert(entity, nest, layer, label)
+            elif kind in SHAPES or kind in REFUSED:
+                if self.is_used(entity, layer, nest):
+                    self.add(entity, kind, nest.placement, label)
+            elif self.wanted is None or layer.casefold() in self.wanted:
+                self.ignored[kind] += 1
+        except InputError:
+            raise
+        except Exception as error:  # ezdxf checks few values; a damaged one may fail in any way
+            raise InputError(f"{label} is damaged ({error}): delete it or draw it again.") from error
+
+    def effective_layer(self, entity: Any, nest: Nest) -> str:
+        """The layer an entity counts as being on."""
+        layer = str(entity.dxf.get("layer", "0"))
+        return nest.layer if layer == "0" and nest.layer is not None else layer
+
+    def is_used(self, entity: Any, layer: str, nest: Nest) -> bool:
+        """Whether an outline entity is on a chosen layer, or visible when none were chosen."""
+        key = layer.casefold()
+        self.names.setdefault(key, layer)
+        if self.wanted is not None and key not in self.wanted:
+            return False
+        invisible = bool(entity.dxf.get("invisible", 0))
+        if invisible or (self.wanted is None and (key in self.hidden_layers or nest.frozen)):
+            self.hidden["made invisible" if invisible else f"on layer {layer}"] += 1
+            return False
+        return True
+
+    def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
+        """Add an entity's chain.
+
+        Raises
+        ------
+        InputError
+            For kinds that are refused, entities out of the plane, and arcs that a placement makes elliptical.
+        """
+        if kind in REFUSED:
+            x, y = placement(place_of(entity))
+            raise InputError(
+                f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: convert it to "
+                "lines and arcs in the CAD program, or leave its layer out with --layer."
+            )
+        raw = said_of(label, SHAPES[kind], entity)
+        if not raw.bulges:
+            raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
+        self.check_level(raw, placement, label)
+        points = tuple(placement(point) for point in raw.points)
+        if any(raw.bulges) and not placement.keeps_circles:
+            x, y = points[0]
+            raise InputError(
+                f"{label} at ({x:.6g}, {y:.6g}) has arcs that unequal scales turn into ellipses: give the block equal "
+                "scales, or explode it and redraw the arcs."
+            )
+        count = len(raw.bulges)
+        labels = tuple(numbered(label, k) for k in range(count)) if raw.numbered and count > 1 else (label,) * count
+        self.chains.append(Chain(points, placement.bulges(raw.bulges), labels))
+
+    def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
+        """Refuse entities that are not level, or lie at another height than those before.
+
+        Raises
+        ------
+        InputError
+            Naming both heights.
+        """
+        for _, _, z in raw.points:
+            height = placement.height_scale * z + placement.height
+            if self.level is None:
+                self.level = (height, label)
+            elif not abs(height - self.level[0]) <= LEVEL * max(1.0, abs(self.level[0])):
+                other = "itself" if label == self.level[1] else self.level[1]
+                raise InputError(
+                    f"{label} reaches the height z = {height:.6g} mm, but {other} lies at z = {self.level[0]:.6g} mm: "
+                    "draw the part flat, in the XY plane."
+                )
+
+    def visit_insert(self, insert: Any, nest: Nest, layer: str, label: str) -> None:
+        """Visit the entities of an inserted block, once for every place of an array.
+
+        Raises
+        ------
+        InputError
+            For tilted or crushed blocks, and blocks that contain themselves.
+        """
+        key = layer.casefold()
+        name = str(insert.dxf.name)
+        block = self.document.blocks.get(name)
+        if block is None:
+            self.missing_blocks[name] += 1
+            return
+        if name.casefold() in nest.blocks or len(nest.blocks) >= DEEPEST_NEST:
+            raise InputError(f"{label} inserts block '{name}', which contains itself: repair the drawing.")
+        said_of(label, seen_from_below, insert)
+        if insert.dxf.get("invisible", 0):
+            self.hidden["made invisible"] += 1
+            return
+        rows, columns = max(insert.dxf.row_count, 1), max(insert.dxf.column_count, 1)
+        if rows * columns > MOST_ENTITIES:
+            raise InputError(f"{label} repeats its block {rows * columns} times: export the part's outline only.")
+        inner = evolve(
+            nest,
+            layer=layer,
+            frozen=nest.frozen or key in self.hidden_layers,
+            suffix=f" of INSERT {insert.dxf.handle}{nest.suffix}",
+            blocks=(*nest.blocks, name.casefold()),
+        )
+        for single in insert.multi_insert() if rows * columns > 1 else [insert]:
+            placement = nest.placement.after(block_placement(single))
+            if placement.flat:
+                raise InputError(f"{label} has a scale of zero: correct it.")
+            self.visit_all(block, evolve(inner, placement=placement))
+
+    def refuse_missing_layers(self) -> None:
+        """Refuse chosen layers on which there is no outline entity.
+
+        Raises
+        ------
+        InputError
+            Listing the layers that have some.
+        """
+        missing = [name for key, name in (self.wanted or {}).items() if key not in self.names]
+        if missing:
+            have = listed(sorted(self.names.values())) or "none"
+            raise InputError(f"no line or arc is on layer '{missing[0]}': layers with some are {have}.")
+        if self.wanted is not None and not self.wanted:
+            raise InputError("no layer was chosen: name one, or leave --layer out.")
+
+    def remarks(self) -> list[str]:
+        """What was left out, one sentence for each reason."""
+        remarks = []
+        if self.ignored:
+            kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.ignored.items()))
+            remarks.append(f"Ignored entities that are no outline: {kinds}.")
+        if self.hidden:
+            total = sum(self.hidden.values())
+            places = ", ".join(f"{count} {where}" for where, count in sorted(self.hidden.items()))
+            remarks.append(
+                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer with --layer "
+                "to read it all the same."
+            )
+        if self.missing_blocks:
+            names = listed(sorted(self.missing_blocks))
+            remarks.append(
+                f"Left out blocks that the file does not contain: {names}; bind external references to read them."
+            )
+        return remarks
+
+
+def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:
+    """Apply a function to an entity; its complaints begin with the entity's label.
+
+    Raises
+    ------
+    InputError
+        As the function does.
+    """
+    try:
+        return function(entity)
+    except InputError as error:
+        raise InputError(f"{label} {error}") from error
+
+
+def numbered(label: str, k: int) -> str:
+    """The label of segment k of a polyline: its number stands right after the handle."""
+    kind, handle, *rest = label.split(" ", 2)
+    return " ".join([kind, handle, f"segment {k}", *rest])
+
+
+def block_placement(insert: Any) -> Placement:
+    """The placement of a block by a level INSERT."""
+    matrix = insert.matrix44()
+    ax, ay, _ = matrix.transform_direction((1, 0, 0))
+    cx, cy, _ = matrix.transform_direction((0, 1, 0))
+    _, _, zz = matrix.transform_direction((0, 0, 1))
+    ex, ey, ez = matrix.transform((0, 0, 0))
+    return Placement(ax, ay, cx, cy, ex, ey, zz, ez)
+
+
+def place_of(entity: Any) -> tuple[float, float]:
+    """Some point of an entity, in its own coordinates; the origin when it tells none."""
+    for name in ("center", "start", "vtx0", "start_location"):
+        if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
+            point = entity.dxf.get(name)
+            return float(point[0]), float(point[1])
+    for points in ("control_points", "fit_points"):
+        found = getattr(entity, points, None)
+        if found is not None and len(found):
+            return float(found[0][0]), float(found[0][1])
+    return 0.0, 0.0

@@ -1,0 +1,300 @@
+"""Joining loose chains end to end into closed loops.
+
+Ends that agree to 1e-9 mm are joined first, so that a generous tolerance cannot swallow small features; only the ends
+left over are joined across gaps, nearest first.
+
+Glossary
+--------
+end : end 2 i of a set of chains is the first point of chain i, end 2 i + 1 its last.
+gap : a distance between two ends that are joined all the same, at most the join tolerance.
+junction : a point where three or more ends meet, so that nobody can say how the outline goes on.
+stray : a run of chains that does not close.
+loop : a closed run of segments, run in either direction.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from math import dist, hypot
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import SAME_POINT, Chain, at, counted, listed, rebulged, without_segment
+from workhold.files.outline.near import close_pairs, groups
+from workhold.geometry.loop import SHORTEST
+from workhold.geometry.segment import Point
+
+__all__ = ["Joined", "Loop", "Stray", "join"]
+
+# A chain may close on itself only over a gap this much shorter than the chain, or every short line would.
+LOOP_OVER_GAP = 3.0
+
+
+@frozen
+class Loop:
+    """A closed run of segments.
+
+    Parameters
+    ----------
+    vertices : (N, 3) array of x, y in mm and bulge.
+    labels : N names for messages.
+    """
+
+    vertices: NDArray[np.float64]
+    labels: tuple[str, ...]
+
+
+@frozen
+class Stray:
+    """A run of chains that does not close; ``chain`` is the whole of it."""
+
+    chain: Chain
+    first: str
+    last: str
+
+
+@frozen
+class Joined:
+    """Loops, what stayed open, and remarks on gaps closed and entities dropped."""
+
+    loops: tuple[Loop, ...]
+    strays: tuple[Stray, ...]
+    remarks: tuple[str, ...]
+
+
+def join(chains: Sequence[Chain], tolerance: float) -> Joined:
+    """Join chains end to end.
+
+    Parameters
+    ----------
+    chains : open and closed chains in mm, without segments of zero length.
+    tolerance : largest gap to close, in mm.
+
+    Raises
+    ------
+    InputError
+        For a junction, naming its place and the entities that meet there.
+    """
+    open_chains = [c for c in chains if not c.closed]
+    loops = [closed_loop(c) for c in chains if c.closed]
+    node = end_nodes(open_chains)
+    open_chains, node, repeated = without_repeats(open_chains, node)
+    partner = joined_ends(open_chains, node, tolerance)
+    gaps: list[tuple[Point, float]] = []
+    strays = []
+    for run, is_closed in runs(partner):
+        members = [open_chains[k].reversed() if turned else open_chains[k] for k, turned in run]
+        whole = connected(members, is_closed, gaps)
+        if is_closed:
+            if len(whole.bulges) > 2 or any(whole.bulges):
+                loops.append(closed_loop(whole))
+        else:
+            strays.append(Stray(whole, members[0].entity, members[-1].entity))
+    loops, repeated_loops = without_repeated_loops(loops)
+    repeated += repeated_loops
+    remarks = []
+    if repeated:
+        remarks.append(f"Left out {counted(len(repeated), 'entity', 'entities')} drawn twice: {listed(repeated)}.")
+    if gaps:
+        gaps.sort(key=lambda gap: -gap[1])
+        places = listed([f"{size:.3g} mm at {at(point)}" for point, size in gaps])
+        remarks.append(f"Closed {counted(len(gaps), 'gap', 'gaps')} between ends: {places}.")
+    return Joined(tuple(loops), tuple(strays), tuple(remarks))
+
+
+def closed_loop(chain: Chain) -> Loop:
+    """The loop of a closed chain."""
+    rows = [(x, y, bulge) for (x, y), bulge in zip(chain.points[:-1], chain.bulges, strict=True)]
+    return Loop(np.array(rows, dtype=np.float64), chain.labels)
+
+
+def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
+    """(2 N,) numbers of the points at which the ends of N chains lie; ends within 1e-9 mm share one."""
+    ends = np.array([p for c in chains for p in (c.points[0], c.points[-1])], dtype=np.float64).reshape(-1, 2)
+    return groups(len(ends), close_pairs(ends, SAME_POINT))
+
+
+def without_repeats(
+    chains: Sequence[Chain], node: NDArray[np.int64]
+) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
+    """Keep one of chains that were drawn twice; also the nodes of those kept, and the names of those left out."""
+    between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
+    kept: list[int] = []
+    repeated: list[str] = []
+    for k, chain in enumerate(chains):
+        first, last = sorted((int(node[2 * k]), int(node[2 * k + 1])))
+        rivals = between[first, last, len(chain.bulges)]
+        twin = next((j for j in rivals if same_course(chains[j], chain)), None)
+        if twin is None:
+            rivals.append(k)
+            kept.append(k)
+        else:
+            repeated.append(f"{chain.entity} repeats {chains[twin].entity}")
+    index = np.array(kept, dtype=np.int64)
+    return [chains[k] for k in kept], np.column_stack((node[2 * index], node[2 * index + 1])).ravel(), repeated
+
+
+def same_course(a: Chain, b: Chain) -> bool:
+    """Whether two chains run through the same points and arcs, in either direction."""
+    return any(
+        all(dist(p, q) <= SAME_POINT for p, q in zip(a.points, c.points, strict=True))
+        and all(abs(p - q) <= SAME_POINT for p, q in zip(a.bulges, c.bulges, strict=True))
+        for c in (b, b.reversed())
+    )
+
+
+def without_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
+    """Keep one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
+    kept: dict[object, Loop] = {}
+    repeated = []
+    for loop in loops:
+        xy, bulges = np.round(loop.vertices[:, :2], 6) + 0.0, np.round(np.abs(loop.vertices[:, 2]), 6)
+        middles = np.round(arc_middles(loop.vertices), 6) + 0.0
+        key = (tuple(sorted(map(tuple, xy.tolist()))), tuple(sorted(map(tuple, middles.tolist()))), len(bulges))
+        if key in kept:
+            names = (without_segment(loop.labels[0]), without_segment(kept[key].labels[0]))
+            repeated.append(f"{names[0]} repeats {names[1]}")
+        else:
+            kept[key] = loop
+    return list(kept.values()), repeated
+
+
+def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, 2) middle points of the segments of a loop: half a chord times the bulge to the chord's right."""
+    start, end = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
+    chord = end - start
+    right = np.column_stack((chord[:, 1], -chord[:, 0]))
+    middles: NDArray[np.float64] = (start + end) / 2 + right * vertices[:, 2:] / 2
+    return middles
+
+
+def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float) -> list[int]:
+    """For every end the end it is joined to, or -1.
+
+    Raises
+    ------
+    InputError
+        For a junction.
+    """
+    partner = [-1] * len(node)
+    at_node: defaultdict[int, list[int]] = defaultdict(list)
+    for end, number in enumerate(node.tolist()):
+        at_node[number].append(end)
+    for ends in at_node.values():
+        if len(ends) > 2:
+            raise junction(chains, ends)
+        if len(ends) == 2:
+            partner[ends[0]], partner[ends[1]] = ends[1], ends[0]
+    close_gaps(chains, partner, tolerance)
+    return partner
+
+
+def close_gaps(chains: Sequence[Chain], partner: list[int], tolerance: float) -> None:
+    """Join open ends across gaps, nearest first, writing into ``partner``.
+
+    Raises
+    ------
+    InputError
+        When a third end lies within the tolerance of a gap's ends, or very many do.
+    """
+    loose = [end for end, other in enumerate(partner) if other < 0]
+    if not loose or tolerance <= 0:
+        return
+    points = np.array([end_point(chains, end) for end in loose])
+    pairs = close_pairs(points, tolerance)
+    if not len(pairs):
+        return
+    apart = np.hypot(*(points[pairs[:, 0]] - points[pairs[:, 1]]).T)
+    candidates = []
+    for position in np.argsort(apart, kind="stable").tolist():
+        i, j = (loose[k] for k in pairs[position].tolist())
+        if i // 2 != j // 2 or length(chains[i // 2]) > LOOP_OVER_GAP * apart[position]:
+            candidates.append((i, j))
+    for i, j in candidates:
+        if partner[i] < 0 and partner[j] < 0:
+            partner[i], partner[j] = j, i
+    for i, j in candidates:
+        if (partner[i] < 0) != (partner[j] < 0):
+            joined = i if partner[j] < 0 else j
+            raise junction(chains, sorted({i, j, partner[joined]}), f" within {tolerance:g} mm")
+
+
+def length(chain: Chain) -> float:
+    """A chain's length in mm, arcs counted a little short (chord to the middle point, twice)."""
+    return sum(
+        hypot(q[0] - p[0], q[1] - p[1]) * hypot(1.0, bulge)
+        for p, q, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
+    )
+
+
+def end_point(chains: Sequence[Chain], end: int) -> Point:
+    """The point of an end."""
+    return chains[end // 2].points[-(end % 2)]
+
+
+def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> InputError:
+    """The error for three or more ends at one point."""
+    names = listed([chains[end // 2].labels[-(end % 2)] for end in ends])
+    return InputError(
+        f"{len(ends)} ends meet{within} at {at(end_point(chains, ends[0]))} ({names}), so the outline could go on in "
+        "more than one way: remove the extra entity, or put it on a layer that is not chosen."
+    )
+
+
+def runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]]:
+    """Runs of joined chains: (chain, whether it is run backwards) in order, and whether the run closes."""
+    done = [False] * (len(partner) // 2)
+    starts = [end for end, other in enumerate(partner) if other < 0]
+    for start in [*starts, *range(0, len(partner), 2)]:
+        if done[start // 2]:
+            continue
+        run = []
+        entry = start
+        while entry >= 0 and not done[entry // 2]:
+            done[entry // 2] = True
+            run.append((entry // 2, entry % 2 == 1))
+            entry = partner[entry ^ 1]
+        yield run, entry >= 0
+
+
+def connected(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point, float]]) -> Chain:
+    """One chain from chains in running order; ends that differ move to their mean, and each gap is noted."""
+    firsts = [c.points[0] for c in members]
+    lasts = [c.points[-1] for c in members]
+    for k in range(0 if is_closed else 1, len(members)):
+        before, after = lasts[k - 1], firsts[k]
+        gap = dist(before, after)
+        if gap > SAME_POINT:
+            mean = ((before[0] + after[0]) / 2, (before[1] + after[1]) / 2)
+            gaps.append((mean, gap))
+            lasts[k - 1] = firsts[k] = mean
+        else:
+            firsts[k] = before
+    points: list[Point] = [firsts[0]]
+    bulges: list[float] = []
+    labels: list[str] = []
+    for chain, first, last in zip(members, firsts, lasts, strict=True):
+        moved = with_ends(chain, first, last)
+        for point, bulge, label in zip(moved.points[1:], moved.bulges, moved.labels, strict=True):
+            if dist(points[-1], point) >= SHORTEST:
+                points.append(point)
+                bulges.append(bulge)
+                labels.append(label)
+    if is_closed and bulges:
+        points[-1] = points[0]
+    return Chain(tuple(points), tuple(bulges), tuple(labels))
+
+
+def with_ends(chain: Chain, first: Point, last: Point) -> Chain:
+    """A chain with its ends moved a little; arcs there keep their centres as well as they can."""
+    points, bulges = list(chain.points), list(chain.bulges)
+    points[0], points[-1] = first, last
+    for k in {0, len(bulges) - 1}:
+        start, end = chain.points[k], chain.points[k + 1]
+        if max(dist(start, points[k]), dist(end, points[k + 1])) > SAME_POINT:
+            bulges[k] = rebulged(start, end, bulges[k], points[k], points[k + 1])
+    return evolve(chain, points=tuple(points), bulges=tuple(bulges))

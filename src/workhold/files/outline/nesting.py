@@ -1,0 +1,151 @@
+"""Sorting closed loops into parts: an outer loop, its holes, and the parts inside the holes.
+
+Glossary
+--------
+depth : how many other loops a loop lies in; even for an outer loop, odd for a hole.
+part : an outer loop with the holes directly in it. An island inside a hole is a part of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.files.outline.joining import Loop
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loops, reversed_vertices, signed_area
+from workhold.geometry.segment import Segment, segment_rows
+from workhold.kernels.base.distance import is_inside
+
+__all__ = ["Part", "nest", "refuse_loops_across"]
+
+
+@frozen
+class Part:
+    """One of the parts in a file.
+
+    Parameters
+    ----------
+    number : from 1, by decreasing area.
+    loops : the outer loop, then its holes.
+    area : of the material, in mm².
+    bounds : (smallest x, smallest y, largest x, largest y) in mm.
+    """
+
+    number: int
+    loops: tuple[Loop, ...]
+    area: float
+    bounds: tuple[float, float, float, float]
+
+    @property
+    def segment_count(self) -> int:
+        """Segments of all its loops together."""
+        return sum(len(loop.labels) for loop in self.loops)
+
+    def __str__(self) -> str:
+        x0, y0, x1, y1 = self.bounds
+        holes = len(self.loops) - 1
+        with_holes = f"{holes} hole{'' if holes == 1 else 's'}" if holes else "no holes"
+        return f"part {self.number} is {x1 - x0:.6g} x {y1 - y0:.6g} mm at ({x0:.6g}, {y0:.6g}) with {with_holes}"
+
+
+@frozen
+class Ring:
+    """A loop as geometry: its segments counter-clockwise, their kernel rows, area and bounding box."""
+
+    loop: Loop
+    segments: tuple[Segment, ...]
+    rows: NDArray[np.float64]
+    area: float
+    box: tuple[float, float, float, float]
+
+
+def ring(loop: Loop) -> Ring:
+    """Measure a loop."""
+    segments = loop_segments(loop.vertices)
+    area = signed_area(segments)
+    if area < 0:
+        segments = loop_segments(reversed_vertices(loop.vertices))
+    boxes = np.array([bounding_box(segment) for segment in segments])
+    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    box = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+    return Ring(loop, segments, segment_rows(segments), abs(area), box)
+
+
+def nest(loops: Sequence[Loop]) -> tuple[Part, ...]:
+    """Sort loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
+    rings = sorted((ring(loop) for loop in loops), key=lambda r: -r.area)
+    boxes = np.array([r.box for r in rings]).reshape(-1, 4)
+    depths: list[int] = []
+    holes: dict[int, list[int]] = {}
+    for k, inner in enumerate(rings):
+        x0, y0, x1, y1 = inner.box
+        larger = boxes[:k]
+        around = (larger[:, 0] <= x0) & (larger[:, 1] <= y0) & (larger[:, 2] >= x1) & (larger[:, 3] >= y1)
+        x, y = inner.segments[0].start
+        outer = [j for j in np.flatnonzero(around).tolist() if is_inside(x, y, rings[j].rows)]
+        depths.append(len(outer))
+        if len(outer) % 2 == 0:
+            holes[k] = []
+        else:
+            # The smallest loop around a hole at odd depth is an outer loop, unless loops cross.
+            parent = next((j for j in reversed(outer) if j in holes), None)
+            if parent is not None:
+                holes[parent].append(k)
+    parts = []
+    for outline, inside in holes.items():
+        area = rings[outline].area - sum(rings[k].area for k in inside)
+        parts.append((area, outline, inside))
+    parts.sort(key=lambda part: (-part[0], part[1]))
+    return tuple(
+        Part(number, tuple(rings[k].loop for k in (outline, *inside)), area, rings[outline].box)
+        for number, (area, outline, inside) in enumerate(parts, start=1)
+    )
+
+
+def refuse_loops_across(part: Part, others: Sequence[Part]) -> None:
+    """Refuse a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point.
+    """
+    own = [ring(loop) for loop in part.loops]
+    for other in others:
+        if not overlap(part.bounds, other.bounds):
+            continue
+        for theirs in (ring(loop) for loop in other.loops):
+            for ours in own:
+                if overlap(ours.box, theirs.box):
+                    refuse_meeting_loops(
+                        LoopShape.of(loop_segments(ours.loop.vertices)),
+                        LoopShape.of(loop_segments(theirs.loop.vertices)),
+                        ours.loop.labels.__getitem__,
+                        theirs.loop.labels.__getitem__,
+                    )
+
+
+def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Whether two bounding boxes meet."""
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
+def chosen_part(parts: Sequence[Part], number: int | None) -> Part:
+    """The part of a number, or the largest.
+
+    Raises
+    ------
+    InputError
+        When there is no part of that number.
+    """
+    if number is None:
+        return parts[0]
+    if not 1 <= number <= len(parts):
+        have = "only one part" if len(parts) == 1 else f"parts 1 to {len(parts)}"
+        raise InputError(f"There is no part {number}: the file holds {have}, numbered by decreasing area.")
+    return parts[number - 1]

@@ -1,0 +1,109 @@
+"""What to say about pieces of a drawing that do not close."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import dist
+from typing import NoReturn
+
+import numpy as np
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import at, counted, listed
+from workhold.files.outline.joining import Stray
+from workhold.files.outline.nesting import Part
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.segment import Point, segment_from_bulge
+
+__all__ = ["refuse_nothing_closed", "refuse_open_outline", "stray_remarks"]
+
+# A stray whose ends are nearer than this share of its size was meant to close.
+NEARLY_CLOSED = 0.2
+# How many open ends an error names, and how many ends are searched for the nearest one.
+ENDS_NAMED = 4
+
+
+def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> NoReturn:
+    """Raise the error for a drawing without any closed outline.
+
+    Raises
+    ------
+    InputError
+        Naming open ends and how far each is from the nearest other one.
+    """
+    if not strays:
+        hint = f" ({' '.join(remarks)})" if remarks else ""
+        raise InputError(f"the drawing holds no lines or arcs that could be an outline{hint}.")
+    raise InputError(f"no outline is closed: {open_ends(strays)}")
+
+
+def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
+    """Refuse to take a hole for the part when the outline around it is nearly closed, but not quite.
+
+    Raises
+    ------
+    InputError
+        Naming the open ends.
+    """
+    x0, y0, x1, y1 = part.bounds
+    for stray in strays:
+        low_x, low_y, high_x, high_y = bounds(stray)
+        gap = dist(stray.chain.points[0], stray.chain.points[-1])
+        size = dist((low_x, low_y), (high_x, high_y))
+        if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1 and gap < NEARLY_CLOSED * size:
+            raise InputError(
+                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all the same, "
+                f"give --part {part.number}."
+            )
+
+
+def bounds(stray: Stray) -> tuple[float, float, float, float]:
+    """Bounding box of a stray in mm."""
+    chain = stray.chain
+    steps = zip(chain.points, chain.points[1:], chain.bulges, strict=False)
+    boxes = np.array([bounding_box(segment_from_bulge(p, q, b)) for p, q, b in steps if p != q]).reshape(-1, 4)
+    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def open_ends(strays: Sequence[Stray]) -> str:
+    """The open ends nearest to another one, how far apart they are, and the remedy."""
+    ends: list[tuple[Point, str]] = []
+    for stray in strays:
+        ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
+    points = np.array([point for point, _ in ends])
+    found = []
+    # The first few hundred are enough to name four: files with more are no outlines at all.
+    for k, (point, name) in enumerate(ends[:500]):
+        away = np.hypot(points[:, 0] - point[0], points[:, 1] - point[1])
+        away[k] = np.inf
+        nearest = int(away.argmin())
+        found.append((float(away[nearest]), point, name, ends[nearest][1], nearest))
+    found.sort(key=lambda item: item[0])
+    words = [
+        f"{name} ends at {at(point)}, {gap:.3g} mm from the nearest other end ({other})"
+        for gap, point, name, other, _ in found[:ENDS_NAMED]
+    ]
+    more = f", and {len(ends) - len(words)} more ends are open" if len(ends) > len(words) else ""
+    smallest = found[0][0]
+    return f"{'; '.join(words)}{more}; close the drawing, or give a --join-tolerance above {rounded_up(smallest)} mm."
+
+
+def rounded_up(gap: float) -> str:
+    """A gap rounded up to two digits."""
+    return f"{gap * 1.05:.2g}"
+
+
+def stray_remarks(strays: Sequence[Stray]) -> list[str]:
+    """What to say about strays when a closed outline remains."""
+    if not strays:
+        return []
+    places = listed(
+        [
+            f"{stray.first} at {at(stray.chain.points[0])} to {stray.last} at {at(stray.chain.points[-1])}"
+            if stray.first != stray.last
+            else f"{stray.first} from {at(stray.chain.points[0])} to {at(stray.chain.points[-1])}"
+            for stray in strays
+        ]
+    )
+    return [f"Left out {counted(len(strays), 'open piece', 'open pieces')} outside any closed outline: {places}."]

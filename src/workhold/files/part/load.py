@@ -1,0 +1,362 @@
+"""Reading a part: a file (JSON, DXF, SVG, STEP) or a built-in name becomes a workpiece in millimetres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Drawing, cleaned
+from workhold.files.outline.joining import Loop, join
+from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
+from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
+from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
+from workhold.model.units import unit_named
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
+
+# A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
+MOST_SEGMENTS = 20_000
+# Bytes; a drawing of one part is far smaller, and reading takes about twenty times as much memory.
+LARGEST_FILE = 40_000_000
+PART_LIST = 10
+
+
+@frozen
+class Loaded:
+    """A workpiece and what to tell the user about how it was read.
+
+    Parameters
+    ----------
+    workpiece : the part, in mm.
+    remarks : one sentence each: what was ignored, closed, dropped or chosen.
+    parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
+    """
+
+    workpiece: Workpiece
+    remarks: tuple[str, ...]
+    parts: tuple[Part, ...]
+
+
+def load(
+    part: str | Path,
+    *,
+    unit: str | None = None,
+    layers: Sequence[str] | None = None,
+    part_number: int | None = None,
+    join_tolerance: float = 1e-3,
+    axis: str | None = None,
+    section: float | None = None,
+) -> Workpiece:
+    """Load a part from a file or by the name of a built-in model.
+
+    Parameters
+    ----------
+    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins.
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do.
+    layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
+    part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when None.
+    join_tolerance : largest gap between loose ends to close, in mm.
+    axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None.
+    section : take the section of a STEP file's solid at this height in mm above its lowest point, not its silhouette.
+
+    Raises
+    ------
+    InputError
+        For a part that cannot be found, read or used, naming the place.
+
+    Examples
+    --------
+    >>> from workhold import load
+    >>> widget = load("widget")
+    >>> len(widget.segments)
+    16
+    """
+    return read_workpiece(
+        part,
+        unit=unit,
+        layers=layers,
+        part_number=part_number,
+        join_tolerance=join_tolerance,
+        axis=axis,
+        section=section,
+    ).workpiece
+
+
+def read_workpiece(
+    part: str | Path,
+    *,
+    unit: str | None = None,
+    usual_unit: str | None = None,
+    layers: Sequence[str] | None = None,
+    part_number: int | None = None,
+    join_tolerance: float = 1e-3,
+    axis: str | None = None,
+    section: float | None = None,
+) -> Loaded:
+    """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
+
+    Parameters
+    ----------
+    usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those of
+        :func:`load`.
+
+    Raises
+    ------
+    InputError
+        For a part that cannot be found, read or used, naming the place.
+    """
+    if not (isfinite(join_tolerance) and join_tolerance >= 0):
+        raise InputError(f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more.")
+    for name in (unit, usual_unit):
+        if name is not None:
+            unit_named(name)
+    path = found(part)
+    try:
+        content = read_bytes(path)
+        kind = kind_of(path, content)
+        if kind == "step":
+            return from_step(path, content, unit, layers, part_number, axis, section)
+        refuse_axis(axis, section)
+        if kind == "json":
+            own = path == builtin_path(path.stem)
+            return from_json(path, content, unit, layers, part_number, own)
+        if kind == "dxf":
+            from workhold.files.dxf.reader import read_dxf
+
+            drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers)
+        else:
+            refuse_layers(layers)
+            from workhold.files.svg.reader import read_svg
+
+            drawing = read_svg(content, unit=unit, usual_unit=usual_unit)
+        return from_drawing(path, drawing, part_number, join_tolerance)
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from error
+
+
+def found(part: str | Path) -> Path:
+    """The file of a part given by path or built-in name.
+
+    Raises
+    ------
+    InputError
+        When there is neither, listing built-in names that are close.
+    """
+    path = Path(part)
+    try:
+        if path.exists():
+            return path
+    except (OSError, ValueError):
+        pass
+    builtin = builtin_path(str(part))
+    if builtin is not None:
+        return builtin
+    names = close_names(str(part)) or [p.name for p in builtin_parts()]
+    raise InputError(
+        f"{str(part)[:200]!r}: file not found, and no built-in part has that name (try {', '.join(names)})."
+    )
+
+
+def read_bytes(path: Path) -> bytes:
+    """The file's bytes.
+
+    Raises
+    ------
+    InputError
+        When it is a folder, empty, too large or not readable.
+    """
+    try:
+        if path.is_dir():
+            raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
+        if not path.is_file():
+            raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(
+                f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's outline only."
+            )
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
+    if not content.strip():
+        raise InputError("the file is empty: give a .json, .dxf, .svg or .step file of the part.")
+    return content
+
+
+def kind_of(path: Path, content: bytes) -> str:
+    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    ending = path.suffix.lower().lstrip(".")
+    if ending in ("json", "dxf", "svg", "step"):
+        return ending
+    if ending == "stp":
+        return "step"
+    start = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if start.startswith(b"{"):
+        return "json"
+    if start.startswith(b"<") and b"<svg" in content[:65536]:
+        return "svg"
+    if start.startswith(b"AutoCAD Binary DXF") or (start.startswith((b"0", b"999")) and b"SECTION" in content[:65536]):
+        return "dxf"
+    if start.startswith(b"ISO-10303-21"):
+        return "step"
+    raise InputError(
+        "this is neither a JSON, a DXF, an SVG nor a STEP file: export the part's outline as one of these."
+    )
+
+
+def refuse_layers(layers: Sequence[str] | None) -> None:
+    """Refuse a choice of layers for a file that has none.
+
+    Raises
+    ------
+    InputError
+        When layers were chosen.
+    """
+    if layers is not None:
+        raise InputError("layers can be chosen in DXF files only: leave --layer out.")
+
+
+def refuse_axis(axis: str | None, section: float | None) -> None:
+    """Refuse a view of a solid for a file that holds a flat drawing.
+
+    Raises
+    ------
+    InputError
+        When an axis or a section was chosen.
+    """
+    if axis is not None or section is not None:
+        option = "--axis" if axis is not None else "--section"
+        raise InputError(f"only a STEP file can be looked at along an axis: leave {option} out.")
+
+
+def from_json(
+    path: Path, content: bytes, unit: str | None, layers: Sequence[str] | None, part_number: int | None, own: bool
+) -> Loaded:
+    """A workpiece from JSON bytes, of a file of the user's or of workhold's own.
+
+    Raises
+    ------
+    InputError
+        For wrong content, or choices that do not apply to JSON.
+    """
+    from workhold.files.part.json import read_json
+
+    refuse_layers(layers)
+    if unit is not None:
+        raise InputError('the JSON file gives its own "units": leave --drawing-unit out.')
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON.") from error
+    read = read_json(text, own=own)
+    name = read.name or path.stem
+    rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
+    refuse_large(sum(len(loop) for loop in rows))
+    if any(len(loop) and not float(np.abs(loop).max()) <= 1e9 for loop in rows):
+        raise InputError("a coordinate or bulge is beyond 1e9: check the numbers and the units.")
+    workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False)
+    part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
+    chosen_part(part, part_number)
+    return Loaded(workpiece, (), part)
+
+
+def from_step(
+    path: Path,
+    content: bytes,
+    unit: str | None,
+    layers: Sequence[str] | None,
+    part_number: int | None,
+    axis: str | None,
+    section: float | None,
+) -> Loaded:
+    """A workpiece from the bytes of a STEP file.
+
+    Raises
+    ------
+    InputError
+        For wrong content, or choices that do not apply to STEP.
+    """
+    from workhold.files.step.reader import read_step
+
+    refuse_layers(layers)
+    if unit is not None:
+        raise InputError("the STEP file gives its own unit: leave --drawing-unit out.")
+    drawing = read_step(content, axis=axis, section_height=section, part_number=part_number)
+    return from_drawing(path, drawing, None, 0.0)
+
+
+def from_drawing(path: Path, drawing: Drawing, part_number: int | None, tolerance: float) -> Loaded:
+    """A workpiece from a drawing's chains.
+
+    Raises
+    ------
+    InputError
+        When no usable closed outline remains.
+    """
+    clean = cleaned(drawing.chains)
+    joined = join(clean.chains, tolerance)
+    if not joined.loops:
+        refuse_nothing_closed(joined.strays, drawing.remarks)
+    parts = nest(joined.loops)
+    part = chosen_part(parts, part_number)
+    if part_number is None:
+        refuse_open_outline(part, joined.strays)
+    refuse_large(part.segment_count)
+    try:
+        workpiece = built(path.stem, part.loops)
+        refuse_loops_across(part, [other for other in parts if other is not part])
+    except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
+        raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
+    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *stray_remarks(joined.strays))
+    return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts)
+
+
+def built(name: str, loops: Sequence[Loop], with_labels: bool = True) -> Workpiece:
+    """Build the workpiece; its complaints lose the part's name, since the file's name stands before them.
+
+    Raises
+    ------
+    InputError
+        For loops that cannot be used.
+    """
+    labels = [loop.labels for loop in loops] if with_labels else None
+    try:
+        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels)
+    except InputError as error:
+        raise InputError(str(error).replace(f"{name}: ", "")) from error
+
+
+def refuse_large(segments: int) -> None:
+    """Refuse a part of so many segments that no fixture search would end.
+
+    Raises
+    ------
+    InputError
+        Naming the number.
+    """
+    if segments > MOST_SEGMENTS:
+        raise InputError(
+            f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its outline "
+            "with lines and arcs instead of many short pieces."
+        )
+
+
+def part_remarks(parts: Sequence[Part], chosen: Part, asked: int | None) -> list[str]:
+    """What to say about several parts in one file."""
+    if len(parts) == 1:
+        return []
+    more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
+    because = "" if asked is not None else ", the largest (choose another with --part)"
+    listing = "; ".join(str(part) for part in parts[:PART_LIST])
+    return [f"The file holds {len(parts)} separate parts: {listing}{more}. Part {chosen.number} is used{because}."]

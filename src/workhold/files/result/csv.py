@@ -1,0 +1,60 @@
+"""The fixtures as a table for a spreadsheet: one row per fixture, comma-separated, with a line of column names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import IO
+
+from workhold.files.atomic import text_file
+from workhold.files.result.writer import TYPE_JAWS, TYPE_NAMES, fixture_rows, known_figures
+from workhold.model.holes import column_letters
+from workhold.model.result import Result
+
+__all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
+
+PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
+POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y", "jaw_separation")
+
+
+def write_result_csv(result: Result, path: str | Path) -> None:
+    """Write the fixtures of a result as comma-separated values, numbered by rank from 1.
+
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the pictures.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with text_file(path) as stream:
+        write_result_csv_to(result, stream)
+
+
+def write_result_csv_to(result: Result, stream: IO[str]) -> None:
+    """Write the comma-separated values to an open text stream."""
+    for text in result_csv_text(result):
+        stream.write(text)
+
+
+def result_csv_text(result: Result) -> Iterator[str]:
+    """The comma-separated values, piece by piece."""
+    figures = known_figures(result.table)
+    pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
+    yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
+    letters = cache(column_letters)
+    number = 0
+    for kinds, rows in fixture_rows(result.table, result.vise):
+        lines = []
+        for kind, row in zip(kinds, rows, strict=True):
+            number += 1
+            theta, x, y, separation, *quality = row[24:]
+            fields = [str(number), TYPE_NAMES[kind], repr(theta), repr(x), repr(y), repr(separation)]
+            fields += [f"{value:.12g}" for value in quality]
+            for peg, jaw in enumerate(TYPE_JAWS[kind]):
+                column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
+                hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"
+                fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
+            lines.append(",".join(fields) + "\n")
+        yield "".join(lines)

@@ -1,0 +1,350 @@
+"""Reading a result file back (MODEL, "Result file"), from workhold or from any other program that writes the form.
+
+The head is checked by pydantic, the fixtures by array operations. A file with one fixture per line, as workhold writes
+it, is read line by line; any other layout of the same JSON is read as a whole. Messages count fixtures and pegs from 1.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from itertools import islice
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from workhold.errors import InputError
+from workhold.files.result.forms import Head, ProofPart
+from workhold.model.load import Load
+from workhold.model.proof import Proof
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.model.result import FixtureTable, Result, hole_positions
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["read_result"]
+
+BLOCK = 4096
+# A peg's centre and its hole may differ by this much, in mm, before the file contradicts itself.
+AGREEMENT = 1e-6
+LARGEST_NUMBER = 2**31 - 1
+
+TYPES = {"I": 1, "II": 2}
+JAWS = {"left": 0, "right": 1}
+
+
+@frozen
+class Columns:
+    """The fixtures of a file as arrays: (N,) types, (N, 4) jaws, (N, 4, 3) holes and faces, (N, 4, 3) x, y and forces,
+    (N, 4) pose in degrees and mm and jaw separation, (N, 6) figures of quality (NaN where the file gives none)."""
+
+    types: NDArray[np.int8]
+    jaws: NDArray[np.int8]
+    holes: NDArray[np.int32]
+    contacts: NDArray[np.float64]
+    placing: NDArray[np.float64]
+    quality: NDArray[np.float64]
+
+
+class OtherLayoutError(Exception):
+    """The file does not have one fixture on every line."""
+
+
+def read_result(path: str | Path) -> Result:
+    """Read a result file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is no result file, or contradicts itself.
+    """
+    path = Path(path)
+    try:
+        try:
+            data, columns = read_lines(path)
+        except OtherLayoutError:
+            data, columns = read_whole(path)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not a result file: it is not text.") from error
+    except RecursionError as error:
+        raise InputError(f"{path} is not a result file: its brackets are nested too deeply.") from error
+    head = checked_head(data, path)
+    try:
+        workpiece = Workpiece.from_loops(head.workpiece.name, head.workpiece.loops)
+        vise, asked = head.vise.vise(), head.model_parts()
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    table, twins = (
+        measured(checked_table(fixtures, workpiece, vise, path), workpiece, vise, asked["tolerance"], asked["loads"])
+        for fixtures in (columns, collected(head.twins, path))
+    )
+    result = Result(
+        workpiece=workpiece,
+        vise=vise,
+        table=table,
+        found=(head.found or head.counts).by_type(),
+        distinct=(head.distinct or head.counts).by_type(),
+        complete=head.complete,
+        contact_margin=head.contact_margin,
+        notes=tuple(head.notes),
+        twins=twins,
+        statistics=head.statistics,
+        proof=None if head.proof is None else checked_proof(head.proof, workpiece, path),
+        **asked,
+    )
+    for name, count in head.counts.by_type().items():
+        if count != result.counts[name]:
+            listed = result.counts[name]
+            raise InputError(f"{path}: counts say {count} fixtures of type {name}, but {listed} are listed.")
+    return result
+
+
+def read_lines(path: Path) -> tuple[Any, Columns]:
+    """Head and fixtures of a file with one fixture per line, never holding more than a block of them as objects.
+
+    Raises
+    ------
+    OtherLayoutError
+        When the lines are not of that form.
+    """
+    with path.open(encoding="utf-8") as stream:
+        before: list[str] = []
+        for line in stream:
+            before.append(line)
+            if line.strip() == '"fixtures": [':
+                break
+        else:
+            raise OtherLayoutError
+        after: list[str] = []
+        columns = collected(fixture_lines(stream, after), path)
+        try:
+            data = loads("".join(before + after) + stream.read())
+        except ValueError as error:
+            raise OtherLayoutError from error
+    return data, columns
+
+
+def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
+    """The fixtures on their lines; the line that ends the list goes to ``after``."""
+    last = False
+    for line in stream:
+        text = line.strip()
+        if text.startswith("]"):
+            after.append(line)
+            return
+        if last:
+            raise OtherLayoutError
+        last = not text.endswith(",")
+        try:
+            yield loads(text.removesuffix(","))
+        except ValueError as error:
+            raise OtherLayoutError from error
+    raise OtherLayoutError
+
+
+def read_whole(path: Path) -> tuple[Any, Columns]:
+    """Head and fixtures of a file of any layout."""
+    text = path.read_text(encoding="utf-8")
+    if not text.strip():
+        raise InputError(f"{path} is empty: it is not a result file.")
+    try:
+        data = loads(text)
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise InputError(f"{path} is not a result file: it is broken JSON at {place} ({error.msg}).") from error
+    except ValueError as error:
+        raise InputError(f"{path} is not a result file: {error}.") from error
+    if not isinstance(data, dict) or not isinstance(data.get("fixtures"), list):
+        raise InputError(f"{path} is not a result file: it has no list of fixtures.")
+    return data, collected(data.pop("fixtures"), path)
+
+
+def loads(text: str) -> Any:
+    """Parse JSON, refusing the NaN and Infinity that Python would let pass."""
+    return json.loads(text, parse_constant=refuse_constant)
+
+
+def refuse_constant(name: str) -> NoReturn:
+    """Refuse a constant that JSON does not have."""
+    raise ValueError(f"{name} is not a number")
+
+
+def checked_head(data: Any, path: Path) -> Head:
+    """Check the head's keys.
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is missing or cannot be used.
+    """
+    try:
+        return Head.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "missing":
+            raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
+        reason = first["msg"][:1].lower() + first["msg"][1:]
+        raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
+
+
+def checked_proof(part: ProofPart, workpiece: Workpiece, path: Path) -> Proof:
+    """The account of the search.
+
+    Raises
+    ------
+    InputError
+        When its counts do not add up, or an undecided candidate names a segment that is no face.
+    """
+    accounted = part.discarded_by_bound + part.verified + len(part.undecided)
+    if accounted != part.candidates:
+        raise InputError(
+            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
+        )
+    faces = {face.number for face in workpiece.faces}
+    for number, item in enumerate(part.undecided, 1):
+        if not faces.issuperset(item.segments):
+            raise InputError(f"{path}: undecided candidate {number} of the proof names a segment that is no face.")
+    return part.proof()
+
+
+def collected(fixtures: Iterable[Any], path: Path) -> Columns:
+    """Put fixtures into arrays, block by block.
+
+    Raises
+    ------
+    InputError
+        Naming the first fixture with a missing key or a value of the wrong kind.
+    """
+    blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
+    iterator = iter(fixtures)
+    number = 1
+    while True:
+        rows = []
+        for fixture in islice(iterator, BLOCK):
+            try:
+                rows.append(fixture_row(fixture))
+            except KeyError as error:
+                raise InputError(f"{path}: fixture {number} has no key {error}.") from error
+            except (TypeError, ValueError, AttributeError) as error:
+                raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
+            number += 1
+        kinds = (np.int8, np.int8, np.int32, np.float64, np.float64, np.float64)
+        shapes = ((), (4,), (4, 3), (4, 3), (4,), (len(FIGURES),))
+        for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
+            blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
+        if len(rows) < BLOCK:
+            return Columns(*(np.concatenate(parts) for parts in blocks))
+
+
+def fixture_row(
+    fixture: Any,
+) -> tuple[int, list[int], list[list[int]], list[list[float]], list[float], list[float]]:
+    """The numbers of one fixture, for one row of each array of :class:`Columns`."""
+    name = fixture["type"]
+    if name not in TYPES:
+        raise ValueError(f"its type is {name!r}, not 'I' or 'II'")
+    pegs, pose = fixture["pegs"], fixture["pose"]
+    if not isinstance(pegs, list) or len(pegs) != 4:
+        raise ValueError("it does not have four pegs")
+    jaws = []
+    for peg in pegs:
+        if peg["jaw"] not in JAWS:
+            raise ValueError(f"a peg's jaw is {peg['jaw']!r}, not 'left' or 'right'")
+        jaws.append(JAWS[peg["jaw"]])
+    holes = [[peg["column"], peg["row"], peg["segment"]] for peg in pegs]
+    contacts = [[peg["x"], peg["y"], peg["force"]] for peg in pegs]
+    figures = fixture.get("quality", {})
+    known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
+    placing = [pose["theta_deg"], pose["x"], pose["y"], fixture["jaw_separation"]]
+    if {type(value) for hole in holes for value in hole} != {int}:
+        raise ValueError("a peg's column, row or segment is not a whole number")
+    if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
+        raise ValueError("a peg's column, row or segment is negative or far too large")
+    numbers = [value for contact in contacts for value in contact] + placing + known
+    if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > 1e300 for value in numbers):
+        raise ValueError("a length, an angle or a force is not a finite number")
+    return TYPES[name], jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+
+
+def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path) -> FixtureTable:
+    """The table of the fixtures, pegs of the left jaw first.
+
+    Raises
+    ------
+    InputError
+        Naming the first fixture that contradicts the vise, the workpiece or itself.
+    """
+    order = np.argsort(columns.jaws, axis=1, kind="stable")
+    jaw = np.take_along_axis(columns.jaws, order, axis=1)
+    hole = np.take_along_axis(columns.holes, order[:, :, None], axis=1)
+    contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
+    column, row, segment = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
+    theta_deg, x, y, separation = columns.placing.T
+    force = np.ascontiguousarray(contact[:, :, 2])
+
+    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
+        where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
+        if where.size:
+            raise InputError(f"{path}: fixture {int(where[0]) + 1} {reason}.")
+
+    refuse(jaw.sum(axis=1) != 3 - columns.types, "does not have the pegs of its type on each jaw")
+    refuse(column >= vise.columns, f"has a peg in a column beyond the vise's {vise.columns}")
+    if vise.rows is not None:
+        refuse(row >= vise.rows, f"has a peg in a row beyond the vise's {vise.rows}")
+    faces = [face.number for face in workpiece.faces]
+    refuse(~np.isin(segment, faces), "has a peg on a segment that does not name a face of the workpiece")
+    hole_x, hole_y = hole_positions(vise, jaw, column, row, separation)
+    apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
+    refuse(apart, "has a peg whose x, y are not those of its hole")
+    refuse(force <= 0, "has a peg whose force is not positive")
+    return FixtureTable(
+        type=columns.types,
+        jaw=jaw,
+        column=column,
+        row=row,
+        segment=segment,
+        theta=np.radians(theta_deg) % (2 * np.pi),
+        position=np.stack([x, y], axis=1),
+        jaw_separation=separation.copy(),
+        null_vector=null_vectors(force, columns.quality[:, CLOSURE_MARGIN]),
+        force=force,
+        quality=columns.quality,
+    )
+
+
+def measured(
+    table: FixtureTable, workpiece: Workpiece, vise: Vise, tolerance: Tolerance, loads: tuple[Load, ...]
+) -> FixtureTable:
+    """The table with the figures of quality that the file does not give."""
+    wanted = np.isnan(table.quality)
+    if not loads:
+        wanted[:, LOAD_REACTION] = False
+    if not wanted.any():
+        return table
+    from workhold.statics.quality import quality_of
+
+    figures = quality_of(table, workpiece, vise, tolerance, loads)
+    return evolve(table, quality=np.where(wanted, figures, table.quality))
+
+
+def null_vectors(force: NDArray[np.float64], margin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Null vectors (N, 4) of sum 1 from forces (N, 4), which are proportional to them.
+
+    Forces are written with twelve digits; the smallest entry is taken from the closure margin as written, so that
+    reading and writing again gives the same file.
+    """
+    null_vector: NDArray[np.float64] = force / force.sum(axis=1, keepdims=True)
+    smallest = null_vector.argmin(axis=1)
+    rows = np.arange(len(force))
+    margin = np.where(np.isnan(margin), null_vector[rows, smallest], margin)
+    null_vector = np.maximum(null_vector, margin[:, None])
+    null_vector[rows, smallest] = margin
+    return null_vector

@@ -1,0 +1,216 @@
+"""Writing the result file: one line of JSON for every fixture, streamed from the arrays in blocks.
+
+Glossary
+--------
+head : everything but the fixtures; a few lines in front of them.
+block : the fixtures that are turned into Python objects at the same time.
+
+The bytes depend on nothing but the result. Lengths are rounded to 1e-9 mm and angles to 1e-10 degree; forces and
+quality have twelve significant digits. :mod:`workhold.files.result.reader` reads the file back.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.files.atomic import text_file
+from workhold.model.load import Load
+from workhold.model.proof import Proof
+from workhold.model.quality import FIGURES, Figure
+from workhold.model.result import FixtureTable, Result, hole_positions
+from workhold.model.vise import Vise
+
+__all__ = [
+    "FORMAT",
+    "TYPE_JAWS",
+    "TYPE_NAMES",
+    "fixture_rows",
+    "known_figures",
+    "load_entry",
+    "proof_entry",
+    "result_text",
+    "vise_entry",
+    "write_result",
+    "write_result_to",
+]
+
+FORMAT = "workhold-result/1"
+BLOCK = 4096
+LENGTH_STEPS = 1e9
+ANGLE_STEPS = 1e10
+
+# Of the types as a table has them: their names, and the jaws of their pegs.
+TYPE_NAMES = {1: "I", 2: "II"}
+TYPE_JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
+
+PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
+POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r'
+
+
+def fixture_template(name: str, jaws: tuple[str, str, str, str], figures: Sequence[Figure]) -> str:
+    """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
+    pegs = ", ".join(PEG.format(jaw) for jaw in jaws)
+    quality = ", ".join(f'"{figure.key}": %.12g' for figure in figures)
+    return f'{{"type": "{name}", "pegs": [{pegs}], {POSE}, "quality": {{{quality}}}}}'
+
+
+def write_result(result: Result, path: str | Path) -> None:
+    """Write a result file (MODEL, "Result file"); an earlier file of that name is replaced only when all went well.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with text_file(path) as stream:
+        write_result_to(result, stream)
+
+
+def write_result_to(result: Result, stream: IO[str]) -> None:
+    """Write a result to an open text stream."""
+    for text in result_text(result):
+        stream.write(text)
+
+
+def result_text(result: Result) -> Iterator[str]:
+    """The text of a result file, piece by piece."""
+    lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
+    yield "{" + "".join(lines) + '"fixtures": ['
+    yield from fixture_lines(result.table, result.vise)
+    if len(result.twins):
+        yield '\n],\n"twins": ['
+        yield from fixture_lines(result.twins, result.vise)
+    yield "\n]}\n"
+
+
+def fixture_lines(table: FixtureTable, vise: Vise) -> Iterator[str]:
+    """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
+    separator = "\n"
+    figures = known_figures(table)
+    templates = {kind: fixture_template(TYPE_NAMES[kind], TYPE_JAWS[kind], figures) for kind in TYPE_NAMES}
+    for kind, numbers in fixture_rows(table, vise):
+        yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
+        separator = ",\n"
+
+
+def head(result: Result) -> dict[str, Any]:
+    """Everything in the file but the fixtures, at full precision."""
+    return {
+        "format": FORMAT,
+        "workpiece": {
+            "name": result.workpiece.name,
+            "units": "mm",
+            "loops": [(loop + 0.0).tolist() for loop in result.workpiece.loops],
+        },
+        "vise": vise_entry(result.vise),
+        "contact_margin": float(result.contact_margin),
+        "restrictions": {
+            "avoid": [int(face) for face in result.restrictions.avoid],
+            "zones": [(zone.loop + 0.0).tolist() for zone in result.restrictions.zones],
+            "angles": [[float(low), float(high)] for low, high in result.restrictions.angles],
+        },
+        "ranking": list(result.ranking),
+        "tolerance": {"peg": result.tolerance.peg, "face": result.tolerance.face},
+        "loads": [load_entry(load) for load in result.loads],
+        "counts": result.counts,
+        "found": {kind: int(result.found[kind]) for kind in ("I", "II")},
+        "distinct": {kind: int(result.distinct[kind]) for kind in ("I", "II")},
+        "complete": bool(result.complete),
+        "notes": list(result.notes),
+        "statistics": {name: int(count) for name, count in result.statistics.items()},
+    } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def vise_entry(vise: Vise) -> dict[str, Any]:
+    """A vise as it is written: lengths in mm."""
+    return {
+        "pitch": list(vise.pitch),
+        "columns": int(vise.columns),
+        "rows": None if vise.rows is None else int(vise.rows),
+        "peg_radius": vise.peg_radius,
+        "min_gap": vise.min_gap,
+        "max_opening": None if vise.max_opening is None else float(vise.max_opening),
+        "row_offset": vise.row_offset,
+        "body_radius": vise.body_radius,
+        "blocked": [holes.name for holes in vise.blocked],
+    }
+
+
+def load_entry(load: Load) -> dict[str, Any]:
+    """A load as it is written: N, N mm, mm and degrees."""
+    return {
+        "name": load.name,
+        "points": [[float(x), float(y)] for x, y in load.points],
+        "force": load.force,
+        "directions": [float(angle) for angle in load.directions],
+        "moment": load.moment,
+    }
+
+
+def proof_entry(proof: Proof) -> dict[str, Any]:
+    """The account of the search as it is written."""
+    return {
+        "cells": int(proof.cells),
+        "candidates": int(proof.candidates),
+        "discarded_by_bound": int(proof.discarded_by_bound),
+        "verified": int(proof.verified),
+        "escalated": int(proof.escalated),
+        "undecided": [
+            {
+                "type": item.type,
+                "segments": [int(face) for face in item.segments],
+                "columns": [int(column) for column in item.columns],
+                "rows": [int(row) for row in item.rows],
+                "theta_deg": rounded_degrees(item.theta_deg),
+                "reason": item.reason,
+            }
+            for item in proof.undecided
+        ],
+    }
+
+
+def rounded_degrees(angle: float) -> float:
+    """An angle in degrees as it is written, in [0, 360)."""
+    return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
+
+
+def known_figures(table: FixtureTable) -> list[Figure]:
+    """The figures of quality that all fixtures of a table have."""
+    return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
+
+
+def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
+    """Blocks of fixtures as plain numbers, rounded as they are written.
+
+    Yields
+    ------
+    The types (1 or 2), and for every fixture a tuple of 28 numbers: for each peg column, row, x, y, segment, force;
+    then theta in degrees, x and y of the pose, jaw separation; and after them the figures of :func:`known_figures`.
+    """
+    known = [FIGURES.index(figure) for figure in known_figures(table)]
+    for start in range(0, len(table), BLOCK):
+        block = table.take(slice(start, start + BLOCK))
+        separation = rounded(block.jaw_separation, LENGTH_STEPS)
+        holes = hole_positions(vise, block.jaw, block.column, block.row, separation)
+        x, y = (rounded(places, LENGTH_STEPS) for places in holes)
+        columns: list[list[Any]] = []
+        for peg in range(4):
+            numbers = (block.column, block.row, x, y, block.segment, block.force)
+            columns += [array[:, peg].tolist() for array in numbers]
+        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
+        theta[theta >= 360.0] = 0.0
+        position = rounded(block.position, LENGTH_STEPS)
+        figures = [block.quality[:, number] for number in known]
+        columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, *figures)]
+        yield block.type.tolist(), zip(*columns, strict=True)
+
+
+def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
+    """The nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
+    return np.rint(values.astype(np.float64) * steps) / steps + 0.0

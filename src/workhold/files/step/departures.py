@@ -1,0 +1,210 @@
+"""How far a solid departs from a prism over its outline, in words.
+
+Glossary
+--------
+inset : how far inside the outline a face goes, seen along the axis, in mm.
+overhang : how far outside the outline a face goes, in mm.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import listed
+from workhold.files.outline.joining import closed_loop
+from workhold.files.outline.nesting import Part, nest
+from workhold.files.step.faces import SAME_HEIGHT, Layer, SolidFace, lie_of, surface_points
+from workhold.files.step.regions import Borders, area_of, section
+from workhold.files.step.solids import AXES, sub_shapes
+from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.distance import is_inside, outline_distances
+
+__all__ = ["Outline", "departure_remarks", "refuse_overhang"]
+
+# Departures below this, in mm, are rounding of the CAD program.
+DEPARTS = 1e-4
+# A face may reach this far out of the silhouette, in mm: the rounding of files that give few digits.
+OVERHANG = 1e-3
+# Areas that differ by less than this share are the same.
+SAME_AREA = 1e-7
+# The library integrates regions with free-form borders only so well, as a share.
+FREE_AREA = 1e-3
+
+
+@frozen
+class Outline:
+    """The outline found, and how every face of the solid lies to it.
+
+    Parameters
+    ----------
+    area : in mm².
+    low, high : z of the solid's lowest and highest point, in mm.
+    insets, overhangs : of each face, in mm.
+    """
+
+    area: float
+    low: float
+    high: float
+    insets: tuple[float, ...]
+    overhangs: tuple[float, ...]
+
+    @classmethod
+    def of(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
+        """Measure faces against the outline that the borders of a region of some area make.
+
+        Raises
+        ------
+        InputError
+            When the borders do not enclose one region of that area, so that the library's work cannot be right.
+        """
+        parts = nest([closed_loop(chain) for chain in edges.chains])
+        tolerance = FREE_AREA if edges.recognised else 1e-6
+        if len(parts) != 1 or abs(parts[0].area - area) > tolerance * area:
+            raise InputError(
+                "the sections of the solid do not make one outline: repair it in the CAD program, or give --section."
+            )
+        rows = oriented_rows(parts[0])
+        insets, overhangs = [], []
+        for face in faces:
+            points = surface_points(face)
+            away = outline_distances(points, rows)
+            inside = np.array([bool(is_inside(x, y, rows)) for x, y in points])
+            insets.append(float(np.where(inside, away, 0.0).max(initial=0.0)))
+            overhangs.append(float(np.where(inside, 0.0, away).max(initial=0.0)))
+        low, high = min(face.low for face in faces), max(face.high for face in faces)
+        return cls(area, low, high, tuple(insets), tuple(overhangs))
+
+
+def oriented_rows(part: Part) -> NDArray[np.float64]:
+    """Kernel rows of all loops of a part, material on the left of each."""
+    rows = []
+    for k, loop in enumerate(part.loops):
+        segments = loop_segments(loop.vertices)
+        if (signed_area(segments) > 0) != (k == 0):
+            segments = loop_segments(reversed_vertices(loop.vertices))
+        rows.append(segment_rows(segments))
+    return np.concatenate(rows)
+
+
+def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
+    """Refuse a silhouette that some face reaches out of: its true border is not made of lines and circles.
+
+    Raises
+    ------
+    InputError
+        Naming the face that reaches farthest out, and the remedy.
+    """
+    worst = int(np.argmax(outline.overhangs))
+    if outline.overhangs[worst] <= OVERHANG:
+        return
+    face = faces[worst]
+    raise InputError(
+        f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at {heights(outline, face)} reaches "
+        f"{outline.overhangs[worst]:.3g} mm out of what is; give --section HEIGHT, the height above the part's lowest "
+        f"point (0 to {outline.high - outline.low:.6g} mm) at which the pegs touch{other_axis(solid, axis, ', or --axis ')}."
+    )
+
+
+def departure_remarks(
+    outline: Outline,
+    faces: Sequence[SolidFace],
+    layers: Sequence[Layer],
+    shape: Any,
+    solid: Any,
+    axis: str,
+    section_height: float | None,
+) -> list[str]:
+    """What is not prismatic about a part, how far it departs, and where pegs have to touch; nothing for a prism."""
+    groups = departures(outline, faces)
+    chosen = section_height is not None
+    if not groups and max(outline.overhangs) <= OVERHANG:
+        return ["The part is prismatic: its section is the same at every height."] if chosen else []
+    remarks = [f"Not prismatic along {axis}: {listed(groups)}."] if groups else []
+    if chosen:
+        over = max(outline.overhangs)
+        reach = f", and at other heights the part reaches up to {over:.3g} mm out of it" if over > OVERHANG else ""
+        remarks.append(f"The outline is the section at height {section_height:g} mm{reach}: pegs have to touch there.")
+    else:
+        remarks.append(silhouette_remark(outline, layers, shape))
+    hint = other_axis(solid, axis, "")
+    if hint and any(face.lie == "leaning" for face in faces):
+        remarks.append(f"Along {hint} no face leans: give --axis {hint} if the pegs are parallel to that.")
+    return remarks
+
+
+def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
+    """Faces that are no part of the outline, alike ones together, deepest first."""
+    together: dict[tuple[str, str], list[float]] = defaultdict(list)
+    for face, inset, overhang in zip(faces, outline.insets, outline.overhangs, strict=True):
+        if face.lie != "level" and (face.lie == "leaning" or inset > DEPARTS):
+            together[face.kind, heights(outline, face)].append(max(inset, overhang))
+    ordered = sorted(together.items(), key=lambda item: (-max(item[1]), item[0]))
+    return [
+        f"{kind} at {where}{f' ({len(sizes)} of them)' if len(sizes) > 1 else ''}, "
+        f"up to {max(sizes):.3g} mm from the outline"
+        for (kind, where), sizes in ordered
+    ]
+
+
+def heights(outline: Outline, face: SolidFace) -> str:
+    """The heights a face reaches over, in words."""
+    return f"heights {span(outline, face.low, face.high)}"
+
+
+def span(outline: Outline, low: float, high: float) -> str:
+    """Two z as heights, in words; rounding of the coordinates does not show."""
+    first, last = (round(z - outline.low, 6) + 0.0 for z in (low, high))
+    return f"{first:.6g} to {last:.6g} mm"
+
+
+def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> str:
+    """Where the section is the whole silhouette, and how much the smallest section lacks."""
+    whole: list[tuple[float, float]] = []
+    lacks: list[tuple[float, float]] = []
+    for layer in layers:
+        found = [(outline.area - area_of(section(shape, z)), z) for z in probed(layer)]
+        lacks += found
+        if layer.prismatic and found[0][0] <= SAME_AREA * outline.area:
+            if whole and layer.low - whole[-1][1] <= 2 * SAME_HEIGHT:
+                whole[-1] = (whole[-1][0], layer.high)
+            else:
+                whole.append((layer.low, layer.high))
+    worst, z = max(lacks)
+    lack = (
+        f"the section at height {z - outline.low:.6g} mm has {worst:.3g} mm² ({100 * worst / outline.area:.2g} %) less"
+    )
+    if not whole:
+        return (
+            f"The outline is the silhouette; no range of heights has all of it ({lack}): pegs have to reach over all "
+            "heights."
+        )
+    ranges = " and ".join(span(outline, low, high) for low, high in whole)
+    return (
+        f"The outline is the silhouette, which is the section at heights {ranges} ({lack}): pegs have to touch there."
+    )
+
+
+def probed(layer: Layer) -> list[float]:
+    """Heights at which a layer's section is compared with the outline."""
+    if layer.prismatic:
+        return [layer.middle]
+    return [layer.low + share * (layer.high - layer.low) for share in (0.01, 0.5, 0.99)]
+
+
+def other_axis(solid: Any, axis: str, before: str) -> str:
+    """Another axis along which no face of a solid leans, after some words; nothing when there is none."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+
+    surfaces = [BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
+    for name, (_, _, up) in AXES.items():
+        if name != axis and all(lie_of(surface, up) != "leaning" for surface in surfaces):
+            return before + name
+    return ""

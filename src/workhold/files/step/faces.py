@@ -1,0 +1,215 @@
+"""The faces of a solid by how they lie to the upward axis: what is prismatic, and what is not.
+
+Glossary
+--------
+height : z above the solid's lowest point, in mm.
+level : a flat face perpendicular to the axis.
+upright : a face parallel to the axis everywhere; only such faces can be the outline.
+leaning : any other face, such as a chamfer, a fillet along a horizontal edge, a draft, a hole across the axis.
+layer : a range of heights without a level face and without a leaning one inside it: one section holds for all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import hypot
+from typing import Any, Literal
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.files.step.solids import bounding_box, sub_shapes
+
+__all__ = ["Layer", "SolidFace", "layers_of", "lie_of", "solid_faces", "surface_points"]
+
+# A face whose normal is off by less than this, in radians, lies as it was meant to: 0.01 µm over 100 mm.
+ALIGNED = 1e-7
+# Heights closer than this, in mm, are the same.
+SAME_HEIGHT = 1e-5
+# Points along an edge, and along each direction of a curved face, by which a departure is measured.
+EDGE_POINTS, GRID_POINTS = 17, 15
+
+Lie = Literal["level", "upright", "leaning"]
+
+
+@frozen
+class SolidFace:
+    """One face of a solid.
+
+    Parameters
+    ----------
+    shape : Open CASCADE's face.
+    lie : how it lies to the axis.
+    kind : what it is in words, such as ``sloping plane``.
+    low, high : its lowest and highest z in mm.
+    fold : z at which a leaning face turns over, where it may reach farthest out; None without one.
+    upward : whether a level face looks up.
+    """
+
+    shape: Any
+    lie: Lie
+    kind: str
+    low: float
+    high: float
+    fold: float | None = None
+    upward: bool = False
+
+
+@frozen
+class Layer:
+    """A range of z in mm; ``prismatic`` when no leaning face is in it."""
+
+    low: float
+    high: float
+    prismatic: bool
+
+    @property
+    def middle(self) -> float:
+        """z halfway."""
+        return (self.low + self.high) / 2
+
+
+def solid_faces(shape: Any) -> list[SolidFace]:
+    """Every face of a solid whose axis points up."""
+    return [solid_face(face) for face in sub_shapes(shape, "FACE")]
+
+
+def solid_face(face: Any) -> SolidFace:
+    """Look at one face."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.TopAbs import TopAbs_Orientation
+
+    low, high = bounding_box(face)
+    surface = BRepAdaptor_Surface(face)
+    lie = lie_of(surface, 2)
+    fold = fold_of(surface) if lie == "leaning" else None
+    upward = False
+    if lie == "level":
+        turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        upward = (sampled_normals(surface)[0].Z() > 0) != turned
+    return SolidFace(face, lie, kind_of(surface, lie), low[2], high[2], fold, upward)
+
+
+def lie_of(surface: Any, axis: int) -> Lie:
+    """How a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    kind = surface.GetType()
+    if kind == Type.GeomAbs_Plane:
+        inward, across = components(surface.Plane().Axis().Direction(), axis)
+        return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
+    if kind == Type.GeomAbs_Cylinder:
+        _, across = components(surface.Cylinder().Axis().Direction(), axis)
+        return "upright" if across <= ALIGNED else "leaning"
+    if kind in (Type.GeomAbs_Cone, Type.GeomAbs_Sphere, Type.GeomAbs_Torus):
+        return "leaning"
+    slopes = [components(normal, axis) for normal in sampled_normals(surface)]
+    if not slopes:
+        return "leaning"
+    inward, across = (max(values) for values in zip(*slopes, strict=True))
+    return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
+
+
+def components(direction: Any, axis: int) -> tuple[float, float]:
+    """Sizes of a unit vector's part along an axis and of its part across."""
+    values = [direction.X(), direction.Y(), direction.Z()]
+    inward = values.pop(axis)
+    return abs(inward), hypot(*values)
+
+
+def sampled_normals(surface: Any) -> list[Any]:
+    """Unit normals of a surface at a grid of points, without those where it has none."""
+    from OCP.gp import gp_Dir, gp_Pnt, gp_Vec
+
+    normals = []
+    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
+        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
+            point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+            surface.D1(float(u), float(v), point, along_u, along_v)
+            normal = along_u.Crossed(along_v)
+            if normal.Magnitude() > 1e-12:
+                normals.append(gp_Dir(normal))
+    return normals
+
+
+def kind_of(surface: Any, lie: Lie) -> str:
+    """A face in words, in the singular."""
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    kind = surface.GetType()
+    if kind == Type.GeomAbs_Plane:
+        return {"level": "level plane", "upright": "wall", "leaning": "sloping plane"}[lie]
+    if lie == "upright":
+        round_wall = kind == Type.GeomAbs_Cylinder
+        return f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
+    if kind == Type.GeomAbs_Cylinder:
+        along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
+        return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {'across' if along_axis < 1e-6 else 'aslant'}"
+    names = {Type.GeomAbs_Cone: "cone", Type.GeomAbs_Sphere: "sphere", Type.GeomAbs_Torus: "rounded rim"}
+    return names.get(kind, "free-form surface")
+
+
+def fold_of(surface: Any) -> float | None:
+    """z at which a leaning surface stands upright all along a horizontal line: the equator of a sphere, an upright torus
+    or a lying cylinder."""
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    kind = surface.GetType()
+    if kind == Type.GeomAbs_Sphere:
+        return float(surface.Sphere().Location().Z())
+    if kind == Type.GeomAbs_Torus:
+        torus = surface.Torus()
+        return float(torus.Location().Z()) if components(torus.Axis().Direction(), 2)[1] <= ALIGNED else None
+    if kind == Type.GeomAbs_Cylinder:
+        cylinder = surface.Cylinder()
+        return float(cylinder.Location().Z()) if components(cylinder.Axis().Direction(), 2)[0] <= ALIGNED else None
+    return None
+
+
+def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
+    """The layers between the heights where level and leaning faces begin or end, from the lowest up."""
+    leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
+    heights = sorted({z for face in faces if face.lie != "upright" for z in (face.low, face.high)})
+    levels: list[float] = []
+    for z in heights:
+        if not levels or z - levels[-1] > SAME_HEIGHT:
+            levels.append(z)
+    layers = []
+    for low, high in pairwise(levels):
+        inside = (leaning[:, 0] < high - SAME_HEIGHT) & (leaning[:, 1] > low + SAME_HEIGHT)
+        layers.append(Layer(low, high, not inside.any()))
+    return layers
+
+
+def surface_points(face: SolidFace) -> NDArray[np.float64]:
+    """(N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
+    from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType
+
+    points = []
+    for edge in sub_shapes(face.shape, "EDGE"):
+        curve = BRepAdaptor_Curve(edge)
+        points += [
+            curve.Value(float(t)) for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
+        ]
+    surface = BRepAdaptor_Surface(face.shape)
+    if face.lie == "leaning" and surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
+        points += inner_points(face.shape, surface)
+    return np.array([(point.X(), point.Y()) for point in points]).reshape(-1, 2)
+
+
+def inner_points(face: Any, surface: Any) -> list[Any]:
+    """Points of a grid over a surface that lie on the face."""
+    from OCP.BRepClass import BRepClass_FaceClassifier
+    from OCP.gp import gp_Pnt2d
+    from OCP.TopAbs import TopAbs_State
+
+    points = []
+    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
+        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
+            state = BRepClass_FaceClassifier(face, gp_Pnt2d(float(u), float(v)), 1e-7).State()
+            if state == TopAbs_State.TopAbs_IN:
+                points.append(surface.Value(float(u), float(v)))
+    return points

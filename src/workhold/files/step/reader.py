@@ -1,0 +1,173 @@
+"""Parts in STEP files: from bytes to the outline of a prismatic part, in mm.
+
+The outline is the silhouette along an axis: where some height of the part has material. Round pegs parallel to the axis
+touch a part just there. It is the union of the sections of all layers, of level faces, and of the sections where leaning
+faces meet or fold; each of these lies in the silhouette, and afterwards every face is looked at whether it reaches out of
+the union. Or it is the section at a height that the user chose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Drawing
+from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
+from workhold.files.step.faces import SAME_HEIGHT, Layer, SolidFace, layers_of, solid_faces
+from workhold.files.step.library import load_step_library
+from workhold.files.step.regions import GAP, Borders, area_of, borders, level_region, section, union
+from workhold.files.step.solids import AXES, along, chosen_solid, lost_remarks, read_solids, solid_remarks, sub_shapes
+
+__all__ = ["read_step"]
+
+# Shares by which the volume of a solid and that of its layers may differ; the library integrates free-form faces roughly.
+SAME_VOLUME, FREE_VOLUME = 1e-5, 1e-2
+
+
+def read_step(
+    content: bytes, *, axis: str | None = None, section_height: float | None = None, part_number: int | None = None
+) -> Drawing:
+    """Read the outline of a solid in a STEP file.
+
+    Parameters
+    ----------
+    content : the file's bytes.
+    axis : "x", "y" or "z" (the default): the direction of the file that the pegs are parallel to. The part is seen from
+        the axis's far end: x and y of the outline are y and z of the file for "x", z and x for "y", x and y for "z".
+    section_height : take the section at this height in mm above the part's lowest point, instead of the silhouette.
+    part_number : which solid to take of several, from 1 by decreasing volume; the largest when None.
+
+    Raises
+    ------
+    InputError
+        For files that cannot be read, and parts whose outline is not made of lines and circles.
+    """
+    axis = "z" if axis is None else axis.strip().lower()
+    if axis not in AXES:
+        raise InputError(f"the axis '{axis[:40]}' is not known: give x, y or z.")
+    load_step_library()
+    solids = read_solids(content)
+    solid = chosen_solid(solids, part_number)
+    shape = along(solid.shape, axis)
+    faces = solid_faces(shape)
+    layers = layers_of(faces)
+    if section_height is None:
+        region = silhouette(shape, solid.volume, faces, layers)
+    else:
+        region = chosen_section(shape, faces, section_height)
+    edges = borders(region)
+    outline = Outline.of(edges, area_of(region), faces)
+    if section_height is None:
+        refuse_overhang(outline, faces, solid.shape, axis)
+    remarks = [
+        *lost_remarks(content, solids),
+        *solid_remarks(solids, solid, part_number),
+        *border_remarks(edges),
+        *departure_remarks(outline, faces, layers, shape, solid.shape, axis, section_height),
+    ]
+    return Drawing(edges.chains, tuple(remarks))
+
+
+def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
+    """The union of everything flat that the silhouette must hold.
+
+    Raises
+    ------
+    InputError
+        When the library cannot cut the solid or unite its sections.
+    """
+    prismatic = [layer for layer in layers if layer.prismatic]
+    regions = [section(shape, layer.middle) for layer in prismatic]
+    if len(prismatic) == len(layers):
+        swept = sum(area_of(region) * (layer.high - layer.low) for region, layer in zip(regions, layers, strict=True))
+        free = any(face.kind.startswith("free-form") for face in faces)
+        refuse_missing_volume(swept, volume, FREE_VOLUME if free else SAME_VOLUME)
+    for face in faces:
+        if face.lie == "level" and not has_layer(layers, face.low, below=face.upward):
+            regions.append(level_region(face.shape, face.low, face.upward))
+    edges = {z for layer in layers for z in (layer.low, layer.high)}
+    folds = {face.fold for face in faces if face.fold is not None and face.low <= face.fold <= face.high}
+    widest = -inf
+    for z in sorted(edges | folds):
+        beside_layer = has_layer(layers, z, below=True) or has_layer(layers, z, below=False)
+        if (
+            not beside_layer
+            and layers[0].low + SAME_HEIGHT < z < layers[-1].high - SAME_HEIGHT
+            and z > widest + SAME_HEIGHT
+        ):
+            widest = z
+            regions.append(section(shape, z))
+    if not regions:
+        # The widest piece of a section is in the silhouette too, and tells how far the part departs from it.
+        middles = (section(shape, layer.middle) for layer in layers)
+        regions = [max((face for middle in middles for face in sub_shapes(middle, "FACE")), key=area_of)]
+    return union(regions)
+
+
+def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
+    """Refuse a solid whose sections do not fill it: it is open, or runs through itself.
+
+    Raises
+    ------
+    InputError
+        Giving both volumes, in mm³.
+    """
+    if abs(swept - volume) > tolerance * volume:
+        raise InputError(
+            f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair it in the CAD "
+            "program and export it again."
+        )
+
+
+def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
+    """Whether a prismatic layer ends at z from below, or begins there, or holds z."""
+    for layer in layers:
+        if not layer.prismatic:
+            continue
+        ends = layer.high if below else layer.low
+        if abs(ends - z) <= 2 * SAME_HEIGHT or layer.low < z < layer.high:
+            return True
+    return False
+
+
+def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
+    """The section at a height above the lowest point.
+
+    Raises
+    ------
+    InputError
+        For a height outside the part or at a level face, and where the section falls into pieces.
+    """
+    low, high = min(face.low for face in faces), max(face.high for face in faces)
+    if not 0 < height < high - low:
+        raise InputError(
+            f"the section height {height:g} is not within the part, which is {high - low:.6g} mm high along the axis: "
+            "give a height above its lowest point, in mm."
+        )
+    z = low + height
+    if any(face.lie == "level" and abs(face.low - z) <= SAME_HEIGHT for face in faces):
+        raise InputError(f"at the section height {height:g} lies a level face: give a height a little above or below.")
+    region = section(shape, z)
+    pieces = len(sub_shapes(region, "FACE"))
+    if pieces > 1:
+        raise InputError(
+            f"the section at height {height:g} falls into {pieces} pieces: give a height where the part is in one."
+        )
+    return region
+
+
+def border_remarks(edges: Borders) -> list[str]:
+    """What was done to the borders."""
+    remarks = []
+    if edges.recognised:
+        count = (
+            "1 free-form edge is a line or circle"
+            if edges.recognised == 1
+            else (f"{edges.recognised} free-form edges are lines or circles")
+        )
+        remarks.append(f"{count} to within 1e-6 mm and taken as such.")
+    if edges.gap > GAP:
+        remarks.append(f"Closed gaps of up to {edges.gap:.2g} mm between edges of the outline.")
+    return remarks

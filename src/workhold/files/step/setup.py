@@ -1,0 +1,200 @@
+"""A set-up as a STEP assembly: the part in its pose, four pegs and two plates with their holes.
+
+The frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1. z is 0 on top of the plates;
+the part lies there, and the pegs stand through the plates up to the part's upper side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from io import BytesIO
+from math import cos, isfinite, pi, sin
+from pathlib import Path
+from typing import Any
+
+from workhold.errors import InputError
+from workhold.files.atomic import write_bytes
+from workhold.files.setup_plates import Plate, plate_of, posed_workpiece
+from workhold.files.step.library import load_step_library
+from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.model.fixture import Fixture, Jaw
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["setup_step", "write_setup_step"]
+
+# The header's time stamp, so that the same set-up gives the same bytes.
+TIME_STAMP = "1970-01-01T00:00:00"
+
+
+def write_setup_step(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    vise: Vise,
+    path: str | Path,
+    *,
+    thickness: float = 10.0,
+    plate_thickness: float = 10.0,
+) -> None:
+    """Write a set-up as a STEP assembly; the same set-up gives the same bytes.
+
+    Parameters
+    ----------
+    fixture, workpiece, vise : the set-up.
+    path : the file.
+    thickness : height of the part in mm.
+    plate_thickness : of both plates, in mm; their holes go through.
+
+    Raises
+    ------
+    InputError
+        For pegs without a radius, a thickness that is not positive, a file that cannot be written, and when the extra
+        ``step`` is not installed.
+    """
+    write_bytes(path, setup_step(fixture, workpiece, vise, thickness=thickness, plate_thickness=plate_thickness))
+
+
+def setup_step(
+    fixture: Fixture, workpiece: Workpiece, vise: Vise, *, thickness: float = 10.0, plate_thickness: float = 10.0
+) -> bytes:
+    """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
+
+    Raises
+    ------
+    InputError
+        As :func:`write_setup_step`.
+    """
+    if vise.peg_radius <= 0:
+        raise InputError("pegs of radius 0 have no body to write to a STEP file: give the vise a peg radius.")
+    for name, value in (("thickness", thickness), ("plate thickness", plate_thickness)):
+        if not (isfinite(value) and value > 0):
+            raise InputError(f"{name} {value} is not a positive length: give it in mm.")
+    load_step_library()
+    part = posed_workpiece(workpiece, fixture.pose)
+    named = [(workpiece.name, part_body(part, thickness))]
+    for peg in fixture.pegs:
+        named.append((f"peg {peg.hole}", peg_body((peg.x, peg.y), vise.peg_radius, -plate_thickness, thickness)))
+    jaws: tuple[Jaw, Jaw] = ("left", "right")
+    for jaw in jaws:
+        plate = plate_of(jaw, fixture, part, vise)
+        named.append((f"{jaw} jaw", plate_body(plate, vise.peg_radius, plate_thickness)))
+    return assembly(f"{workpiece.name} set-up", named)
+
+
+def part_body(part: Workpiece, thickness: float) -> Any:
+    """The part, in its pose, as a solid from z = 0 up."""
+    outer, *holes = (wire(segments) for segments in part.loop_segments)
+    return extruded(outer, holes, 0.0, thickness)
+
+
+def peg_body(center: Point, radius: float, low: float, high: float) -> Any:
+    """A peg as a cylinder between two heights."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(*center, low), gp_Dir(0.0, 0.0, 1.0)), radius, high - low).Solid()
+
+
+def plate_body(plate: Plate, radius: float, thickness: float) -> Any:
+    """A plate with its holes, its upper side at z = 0."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    (x0, y0), (x1, y1) = plate.low, plate.high
+    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
+
+    def whole(hole: Point) -> bool:
+        return x0 < hole[0] - radius and hole[0] + radius < x1 and y0 < hole[1] - radius and hole[1] + radius < y1
+
+    centers = [center for _, center in plate.holes]
+    holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in centers if whole(hole)]
+    body = extruded(border, holes, -thickness, 0.0)
+    # Jaws that nearly close leave no material around the holes of their last columns.
+    for hole in centers:
+        if not whole(hole):
+            body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()
+    return body
+
+
+def wire(segments: Iterable[Segment]) -> Any:
+    """A closed wire at z = 0 of segments in running order."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+    maker = BRepBuilderAPI_MakeWire()
+    for segment in segments:
+        maker.Add(edge(segment))
+    return maker.Wire()
+
+
+def edge(segment: Segment) -> Any:
+    """A segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt
+
+    if isinstance(segment, Line):
+        return BRepBuilderAPI_MakeEdge(gp_Pnt(*segment.start, 0.0), gp_Pnt(*segment.end, 0.0)).Edge()
+    start = segment.mid_angle - segment.sign * segment.half_sweep
+    axes = gp_Ax2(gp_Pnt(*segment.center, 0.0), gp_Dir(0.0, 0.0, segment.sign), gp_Dir(cos(start), sin(start), 0.0))
+    return BRepBuilderAPI_MakeEdge(gp_Circ(axes, segment.radius), 0.0, 2 * segment.half_sweep).Edge()
+
+
+def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
+    """The solid between two heights over a border with holes, which run clockwise."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    maker = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), outer)
+    for hole in holes:
+        maker.Add(hole)
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(0.0, 0.0, low))
+    face = maker.Face().Moved(TopLoc_Location(move))
+    return BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, high - low), True).Shape()
+
+
+def assembly(name: str, named: Sequence[tuple[str, Any]]) -> bytes:
+    """The STEP file of an assembly of named bodies."""
+    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+    from OCP.BRep import BRep_Builder
+    from OCP.STEPCAFControl import STEPCAFControl_Writer
+    from OCP.STEPControl import STEPControl_StepModelType
+    from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
+    from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+    from OCP.TDataStd import TDataStd_Name
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS_Compound
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    compound = TopoDS_Compound()
+    BRep_Builder().MakeCompound(compound)
+    root = shapes.AddShape(compound, True)
+    TDataStd_Name.Set_s(root, TCollection_ExtendedString(name, True))
+    for word, body in named:
+        label = shapes.AddShape(body, False)
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(word, True))
+        placed = shapes.AddComponent(root, label, TopLoc_Location())
+        TDataStd_Name.Set_s(placed, TCollection_ExtendedString(word, True))
+    shapes.UpdateAssemblies()
+    writer = STEPCAFControl_Writer()
+    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+        raise RuntimeError("the STEP library could not translate the set-up")
+    model = writer.ChangeWriter().Model()
+    header = APIHeaderSection_MakeHeader(model)
+    header.SetName(TCollection_HAsciiString("set-up"))
+    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
+    header.SetAuthorValue(1, TCollection_HAsciiString(""))
+    header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+    header.SetOriginatingSystem(TCollection_HAsciiString("workhold"))
+    # The library numbers the places of an assembly through the life of the process.
+    entities = (model.Entity(k) for k in range(1, model.NbEntities() + 1))
+    uses = (entity for entity in entities if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence))
+    for number, use in enumerate(uses, start=1):
+        use.SetId(TCollection_HAsciiString(str(number)))
+    stream = BytesIO()
+    writer.WriteStream(stream)
+    return stream.getvalue()

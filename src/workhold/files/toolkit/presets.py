@@ -1,0 +1,75 @@
+"""Vises that people own, by name; each file in ``data/vises`` says where its figures are from.
+
+A preset is a plate on each jaw of a vise, as in the paper: no vise that comes with a lattice of dowel holes on both jaws
+is known to us. How many columns a jaw has is for its owner to say; a preset's number is only a usual one.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from workhold.errors import InputError
+from workhold.files.toolkit.reader import LoadedVise, described_vise, read_vise_file
+
+__all__ = ["LoadedVise", "load_vise", "preset", "preset_names"]
+
+ENDING = ".toml"
+
+
+@cache
+def preset_names() -> tuple[str, ...]:
+    """The names of the presets, by kind and then by pitch.
+
+    Examples
+    --------
+    >>> preset_names()[0]
+    'gripper-one-column'
+    """
+    found = [entry.name for entry in (files("workhold") / "data" / "vises").iterdir() if entry.name.endswith(ENDING)]
+    presets = [preset(name.removesuffix(ENDING)) for name in found]
+    presets.sort(key=lambda vise: (vise.name.split("-")[0], vise.fields["pitch"], vise.fields["columns"]))
+    return tuple(vise.name for vise in presets)
+
+
+def preset(name: str) -> LoadedVise:
+    """The preset of a name that exists."""
+    text = (files("workhold") / "data" / "vises" / f"{name}{ENDING}").read_text(encoding="utf-8")
+    return described_vise(name, tomllib.loads(text))
+
+
+def load_vise(name: str | Path) -> LoadedVise:
+    """Load a vise by the name of a preset or from a TOML file; a file wins.
+
+    Parameters
+    ----------
+    name : a preset's name in any mixture of capitals, or the path of a file.
+
+    Raises
+    ------
+    InputError
+        For a vise that cannot be found, with the names that are close, and for a file that cannot be used.
+
+    Examples
+    --------
+    >>> from workhold import Vise
+    >>> loaded = load_vise("plate-20mm")
+    >>> Vise(**loaded.fields | {"columns": 2}).pitch
+    (20.0, 20.0)
+    """
+    path = Path(name)
+    try:
+        is_path = path.exists()
+    except (OSError, ValueError):
+        is_path = False
+    names = preset_names()
+    asked = str(name).strip().lower()
+    if is_path and asked and not (path.is_dir() and asked in names):
+        return read_vise_file(path)
+    if asked in names:
+        return preset(asked)
+    close = get_close_matches(asked, names, n=3, cutoff=0.5) or names
+    raise InputError(f"{str(name)[:200]!r}: file not found, and no vise has that name (try {', '.join(close)}).")

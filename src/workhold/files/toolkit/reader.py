@@ -1,0 +1,207 @@
+"""A vise described in TOML: a preset of the program's own, or a file of the user's. All lengths come out in mm.
+
+Glossary
+--------
+entry : a key of the file and its value.
+fields : the keyword arguments of :class:`workhold.model.vise.Vise` that the file gives.
+fit : limits of pin and hole and the position of the hole, from which the peg's tolerance follows.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.toolkit.dowels import dowel_size
+from workhold.model.dowel import Limits, peg_error, refuse_limits
+from workhold.model.holes import holes_named
+from workhold.model.tolerance import Tolerance
+from workhold.model.units import Unit, unit_named
+from workhold.model.vise import Vise
+
+__all__ = ["Fit", "LoadedVise", "described_vise", "read_vise_file"]
+
+# Bytes; a vise takes a few hundred.
+LARGEST_FILE = 1_000_000
+LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius")
+# Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
+ASSUMED_POSITION = Tolerance().peg
+
+
+@frozen
+class Fit:
+    """A pin in its hole.
+
+    Parameters
+    ----------
+    pin, hole : smallest and largest diameters in mm.
+    position : how far the centre of a hole may be from its place, in mm.
+    position_assumed : whether nobody said so, and it was assumed.
+    """
+
+    pin: Limits
+    hole: Limits
+    position: float
+    position_assumed: bool
+
+
+@frozen
+class LoadedVise:
+    """A vise as its file describes it.
+
+    Parameters
+    ----------
+    name : the preset's name, or the file's.
+    title : what it is, in a line; empty where the file gives none.
+    source : where the figures are from; empty where the file does not say.
+    unit : in which the file gives its lengths.
+    fields : keyword arguments for :class:`workhold.model.vise.Vise`, in mm; those not in the file are left out.
+    tolerance : of its pegs and of the faces they touch.
+    fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.
+    """
+
+    name: str
+    title: str
+    source: str
+    unit: Unit
+    fields: dict[str, Any]
+    tolerance: Tolerance
+    fit: Fit | None
+
+    @property
+    def vise(self) -> Vise:
+        """The vise with nothing changed."""
+        return Vise(**self.fields)
+
+
+def read_vise_file(path: Path) -> LoadedVise:
+    """The vise of a user's file.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read or used, naming the entry.
+    """
+    from workhold.files.toolkit.form import checked
+
+    try:
+        return described_vise(path.stem, checked(content_of(path)))
+    except InputError as error:
+        raise InputError(f"{path.name or path}: {error}") from error
+
+
+def content_of(path: Path) -> dict[str, Any]:
+    """The entries of a TOML file.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, or is no TOML.
+    """
+    try:
+        if not path.is_file():
+            raise InputError("this is not a file: give a TOML file that describes a vise.")
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError("the file is too large to describe a vise: give a TOML file of a few lines.")
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        reason = str(error).rstrip(".")
+        raise InputError(f"the file is not valid TOML: {reason[:1].lower()}{reason[1:]}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+    except RecursionError as error:
+        raise InputError("the file is nested too deeply to describe a vise.") from error
+    except OSError as error:
+        raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
+
+
+def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
+    """The vise of a file's entries, which are of the right types.
+
+    Raises
+    ------
+    InputError
+        For values that no vise can have.
+    """
+    unit = unit_named(entries["unit"])
+    if unit.name not in ("mm", "inch"):
+        raise InputError('the unit of a vise is "mm" or "inch".')
+    pitch = entries["pitch"]
+    pair = (pitch[0], pitch[1]) if isinstance(pitch, list) else (pitch, pitch)
+    fields: dict[str, Any] = {
+        "pitch": (unit.length(pair[0]), unit.length(pair[1])),
+        "columns": entries["columns"],
+    }
+    fields |= {key: unit.length(entries[key]) for key in LENGTHS if key in entries}
+    if "rows" in entries:
+        fields["rows"] = entries["rows"]
+    if "blocked" in entries:
+        fields["blocked"] = tuple(holes_named(hole) for hole in entries["blocked"])
+    Vise(**fields)
+    fit = fit_of(entries, unit, fields["peg_radius"])
+    return LoadedVise(
+        name=name,
+        title=entries.get("title", ""),
+        source=entries.get("source", ""),
+        unit=unit,
+        fields=fields,
+        tolerance=tolerance_of(entries, unit, fit, fields["peg_radius"]),
+        fit=fit,
+    )
+
+
+def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
+    """Pin and hole as the file gives them, or as the standard it names does; None when it gives neither.
+
+    Raises
+    ------
+    InputError
+        For one without the other, and for limits that are not those of the peg.
+    """
+    limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
+    if "dowel" in entries:
+        size = dowel_size(entries["dowel"], 2 * peg_radius)
+        limits = {"pin_diameter": size.pin, "hole_diameter": size.hole}
+    for key in limits:
+        if key in entries:
+            low, high = entries[key]
+            limits[key] = (unit.length(low), unit.length(high))
+    pin, hole = limits["pin_diameter"], limits["hole_diameter"]
+    if pin is None and hole is None:
+        if "hole_position" in entries:
+            raise InputError(
+                "hole_position is given without the pin: add dowel, or pin_diameter and hole_diameter, or give "
+                "peg_tolerance alone."
+            )
+        return None
+    if pin is None:
+        raise InputError("hole_diameter is given without the pin: add pin_diameter or dowel.")
+    if hole is None:
+        raise InputError("the pin is given without its hole: add hole_diameter, smallest and largest.")
+    refuse_limits("pin_diameter", pin, peg_radius)
+    refuse_limits("hole_diameter", hole, peg_radius)
+    position = entries.get("hole_position")
+    if position is not None and position < 0:
+        raise InputError(f"hole_position {position:g} is negative: give 0 or more.")
+    length = ASSUMED_POSITION if position is None else unit.length(position)
+    return Fit(pin, hole, length, position is None)
+
+
+def tolerance_of(entries: Mapping[str, Any], unit: Unit, fit: Fit | None, peg_radius: float) -> Tolerance:
+    """The tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
+
+    Raises
+    ------
+    InputError
+        For negative lengths.
+    """
+    usual = Tolerance()
+    # Rounded to where a difference of decimal figures is exact again.
+    peg = usual.peg if fit is None else round(peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
+    given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
+    return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face))

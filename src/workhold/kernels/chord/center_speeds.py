@@ -1,0 +1,227 @@
+"""Enclosures of how fast a chord's instant centre moves, over a range of directions.
+
+With C_a = cross(w, r_a), C_b = cross(w, r_b), X = cross(r_a, r_b), k_a and k_b the features' curvatures (0 for a line,
+1 / R for an arc), differentiating the two lines of action through the instant centre P gives
+
+    X^3 P' = (C_a X + k_b C_a^2) r_a - (C_b X + k_a C_b^2) r_b,
+
+The right-hand side stays finite at a tangency, where X = 0, so the sign of the second derivatives made of it,
+
+    h'' = -y . P - x . P'        and        s'' = -P' . r_a      (divided by R_a on an arc),
+
+is bounded there too (see ``pieces``).
+
+Between two arcs of nearly equal radii R_a and R_b whose centres are nearly one chord apart, r_a and r_b nearly agree, and
+the terms on the right nearly cancel. With g = c - w, c from centre to centre, R_a r_a - R_b r_b = g gives the same without
+cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w, c), E = C_a - G, rho = R_a / R_b
+
+    R_b X^3 P' = (1 - rho^2) C_a E r_a + rho C_a E g / R_b
+                 + (rho C_a W / R_a + (W / R_b) (E - W / R_a)) (rho r_a - g / R_b).
+"""
+
+from __future__ import annotations
+
+from math import atan2, hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.interval import (
+    Interval,
+    iadd,
+    icos,
+    icross,
+    idivide,
+    idot,
+    imul,
+    ineg,
+    iscale,
+    ishift,
+    isin,
+    isqrt,
+    isquare,
+    isub,
+    outward,
+)
+from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
+from workhold.kernels.chord.evaluation import curvature
+from workhold.kernels.curves.columns import BRANCH, COINCIDENCE, LENGTH
+
+Array = NDArray[np.float64]
+# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.
+NEAR = 0.5
+ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+# What is not known.
+ANYTHING = (-inf, inf)
+
+
+@inner
+def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
+    """Enclosure of ``line_to_arc``."""
+    nx, ny = a[4], -a[3]
+    moved_x, moved_y = ishift(a[1] - b[1], wx), ishift(a[2] - b[2], wy)
+    across = iadd(iscale(nx, moved_x), iscale(ny, moved_y))
+    inside = imul(isub((b[6], b[6]), across), ishift(b[6], across))
+    half = iscale(branch, isqrt(inside))
+    rx = iadd(iscale(nx, across), iscale(a[3], half))
+    ry = iadd(iscale(ny, across), iscale(a[4], half))
+    ux, uy = isub(ishift(b[1], rx), wx), isub(ishift(b[2], ry), wy)
+    return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[6], rx), iscale(1.0 / b[6], ry))
+
+
+@inner
+def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool) -> ChordBox:
+    """Enclosure of ``arc_to_arc``."""
+    cx, cy = b[1] - a[1], b[2] - a[2]
+    gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
+    gap = isqrt(iadd(isquare(gx), isquare(gy)))
+    if one_chord_apart and cx * wx[0] + cy * wy[0] > 0.0 and cx * wx[1] + cy * wy[1] > 0.0:
+        mx, my = ishift(cx, wx), ishift(cy, wy)
+        size = isqrt(iadd(isquare(mx), isquare(my)))
+        middle_x, middle_y = (wx[0] + wx[1]) / 2.0, (wy[0] + wy[1]) / 2.0
+        side = 1.0 if cx * middle_y - cy * middle_x >= 0.0 else -1.0
+        dx, dy = iscale(side, idivide(my, size)), iscale(-side, idivide(mx, size))
+        along = iscale(0.5, gap)
+    else:
+        dx, dy = idivide(gx, gap), idivide(gy, gap)
+        difference = (a[6] - b[6]) * (a[6] + b[6])
+        along = iscale(0.5, iadd(gap, idivide((difference, difference), gap)))
+    inside = imul(isub((a[6], a[6]), along), ishift(a[6], along))
+    half = iscale(branch, isqrt(inside))
+    rx, ry = isub(imul(along, dx), imul(half, dy)), iadd(imul(along, dy), imul(half, dx))
+    qx, qy = iscale(1.0 / b[6], isub(rx, gx)), iscale(1.0 / b[6], isub(ry, gy))
+    return (ishift(a[1], rx), ishift(a[2], ry), iscale(1.0 / a[6], rx), iscale(1.0 / a[6], ry), qx, qy)
+
+
+@inner
+def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Enclosure of the chord between two lines."""
+    nx, ny = b[4], -b[3]
+    reach = iadd(iscale(nx, isub((b[1] - a[1], b[1] - a[1]), wx)), iscale(ny, isub((b[2] - a[2], b[2] - a[2]), wy)))
+    s = iscale(1.0 / (nx * a[3] + ny * a[4]), reach)
+    ux, uy = ishift(a[1], iscale(a[3], s)), ishift(a[2], iscale(a[4], s))
+    return (ux, uy, (a[4], a[4]), (-a[3], -a[3]), (nx, nx), (ny, ny))
+
+
+@inner
+def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Enclosure of ``chord_along`` for all w in a box."""
+    branch = curve[BRANCH]
+    if a[0] == 0.0:
+        if b[0] == 0.0:
+            return line_to_line_box(a, b, wx, wy)
+        return line_to_arc_box(a, b, wx, wy, branch)
+    if b[0] == 0.0:
+        vx, vy, rbx, rby, rax, ray = line_to_arc_box(b, a, ineg(wx), ineg(wy), branch)
+        return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+    if a[6] <= b[6]:
+        return arc_to_arc_box(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
+    # Seen from the smaller circle, the contact on the larger one is known better.
+    vx, vy, rbx, rby, rax, ray = arc_to_arc_box(b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS)
+    return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+
+
+@inner
+def one_sided(turn: Interval, sign: float) -> Interval:
+    """Cut a cross product known to keep its sign (0 at a tangency) to that side."""
+    if sign > 0.0:
+        return (max(turn[0], 0.0), max(turn[1], 0.0))
+    return (min(turn[0], 0.0), min(turn[1], 0.0))
+
+
+@inner
+def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
+    r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
+
+    Between a line and an arc X^2 = 1 - (across / R)^2; between two arcs, with g = \|c - w\|,
+    X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
+    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
+    """
+    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of their rounding.
+    cx, cy = outward(b[1] - a[1], b[1] - a[1]), outward(b[2] - a[2], b[2] - a[2])
+    if a[0] == 0.0 and b[0] == 0.0:
+        turn = icross((a[3], a[3]), (a[4], a[4]), (b[3], b[3]), (b[4], b[4]))
+        return isqrt(isquare(turn))
+    if a[0] == 0.0 or b[0] == 0.0:
+        line, arc = (a, b) if a[0] == 0.0 else (b, a)
+        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same direction.
+        fixed = isub(iscale(line[4], cx), iscale(line[3], cy))
+        normal = atan2(-line[3], line[4])
+        across = isub(fixed, iscale(d, icos((low - normal, high - normal))))
+        inside = imul(isub((arc[6], arc[6]), across), ishift(arc[6], across))
+        return iscale(1.0 / arc[6], isqrt(inside))
+    apart, middle = isqrt(iadd(isquare(cx), isquare(cy))), atan2(b[2] - a[2], b[1] - a[1])
+    half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
+    square = iadd(isquare(ishift(-d, apart)), iscale(4.0 * d, imul(apart, isquare(half))))
+    less, more = outward(a[6] - b[6], a[6] - b[6]), outward(a[6] + b[6], a[6] + b[6])
+    inside = imul(isub(square, isquare(less)), isub(isquare(more), square))
+    return iscale(0.5 / (a[6] * b[6]), isqrt(inside))
+
+
+@inner
+def arcs_motion(a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float) -> CenterMotion:
+    """``center_motion`` between arcs of which each contact direction is nearly the other."""
+    _, _, rx, ry, _, _ = chord
+    cx, cy = b[1] - a[1], b[2] - a[2]
+    gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
+    rho, inverse = a[6] / b[6], 1.0 / b[6]
+    swing = icross(rx, ry, gx, gy)
+    turn = one_sided(iscale(-inverse, swing), turn_sign)
+    cross_a = icross(wx, wy, rx, ry)
+    across = icross(wx, wy, (cx, cx), (cy, cy))
+    rest = isub(cross_a, swing)
+    unequal = -(a[6] - b[6]) * (a[6] + b[6]) * inverse * inverse
+    product = imul(cross_a, rest)
+    last = iadd(
+        iscale(rho / a[6], imul(cross_a, across)), iscale(inverse, imul(across, isub(rest, iscale(1.0 / a[6], across))))
+    )
+    hx, hy = isub(iscale(rho, rx), iscale(inverse, gx)), isub(iscale(rho, ry), iscale(inverse, gy))
+    # R_b X^3 P' is along * r_a + product * rho g / R_b + last * h.
+    along, beside = iscale(unequal, product), iscale(rho * inverse, product)
+    nx = iscale(inverse, iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx))))
+    ny = iscale(inverse, iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy))))
+    return (turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
+
+
+@inner
+def center_motion(a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float) -> CenterMotion:
+    """Enclosures over alpha in [low, high] of what the instant centre's speed P' is made of.
+
+    Parameters
+    ----------
+    curve : row of the curve table.
+    turn_sign : sign of X inside the range (X vanishes at most at its ends).
+
+    Returns
+    -------
+    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b); near a coincidence P' is enclosed itself,
+     X is 1, and what cannot be told is infinite
+    """
+    unit, zero = (1.0, 1.0), (0.0, 0.0)
+    if curve[COINCIDENCE] == CONCENTRIC:
+        # The instant centre is the common centre.
+        return (unit, zero, zero, zero, zero, zero)
+    if curve[COINCIDENCE] != NONE:
+        regular, u = motion_box(a, b, curve, low, high)
+        if regular:
+            # P = u + J u', J the quarter turn.
+            return (unit, isub(u[2], u[5]), iadd(u[3], u[4]), ANYTHING, ANYTHING, ANYTHING)
+    d = curve[LENGTH]
+    wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
+    box = chord_box(a, b, curve, wx, wy)
+    if a[0] != 0.0 and b[0] != 0.0:
+        gap = hypot(b[1] - a[1] - (wx[0] + wx[1]) / 2.0, b[2] - a[2] - (wy[0] + wy[1]) / 2.0)
+        if gap < NEAR * min(a[6], b[6]):
+            return arcs_motion(a, b, wx, wy, box, turn_sign)
+    _, _, rax, ray, rbx, rby = box
+    turn = turn_size(a, b, d, low, high)
+    if turn_sign < 0.0:
+        turn = ineg(turn)
+    cross_a, cross_b = icross(wx, wy, rax, ray), icross(wx, wy, rbx, rby)
+    part_a = imul(cross_a, iadd(turn, iscale(curvature(b), cross_a)))
+    part_b = imul(cross_b, iadd(turn, iscale(curvature(a), cross_b)))
+    nx, ny = isub(imul(part_a, rax), imul(part_b, rbx)), isub(imul(part_a, ray), imul(part_b, rby))
+    along = isub(part_a, imul(part_b, idot(rax, ray, rbx, rby)))
+    return (turn, nx, ny, along, part_a, part_b)

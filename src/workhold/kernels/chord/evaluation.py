@@ -1,0 +1,279 @@
+r"""Chords: two pegs of one jaw touching two features, as a curve over the orientation.
+
+Look from the workpiece's frame: the pegs turn by psi = -theta and move as one rigid set. Two pegs a lattice step
+``Delta`` apart, the first on feature a (the chord's tail u) and the second on feature b (its head v = u + w), form a
+segment of length d = \|Delta\| and direction alpha = psi + arg Delta. Given alpha, u follows in closed form, with at most
+two branches.
+
+Conventions
+-----------
+r_a, r_b : unit normal of a line, unit vector from the centre for an arc (its sign plays no part in lines of action).
+P : the chord's instant centre, where the lines of action through both contacts meet; P = u + p r_a with
+    p = cross(w, r_b) / X and X = cross(r_a, r_b). When psi turns, u' = J (u - P), J the quarter turn.
+height : h = y . u, with x = (cos psi, sin psi) and y = J x the vise's axes. From u' follows h' = -x . P.
+position : s, the parameter of u on feature a. s' = -p on a line, -p / R on an arc of radius R.
+A tangency of the chord (X = 0) is where its two branches meet and both derivatives are infinite.
+backward error : eta, a bound in mm of how far the computed contacts are off their features, from rounding alone.
+
+Errors of computed chords
+-------------------------
+Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail satisfies
+\|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its determinant is X, and its
+Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b. The Newton-Kantorovich theorem says that when 64 kappa eta <= X^2
+there is exactly one chord within 4 eta / \|X\| of the computed one, on the same branch. The bounds of ``chord_state``
+follow by the chain rule from h' = -x . (u + p r_a) and p = cross(w, r_b) / X.
+Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.chord.coincidences import (
+    ARCS,
+    CONCENTRIC,
+    EXACT,
+    NONE,
+    are_concentric,
+    are_one_chord_apart,
+    coincidence,
+    motion,
+)
+from workhold.kernels.curves.columns import (
+    BACKWARD_ERROR,
+    BRANCH,
+    COINCIDENCE,
+    COSINE,
+    KAPPA,
+    LENGTH,
+    MIDDLE,
+    SHIFT,
+    SIDE,
+    SINE,
+)
+
+Array = NDArray[np.float64]
+Chord = tuple[float, float, float, float, float, float]
+State = tuple[float, float, float, float, float, float, float, float, float, float]
+
+# Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these are not.)
+HEIGHT = 0.0
+POSITION = 1.0
+
+# Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously counted: those
+# of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
+ROUNDINGS = 32.0 * 1.2e-16
+
+
+@inner
+def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
+    """Tail on line a, head on arc b: the head lies on the line moved by w, cut with the circle of b."""
+    nx, ny = a[4], -a[3]
+    across = nx * (a[1] + wx - b[1]) + ny * (a[2] + wy - b[2])
+    half = sqrt(max((b[6] - across) * (b[6] + across), 0.0)) * branch
+    rx, ry = across * nx + half * a[3], across * ny + half * a[4]
+    return (b[1] + rx - wx, b[2] + ry - wy, nx, ny, rx / b[6], ry / b[6])
+
+
+@inner
+def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
+    """Tail on arc a, head on arc b: the tail lies on the circle of a and on that of b moved by -w."""
+    cx, cy = b[1] - a[1], b[2] - a[2]
+    gx, gy = cx - wx, cy - wy
+    gap = sqrt(gx * gx + gy * gy)
+    if one_chord_apart and cx * wx + cy * wy > 0.0:
+        # gap = 2 d sin(angle / 2): its direction is exact from the half angle, not from the difference.
+        mx, my = cx + wx, cy + wy
+        size = sqrt(mx * mx + my * my)
+        side = 1.0 if cx * wy - cy * wx >= 0.0 else -1.0
+        dx, dy = side * my / size, -side * mx / size
+        along = gap / 2.0
+    else:
+        dx, dy = gx / gap, gy / gap
+        along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
+    half = sqrt(max((a[6] - along) * (a[6] + along), 0.0)) * branch
+    rx, ry = along * dx - half * dy, along * dy + half * dx
+    qx, qy = rx - gx, ry - gy
+    return (a[1] + rx, a[2] + ry, rx / a[6], ry / a[6], qx / b[6], qy / b[6])
+
+
+@inner
+def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
+    """Tail and the two contact directions of a chord w from feature a to feature b.
+
+    Parameters
+    ----------
+    a, b : (8,) rows of the features of tail and head.
+    wx, wy : the chord in mm.
+    branch : +1 or -1 where an arc takes part; ignored between lines.
+    one_chord_apart : whether the features are equal arcs with centres one chord length apart.
+
+    Returns
+    -------
+    (ux, uy, r_ax, r_ay, r_bx, r_by)
+    """
+    if a[0] == 0.0:
+        if b[0] != 0.0:
+            return line_to_arc(a, b, wx, wy, branch)
+        nx, ny = b[4], -b[3]
+        s = (nx * (b[1] - a[1] - wx) + ny * (b[2] - a[2] - wy)) / (nx * a[3] + ny * a[4])
+        return (a[1] + s * a[3], a[2] + s * a[4], a[4], -a[3], nx, ny)
+    if b[0] == 0.0:
+        vx, vy, rbx, rby, rax, ray = line_to_arc(b, a, -wx, -wy, branch)
+        return (vx - wx, vy - wy, rax, ray, rbx, rby)
+    return arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
+
+
+@inner
+def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
+    """The chord of length d in mm and direction alpha in radians; see ``chord_along``."""
+    return chord_along(a, b, d * cos(alpha), d * sin(alpha), branch, are_one_chord_apart(a, b, d))
+
+
+@inner
+def parameter_on(row: Array, x: float, y: float) -> float:
+    """Parameter of a point on a feature: mm on a line, radians in (-pi, pi] on an arc."""
+    dx, dy = x - row[1], y - row[2]
+    if row[0] == 0.0:
+        return dx * row[3] + dy * row[4]
+    return atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy)
+
+
+@inner
+def backward_error(a: Array, b: Array, d: float) -> float:
+    """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
+    size = abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d
+    if a[0] == 0.0 and b[0] == 0.0:
+        # Nearly parallel lines are touched far from their middles.
+        size = min(size / abs(a[3] * b[4] - a[4] * b[3]), size + a[5] + b[5])
+    spread = 1.0
+    if a[0] != 0.0 and b[0] != 0.0:
+        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.
+        spread = max(a[6] / b[6], b[6] / a[6])
+        if are_concentric(a, b):
+            return ROUNDINGS * size * spread + hypot(a[1] - b[1], a[2] - b[2])
+    return ROUNDINGS * size * spread
+
+
+@inner
+def curvature(row: Array) -> float:
+    """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its feature."""
+    return 0.0 if row[0] == 0.0 else 1.0 / row[6]
+
+
+@inner
+def regular_error(curve: Array) -> float:
+    """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
+    return 8.0 * curve[BACKWARD_ERROR] + 4.0 * EXACT
+
+
+@inner
+def write_shift(row: Array, shift: float) -> None:
+    """Write to a row of the curve table what depends on the lattice step: arg Delta in radians (psi = alpha - shift)."""
+    row[SHIFT], row[COSINE], row[SINE] = shift, cos(shift), sin(shift)
+
+
+@inner
+def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
+    """Write to a row of the curve table what does not change along the curve.
+
+    Parameters
+    ----------
+    d, branch : length in mm and branch of the chord from feature a to feature b.
+    shift : arg Delta in radians, so that psi = alpha - shift.
+    """
+    row[LENGTH], row[BRANCH] = d, branch
+    write_shift(row, shift)
+    row[BACKWARD_ERROR] = backward_error(a, b, d)
+    row[COINCIDENCE], row[MIDDLE], row[SIDE] = coincidence(a, b, d)
+    row[KAPPA] = curvature(a) + curvature(b)
+    if are_concentric(a, b):
+        row[COINCIDENCE] = CONCENTRIC
+
+
+@inner
+def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
+    """A chord of a curve at an orientation.
+
+    Parameters
+    ----------
+    a, b : (8,) rows of the features of tail and head.
+    curve : row of the curve table.
+    psi, cosine, sine : orientation in radians and its cosine and sine.
+
+    Returns
+    -------
+    (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the chord's own
+     directions), the errors infinite where these formulas do not bound them, too near a tangency
+    """
+    d = curve[LENGTH]
+    wx, wy = d * (cosine * curve[COSINE] - sine * curve[SINE]), d * (sine * curve[COSINE] + cosine * curve[SINE])
+    kappa, kind = curve[KAPPA], curve[COINCIDENCE]
+    if kind != NONE and kind != CONCENTRIC:
+        regular, u = motion(a, b, curve, psi)
+        if regular:
+            error = regular_error(curve)
+            rax, ray = (a[4], -a[3]) if a[0] == 0.0 else ((u[0] - a[1]) / a[6], (u[1] - a[2]) / a[6])
+            rbx, rby = (b[4], -b[3]) if b[0] == 0.0 else ((u[0] + wx - b[1]) / b[6], (u[1] + wy - b[2]) / b[6])
+            slope_error = error * (1.0 + d * kappa)
+            return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
+    c = chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
+    turn = c[2] * c[5] - c[3] * c[4]
+    if kind == CONCENTRIC:
+        p = -a[6]
+    elif turn != 0.0:
+        p = (wx * c[5] - wy * c[4]) / turn
+    else:
+        p = 0.0
+    eta, square = curve[BACKWARD_ERROR], turn * turn
+    error, slope_error = inf, inf
+    if square >= 64.0 * kappa * eta and square > 0.0:
+        inverse = 1.0 / abs(turn)
+        error = 6.0 * eta * inverse
+        slope_error = 8.0 * eta * inverse * inverse * (1.0 + kappa * (d + 2.0 * abs(p)))
+    return (c[0], c[1], c[2], c[3], c[4], c[5], c[0] + p * c[2], c[1] + p * c[3], error, slope_error)
+
+
+@inner
+def valued(
+    a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
+) -> tuple[float, float, float, float]:
+    """Value and derivative over psi of a chord in place, and bounds of their errors; see ``curve_value``."""
+    ux, uy, px, py = state[0], state[1], state[6], state[7]
+    if mode == HEIGHT:
+        doubt = state[9]
+        if a[0] + b[0] == 1.0:
+            # P lies on the line of action through the straight feature, which turns with nothing: of its error along that
+            # line only the part along x counts.
+            nx, ny = (state[2], state[3]) if a[0] == 0.0 else (state[4], state[5])
+            share = abs(cosine * nx + sine * ny)
+            doubt = min(doubt, state[8] + share * (doubt + state[8]))
+        return (cosine * uy - sine * ux, -(cosine * px + sine * py), state[8], doubt)
+    s = parameter_on(a, ux, uy)
+    p = (px - ux) * state[2] + (py - uy) * state[3]
+    if a[0] == 0.0:
+        return (s, -p, state[8], state[9])
+    return (s, -p / a[6], state[8] / a[6] + 1e-15, state[9] / a[6])
+
+
+@inner
+def curve_value(a: Array, b: Array, curve: Array, psi: float, mode: float) -> tuple[float, float, float, float]:
+    """Value and derivative over psi of a chord curve.
+
+    Parameters
+    ----------
+    curve : row of the curve table.
+    psi : orientation in radians.
+    mode : ``HEIGHT`` for h in mm, ``POSITION`` for s of the tail on a (mm on a line, radians on an arc).
+
+    Returns
+    -------
+    (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite where these
+    formulas do not bound them, too near a tangency
+    """
+    cosine, sine = cos(psi), sin(psi)
+    return valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)

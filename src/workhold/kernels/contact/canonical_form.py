@@ -1,0 +1,100 @@
+"""Proven contacts as fixtures: where they are, with what forces, and in the one form each fixture is listed in."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.contact.equations import WORK_LENGTH, WRENCH_LENGTH, take_pegs, touch
+from workhold.kernels.contact.rules import LEAST_SPAN
+from workhold.kernels.proof.newton_kantorovich import held, wrenches
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@compiled
+def contacts_of(
+    records: Array, features: Array, setting: Array, points: Array, openings: Array, nulls: Array, forces: Array
+) -> None:
+    """Where the contacts of records are, and with what forces they hold.
+
+    Parameters
+    ----------
+    records : (N, 19), see ``kernels.contact.rules``.
+    features : (F, 10) rows.
+    setting : see ``kernels.contact.equations``.
+    points : (N, 4, 2) receives the pegs' centres in mm.
+    openings : (N,) receives the x distance from the rightmost left peg to the leftmost right peg.
+    nulls : (N, 4) receives the null vectors scaled to sum 1, all -1 where the wrenches do not span the space.
+    forces : (N, 4) receives the forces per unit of clamping force.
+    """
+    length = setting[WRENCH_LENGTH]
+    w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
+    for n in range(records.shape[0]):
+        take_pegs(records[n], setting, w)
+        touch(records[n], features, length, w, pairs[0])
+        wrenches(records[n], features, length, pairs, null)
+        total = null[0] + null[1] + null[2] + null[3]
+        for k in range(4):
+            null[k] = null[k] / total if abs(total) > LEAST_SPAN else -1.0
+        openings[n], push = held(w, pairs[0], pairs[1], null)
+        for k in range(4):
+            points[n, k, 0], points[n, k, 1] = pairs[0, k, 0], pairs[0, k, 1]
+            nulls[n, k], forces[n, k] = null[k], null[k] / push
+
+
+@compiled
+def to_canonical_form(
+    kind: IntArray, theta: Array, columns: IntArray, rows: IntArray, orders: IntArray, hair: float
+) -> None:
+    """Bring fixtures to the form they are listed in, in place.
+
+    Orientations are in [0, 2 pi), for Type I in [0, pi), up to a hair; columns count from the leftmost peg of each jaw, rows
+    from the lowest of all; pegs of a jaw are in the order of columns and rows.
+
+    Parameters
+    ----------
+    kind : (N,) 1 or 2.
+    theta : (N,) orientation of the workpiece in radians.
+    columns, rows : (N, 4) lattice places, pegs of the left jaw first.
+    orders : (N, 4) receives the order of the pegs.
+    hair : orientations nearer than this, in radians, are one.
+    """
+    for n in range(len(kind)):
+        angle = (theta[n] + hair) % (2.0 * pi) - hair
+        # The vise turned half way round: the jaws swap, rows and columns run the other way.
+        turned = kind[n] == 1 and angle >= pi - hair
+        theta[n] = angle - pi if turned else angle
+        order, column, row = orders[n], columns[n], rows[n]
+        for k in range(4):
+            order[k] = 3 - k if turned else k
+            if turned:
+                column[k], row[k] = -column[k], -row[k]
+        lefts = 2 if kind[n] == 1 else 3
+        lowest = min(min(row[0], row[1]), min(row[2], row[3]))
+        for jaw in range(2):
+            first, last = (0, lefts) if jaw == 0 else (lefts, 4)
+            base = column[order[first]]
+            for k in range(first, last):
+                base = min(base, column[order[k]])
+            for k in range(first, last):
+                column[order[k]] -= base
+                row[order[k]] -= lowest
+            for k in range(first + 1, last):
+                m = k
+                while m > first and comes_before(column, row, order[m], order[m - 1]):
+                    order[m - 1], order[m] = order[m], order[m - 1]
+                    m -= 1
+        a, b, c, d = order[0], order[1], order[2], order[3]
+        column[0], column[1], column[2], column[3] = column[a], column[b], column[c], column[d]
+        row[0], row[1], row[2], row[3] = row[a], row[b], row[c], row[d]
+
+
+@inner
+def comes_before(column: IntArray, row: IntArray, one: int, other: int) -> bool:
+    """Whether a peg stands before another in the order of columns and rows."""
+    return column[one] < column[other] or (column[one] == column[other] and row[one] < row[other])

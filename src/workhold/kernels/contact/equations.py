@@ -1,0 +1,111 @@
+"""Four pegs in place: their centres, how far those are off their features, and how that changes when they move.
+
+The unknowns are z = (psi, tail x, tail y, apart): the turn of the pegs in the workpiece's frame, the centre of the first
+peg, and the x distance from the first left to the first right peg. The contact equations say that every centre lies on its
+feature's line or circle; their Jacobian is taken over (L psi, tail x, tail y, apart), all in mm.
+
+Work space: ``w`` (18, 4), a row of four numbers, one for each peg where nothing else is said, at
+
+- UNKNOWNS: z;
+- MOVING: 1 for a peg that moves with the right jaw, else 0;
+- STEP_X, STEP_Y: places in mm from the first peg, with the right jaw at zero;
+- OFF: distances in mm of the centres from their lines and circles, outward positive;
+- NEWTON: the Newton step in mm, over (L psi, tail x, tail y, apart);
+- SLOPES (4): the Jacobian, a row for each peg;
+- LEFT (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse.
+
+``points`` (4, 2) holds the centres in mm.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.contact.rules import APART, COLUMNS, FEATURES, KIND, PSI, ROWS, TAIL_X, TAIL_Y
+
+Array = NDArray[np.float64]
+
+UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, LEFT, INVERSE = 0, 1, 2, 3, 4, 5, 6, 10, 14
+WORK_LENGTH = 18
+
+# Indices into what is common to all records of a search, lengths in mm: the lattice, the smallest gap and the peg radius of
+# the vise, the contact margin, L of the wrenches, and how far the features' rows may be from the drawing.
+PITCH_X, PITCH_Y, ROW_OFFSET, MIN_GAP, PEG_RADIUS, CONTACT_MARGIN, WRENCH_LENGTH, BACKWARD_ERROR = range(8)
+SETTING_LENGTH = 8
+
+
+@inner
+def take_pegs(record: Array, setting: Array, w: Array) -> None:
+    """Bring the pegs of a (19,) record to their places on the jaws, and the unknowns to its own."""
+    w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
+    w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[APART]
+    for k in range(4):
+        w[MOVING, k] = 1.0 if k == 3 or (k == 2 and record[KIND] == 1.0) else 0.0
+        w[STEP_X, k] = record[COLUMNS + k] * setting[PITCH_X]
+        w[STEP_Y, k] = record[ROWS + k] * setting[PITCH_Y] + w[MOVING, k] * setting[ROW_OFFSET]
+
+
+@inner
+def touch(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
+    """Fill in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
+    cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        across, along = w[STEP_X, k] + w[MOVING, k] * w[UNKNOWNS, 3], w[STEP_Y, k]
+        turned_x, turned_y = cosine * across - sine * along, sine * across + cosine * along
+        x, y = w[UNKNOWNS, 1] + turned_x, w[UNKNOWNS, 2] + turned_y
+        points[k, 0], points[k, 1] = x, y
+        gx, gy = row[4], -row[3]
+        dx, dy = x - row[1], y - row[2]
+        if row[0] == 0.0:
+            w[OFF, k] = dx * gx + dy * gy
+        else:
+            size = hypot(dx, dy)
+            gx, gy = dx / size, dy / size
+            w[OFF, k] = size - row[6]
+        w[SLOPES + k, 0] = (gy * turned_x - gx * turned_y) / length
+        w[SLOPES + k, 1], w[SLOPES + k, 2] = gx, gy
+        w[SLOPES + k, 3] = w[MOVING, k] * (gx * cosine + gy * sine)
+
+
+@inner
+def invert(w: Array) -> float:
+    """Invert the Jacobian by Gauss and Jordan's elimination with pivots by rows, and make the Newton step.
+
+    Returns
+    -------
+    float
+        The size of the determinant; where it is 0 or NaN there is no inverse.
+    """
+    for i in range(4):
+        for j in range(4):
+            w[LEFT + i, j] = w[SLOPES + i, j]
+            w[INVERSE + i, j] = 1.0 if i == j else 0.0
+    determinant = 1.0
+    for k in range(4):
+        best = k
+        for i in range(k + 1, 4):
+            if abs(w[LEFT + i, k]) > abs(w[LEFT + best, k]):
+                best = i
+        pivot = w[LEFT + best, k]
+        determinant *= abs(pivot)
+        if not determinant > 0.0:
+            return determinant
+        for j in range(4):
+            one, other = w[LEFT + best, j] / pivot, w[INVERSE + best, j] / pivot
+            w[LEFT + best, j], w[INVERSE + best, j] = w[LEFT + k, j], w[INVERSE + k, j]
+            w[LEFT + k, j], w[INVERSE + k, j] = one, other
+        for i in range(4):
+            factor = w[LEFT + i, k] if i != k else 0.0
+            for j in range(4):
+                w[LEFT + i, j] -= factor * w[LEFT + k, j]
+                w[INVERSE + i, j] -= factor * w[INVERSE + k, j]
+    for i in range(4):
+        w[NEWTON, i] = 0.0
+        for j in range(4):
+            w[NEWTON, i] += w[INVERSE + i, j] * w[OFF, j]
+    return determinant

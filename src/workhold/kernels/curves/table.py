@@ -1,0 +1,133 @@
+"""The table of all chord curves and sliding pairs of a workpiece: pairs of features times lattice steps."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.growing import grown, grown_whole
+from workhold.kernels.chord.evaluation import write_curve, write_shift
+from workhold.kernels.chord.intervals import chord_intervals
+from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
+from workhold.kernels.crossing.sliding_pairs import (
+    DIRECTION,
+    ORIENTATION,
+    SLIDING_PAIR_REALS,
+    STEP_LENGTH,
+    sliding_pairs_between,
+)
+from workhold.kernels.curves.columns import (
+    CENTER,
+    COLUMN_STEP,
+    CURVE_INTEGERS,
+    CURVE_REALS,
+    END_STRETCH,
+    FIRST_STRETCH,
+    FROM,
+    HEAD,
+    ROW_STEP,
+    TAIL,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
+)
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Rounding of distances in mm, generously counted.
+ROUNDING = 1e-9
+
+
+@inner
+def reach(row: Array) -> float:
+    """Largest distance of a feature's points from its middle (line) or centre (arc)."""
+    return row[5] if row[0] == 0.0 else row[6]
+
+
+@compiled
+def tail_curves(
+    tail: int, features: Array, centers: IntArray, lengths: Array, starts: IntArray, steps: IntArray, angles: Array
+) -> tuple[IntArray, Array, IntArray, Array, Array]:
+    """All chords whose tail is on one feature and whose head is on the same feature or one of a higher number.
+
+    Parameters
+    ----------
+    tail : index of the tail's feature.
+    features : (F, 8) rows.
+    centers : (F,) number of each arc's centre, -1 for lines; concentric arcs share it.
+    lengths : (D,) lengths of the lattice steps in mm.
+    starts : (D + 1,) where the steps of each length begin.
+    steps : (S, 2) column and row differences. Both directions of every step are listed.
+    angles : (S,) their directions in radians.
+
+    Returns
+    -------
+    (integers, reals, sliding pair integers, sliding pair reals, stretches)
+        The curve table of ``curve_columns``, the sliding pair table of ``sliding_pairs`` (its orientations, alpha -
+        shift, still to be brought into range by the caller) and the curves' stretches (see ``stretches``), counted from
+        0 for this tail.
+    """
+    integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
+    whole, sliding_pairs = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, SLIDING_PAIR_REALS))
+    stretches = np.empty((64, STRETCH_LENGTH))
+    count = sliding_pair_count = stretch_count = int(np.int64(0))
+    curve = np.empty(CURVE_REALS)
+    a = features[tail]
+    for head in range(tail, features.shape[0]):
+        b = features[head]
+        apart, play = hypot(b[1] - a[1], b[2] - a[2]), reach(a) + reach(b)
+        center = centers[tail] if centers[tail] == centers[head] else -1
+        for length in range(lengths.shape[0]):
+            d = lengths[length]
+            if d > apart + play + ROUNDING or d < apart - play - ROUNDING:
+                continue
+            ranges = chord_intervals(a, b, d)
+            standing = sliding_pairs_between(a, b, d)
+            for k in range(ranges.shape[0]):
+                write_curve(curve, a, b, d, ranges[k, 2], 0.0)
+                curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
+                curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
+                first = stretch_count
+                stretches, stretch_count = add_stretches(stretches, stretch_count, a, b, curve)
+                for step in range(starts[length], starts[length + 1]):
+                    column, row = steps[step, 0], steps[step, 1]
+                    if head == tail and (column < 0 or (column == 0 and row < 0)):
+                        continue
+                    if count == integers.shape[0]:
+                        integers, reals = grown_whole(integers), grown(reals)
+                    write_step(integers[count], tail, head, column, row, center)
+                    integers[count, FIRST_STRETCH], integers[count, END_STRETCH] = first, stretch_count
+                    for k_of in range(CURVE_REALS):
+                        reals[count, k_of] = curve[k_of]
+                    write_shift(reals[count], angles[step])
+                    count += 1
+            for step in range(starts[length], starts[length + 1]):
+                column, row = steps[step, 0], steps[step, 1]
+                if head == tail and (column < 0 or (column == 0 and row < 0)):
+                    continue
+                for k in range(standing.shape[0]):
+                    if sliding_pair_count == whole.shape[0]:
+                        whole, sliding_pairs = grown_whole(whole), grown(sliding_pairs)
+                    write_step(whole[sliding_pair_count], tail, head, column, row, center)
+                    for column_of in range(3):
+                        sliding_pairs[sliding_pair_count, column_of] = standing[k, column_of]
+                    sliding_pairs[sliding_pair_count, STEP_LENGTH] = d
+                    sliding_pairs[sliding_pair_count, ORIENTATION] = standing[k, DIRECTION] - angles[step]
+                    sliding_pair_count += 1
+    return (
+        integers[:count],
+        reals[:count],
+        whole[:sliding_pair_count],
+        sliding_pairs[:sliding_pair_count],
+        stretches[:stretch_count],
+    )
+
+
+@inner
+def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
+    """Write the whole numbers of a curve or sliding pair."""
+    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = tail, head, column_step, row_step, center

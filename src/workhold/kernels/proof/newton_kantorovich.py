@@ -1,0 +1,304 @@
+r"""A certificate for every fixture: that its contact equations have exactly one solution near the computed one, and that
+the rules hold there.
+
+Theorem (Newton-Kantorovich, in the form of radii polynomials): let F be the four contact equations in the unknowns
+z = (L psi, tail x, tail y, apart), all in mm, A an approximate inverse of the Jacobian J at z, and
+
+    Y >= \|A F(z)\|,   Z >= \|I - A J\|,   K >= \|A\| \|second derivatives of F\|      (largest absolute row sums).
+
+When (1 - Z)^2 > 2 K Y there is exactly one solution within r+ = (1 - Z) / K of z, and it lies within
+r = 2 Y / (1 - Z + sqrt((1 - Z)^2 - 2 K Y)).
+Reference: J. B. van den Berg, J.-P. Lessard, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015) 1057-1061.
+
+The search tells how far the exact contacts may be from the computed ones. When that is within r+, the solution here is the
+one the search isolated, and no other hides beside it.
+
+Glossary
+--------
+verdict : PROVEN, DISCARDED or OPEN (to be settled otherwise).
+radius : how far in mm the exact unknowns may be from the computed ones; infinite without a certificate.
+unique : in mm, within which there is no other solution.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, inf, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.distance import segment_distance
+from workhold.kernels.contact.closure import minors, outward_normal
+from workhold.kernels.contact.equations import (
+    BACKWARD_ERROR,
+    CONTACT_MARGIN,
+    INVERSE,
+    MIN_GAP,
+    MOVING,
+    NEWTON,
+    PEG_RADIUS,
+    SLOPES,
+    UNKNOWNS,
+    WORK_LENGTH,
+    WRENCH_LENGTH,
+    invert,
+    take_pegs,
+    touch,
+)
+from workhold.kernels.contact.rules import (
+    FEATURES,
+    GAP_SLACK,
+    LEAST_CLAMPING,
+    LEAST_CLOSURE,
+    LEAST_SPAN,
+    PSI,
+    RADIUS,
+    REACH,
+    ROUNDING,
+)
+
+Array = NDArray[np.float64]
+Verdicts = NDArray[np.int8]
+
+DISCARDED, OPEN, PROVEN = -1, 0, 1
+ROUNDS = 3
+# Determinants this small are singular; steps of more than this many mm lead to another contact.
+SINGULAR = 1e-300
+FARTHEST = 1.0
+# Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its terms.
+ROUNDINGS = 16.0 * 1.2e-16
+# A peg may be inside the part by this much, in mm, in the check that follows the proof.
+TOUCH = 1e-7
+# Where an engine tells nothing better, the exact contact is this near, in mm.
+LEAST_REACH = 1e-9
+
+
+@inner
+def polish(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
+    """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see ``contacts``)."""
+    for _ in range(ROUNDS):
+        touch(record, features, length, w, points)
+        if invert(w) > SINGULAR:
+            largest = 0.0
+            for k in range(4):
+                largest = max(largest, abs(w[NEWTON, k]))
+            if largest <= FARTHEST:
+                w[UNKNOWNS, 0] -= w[NEWTON, 0] / length
+                for k in range(1, 4):
+                    w[UNKNOWNS, k] -= w[NEWTON, k]
+    touch(record, features, length, w, points)
+
+
+@inner
+def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
+    """What rounding and second derivatives are relative to.
+
+    Returns
+    -------
+    (size in mm of the numbers in the contact equations, radius of the smallest arc touched, infinite for lines)
+    """
+    place = carrier = 0.0
+    smallest = inf
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        place = max(place, max(abs(points[k, 0]), abs(points[k, 1])))
+        carrier = max(carrier, max(row[6], max(abs(row[1]), abs(row[2]))))
+        if row[0] != 0.0:
+            smallest = min(smallest, row[6])
+    return (place + carrier, smallest)
+
+
+@inner
+def certificate(w: Array, size: float, smallest: float, length: float, backward_error: float) -> tuple[float, float]:
+    """Certify the contacts in place.
+
+    The second derivatives of the contact equations are bounded so: a peg's centre moves by at most (sqrt 2 + 2 + 1) per unit
+    of the unknowns, and its second derivative is at most 4 / L. A distance from a line has no curvature, one from a point
+    about R away has at most 2 / R.
+
+    Parameters
+    ----------
+    size, smallest : see :func:`sizes`.
+    length : L in mm.
+    backward error : error in mm of the equations' values besides rounding.
+
+    Returns
+    -------
+    (radius, unique), infinite and 0 without a certificate
+    """
+    if not invert(w) > SINGULAR:
+        return (inf, 0.0)
+    error = ROUNDINGS * size + backward_error
+    norm = step = defect = 0.0
+    for i in range(4):
+        row = rest = 0.0
+        for j in range(4):
+            row += abs(w[INVERSE + i, j])
+            entry = 1.0 if i == j else 0.0
+            for k in range(4):
+                entry -= w[INVERSE + i, k] * w[SLOPES + k, j]
+            rest += abs(entry)
+        norm, defect, step = max(norm, row), max(defect, rest), max(step, abs(w[NEWTON, i]))
+    step += norm * error
+    second_derivative = 2.0 * 4.42**2 / smallest + 4.0 / length
+    # The computed Jacobian is off by rounding, and by the backward error times the second derivatives.
+    defect += norm * 4.0 * (ROUNDINGS * (1.0 + size / length) + error * second_derivative)
+    rest, curve = 1.0 - defect, norm * second_derivative
+    inside = rest * rest - 2.0 * curve * step
+    if not (rest > 0.0 and inside > 0.0):
+        return (inf, 0.0)
+    radius = 1.01 * 2.0 * step / (rest + sqrt(inside))
+    # Points of the part's frame more than half a radius from an arc are outside the bound of the second derivatives.
+    unique = min(0.99 * rest / curve, smallest / 16.0)
+    return (radius, unique) if radius < unique else (inf, 0.0)
+
+
+@inner
+def end_slack(record: Array, features: Array, points: Array, margin: float) -> float:
+    """How far in mm the contact nearest to an end of its feature is from breaking the rule of ends."""
+    least = inf
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        dx, dy = points[k, 0] - row[1], points[k, 1] - row[2]
+        position, scale = dx * row[3] + dy * row[4], 1.0
+        if row[0] != 0.0:
+            if row[5] >= pi:
+                continue
+            position, scale = atan2(row[3] * dy - row[4] * dx, position), row[6]
+        forgiven = row[9] if position > 0.0 else row[8]
+        least = min(least, (row[5] - abs(position)) * scale - margin + forgiven)
+    return least
+
+
+@inner
+def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, float]:
+    """How four contacts with forces ``null`` (4,) stand between the jaws.
+
+    Returns
+    -------
+    (x distance in mm from the rightmost left peg to the leftmost right peg, push of the left pegs along the vise's x axis)
+    """
+    cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    left, right, push = -inf, inf, 0.0
+    for k in range(4):
+        along = points[k, 0] * cosine + points[k, 1] * sine
+        if w[MOVING, k] == 0.0:
+            left = max(left, along)
+            push -= null[k] * (normals[k, 0] * cosine + normals[k, 1] * sine)
+        else:
+            right = min(right, along)
+    return (right - left, push)
+
+
+@inner
+def sign_of(middle: float, doubt: float) -> int:
+    """PROVEN when a number known up to a doubt is positive, DISCARDED when it is negative, else OPEN."""
+    if middle - doubt > 0.0:
+        return PROVEN
+    return DISCARDED if middle + doubt < 0.0 else OPEN
+
+
+@inner
+def wrenches(record: Array, features: Array, length: float, pairs: Array, null: Array) -> float:
+    """Fill in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place; its sum of sizes."""
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        pairs[1, k, 0], pairs[1, k, 1] = outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
+    return minors(pairs[0], pairs[1], length, null)
+
+
+@inner
+def judged(
+    record: Array, features: Array, setting: Array, radius: float, smallest: float, w: Array, pairs: Array, null: Array
+) -> int:
+    """Decide contacts in place by the signs of enclosures of five numbers that must all be positive: ends, gap, span,
+    closure, clamping.
+
+    Parameters
+    ----------
+    radius : how far in mm the exact unknowns may be from those in place.
+    smallest : radius of the smallest arc touched, infinite for lines.
+    """
+    length = setting[WRENCH_LENGTH]
+    size = wrenches(record, features, length, pairs, null)
+    gap, push = held(w, pairs[0], pairs[1], null)
+    reach = 4.5 * radius
+    swing = reach / smallest
+    # Normals are off by at most the swing, moments by reach / L + 2 swing, products of two normals by 2 swing.
+    band = 20.0 * swing + 4.0 * reach / length + ROUNDING
+    low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
+    sign = 1.0 if high >= -low else -1.0
+    closure = low if sign > 0.0 else -high
+    verdict = sign_of(end_slack(record, features, pairs[0], setting[CONTACT_MARGIN]), 1.2 * reach + 1e-12)
+    verdict = min(verdict, sign_of(gap - (setting[MIN_GAP] - GAP_SLACK), 3.0 * reach + 1e-12))
+    verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
+    verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 2.0 * band))
+    doubt = 4.0 * band + size * (swing + radius / length)
+    return min(verdict, sign_of(sign * push - LEAST_CLAMPING * size, doubt))
+
+
+def discs_around(outline: Array, margin: float) -> Array:
+    """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
+    half, radius = outline[:, 5], outline[:, 6]
+    # The disc on the chord, for an arc up to a half circle.
+    short = np.where(outline[:, 0] == 0.0, 0.0, np.minimum(half, pi / 2.0))
+    wide = np.where(half < pi / 2.0, radius * np.cos(short), 0.0)
+    reach = np.where(outline[:, 0] == 0.0, half, radius * np.sin(short)) + margin
+    return np.stack(
+        [outline[:, 1] + wide * outline[:, 3], outline[:, 2] + wide * outline[:, 4], 1.001 * reach**2], axis=1
+    )
+
+
+@inner
+def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
+    """Whether four points are at least so many mm away from all of (S, 8) segments."""
+    for k in range(4):
+        x, y = points[k, 0], points[k, 1]
+        for n in range(discs.shape[0]):
+            dx, dy = x - discs[n, 0], y - discs[n, 1]
+            if dx * dx + dy * dy < discs[n, 2] and segment_distance(x, y, outline[n]) < least:
+                return False
+    return True
+
+
+@compiled
+def certified(
+    records: Array, features: Array, outline: Array, discs: Array, setting: Array, solutions: Array
+) -> Verdicts:
+    """Decide records one by one.
+
+    Parameters
+    ----------
+    records : (N, 19), see ``kernels.contact.rules``; none of them given up.
+    features : (F, 10) rows with the slack of their ends.
+    outline, discs : (S, 8) the part's faces, and :func:`discs_around` these and the pegs that touch them.
+    setting : see ``kernels.contact.equations``.
+    solutions : (N, 4) receives the unknowns.
+
+    Returns
+    -------
+    (N,) verdicts; open where another solution may be in the record's box
+    """
+    verdicts = np.full(records.shape[0], OPEN, np.int8)
+    length = setting[WRENCH_LENGTH]
+    w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
+    points = pairs[0]
+    for n in range(records.shape[0]):
+        record = records[n]
+        take_pegs(record, setting, w)
+        polish(record, features, length, w, points)
+        size, smallest = sizes(record, features, points)
+        radius, unique = certificate(w, size, smallest, length, setting[BACKWARD_ERROR])
+        away = 0.0
+        for k in range(4):
+            solutions[n, k] = w[UNKNOWNS, k]
+            away = max(away, abs(w[UNKNOWNS, k] - record[PSI + k]) * (length if k == 0 else 1.0))
+        # The exact contact may be this far, where apart is the worst known.
+        box = 2.0 * (record[RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
+        if radius < inf and away + box <= unique:
+            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
+            # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
+            if verdicts[n] == PROVEN and not is_clear(points, outline, discs, setting[PEG_RADIUS] - TOUCH):
+                verdicts[n] = DISCARDED
+    return verdicts

@@ -1,0 +1,189 @@
+"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see ``narrowing``).
+
+How much numbers vary is bounded by norms: a peg's centre moves by at most its ``variation``, its unit normal turns by
+at most variation / (R - variation) on an arc and not at all on a line, and products vary by the sum of what their
+factors do.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.contact.closure import minors
+from workhold.kernels.contact.equations import (
+    BACKWARD_ERROR,
+    CONTACT_MARGIN,
+    MIN_GAP,
+    MOVING,
+    NEWTON,
+    OFF,
+    SLOPES,
+    STEP_X,
+    UNKNOWNS,
+    WRENCH_LENGTH,
+)
+from workhold.kernels.contact.rules import FEATURES, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, ROUNDING
+from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, end_slack
+
+Array = NDArray[np.float64]
+
+# Half a unit in the last place, and rounding in mm of ends and gaps.
+HALF_UNIT = 1.2e-16
+HAIR = 1e-12
+
+# Rows of the numbers (10, 4) of a part, one for each peg: how far its centre moves, how much its normal turns, how much its
+# arm from the first peg varies, its moment and how much that varies, its push along the vise's x axis and how much
+# that varies, the error of its contact equation, and how much the minor without it varies. How much the turn and the opening
+# vary comes last.
+VARIATION, TILT, ARM_BAND, MOMENT, MOMENT_BAND, PUSH, FORCE_BAND, ERROR, MINOR_BAND, OTHERS = range(10)
+NUMBERS = 10
+
+
+@inner
+def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
+    """Bring the unknowns to the middle of a part, z0 + V s, with what rounding leaves of the sum, in mm, at NEWTON."""
+    for i in range(4):
+        step = 0.0
+        for j in range(4):
+            step += frame[1, i, j] * place[0, j]
+        scale = length if i == 0 else 1.0
+        step /= scale
+        total = z[i] + step
+        part = total - z[i]
+        w[UNKNOWNS, i] = total
+        w[NEWTON, i] = ((z[i] - (total - part)) + (step - part)) * scale
+
+
+@inner
+def spread(
+    record: Array,
+    features: Array,
+    size: float,
+    setting: Array,
+    place: Array,
+    frame: Array,
+    w: Array,
+    pairs: Array,
+    b: Array,
+) -> None:
+    """Fill in how much the contacts in place vary over a part: variations, tilts and arms, with the arms and normals
+    themselves in ``pairs`` (3, 4, 2) behind the centres."""
+    length, backward_error = setting[WRENCH_LENGTH], setting[BACKWARD_ERROR]
+    cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    turn = slide = 0.0
+    for j in range(4):
+        turn += abs(frame[1, 0, j]) * place[1, j] / length
+        slide += abs(frame[1, 3, j]) * place[1, j]
+    b[OTHERS, 0], b[OTHERS, 1] = turn, slide
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        right = w[MOVING, k]
+        x, y = pairs[0, k, 0] - w[UNKNOWNS, 1], pairs[0, k, 1] - w[UNKNOWNS, 2]
+        arm = sqrt(x * x + y * y)
+        variation = turn * (arm * turn + right * slide) + ROUNDINGS * size
+        for j in range(4):
+            about = frame[1, 0, j] / length
+            along = right * frame[1, 3, j]
+            away_x = frame[1, 1, j] + along * cosine - about * y
+            away_y = frame[1, 2, j] + along * sine + about * x
+            variation += place[1, j] * sqrt(away_x * away_x + away_y * away_y)
+        tilt, sign = 0.0, 1.0
+        ray = abs(pairs[0, k, 0]) + abs(pairs[0, k, 1]) + abs(row[1]) + abs(row[2])
+        # Seven roundings of each coordinate of the arm, one of the sum with the tail's, one of the difference from the
+        # feature's middle, and four of products and root.
+        b[ERROR, k] = HALF_UNIT * (10.0 * arm + 6.0 * ray) + backward_error
+        if row[0] != 0.0:
+            ray = row[6] + w[OFF, k]
+            tilt = variation / (ray - variation) + ROUNDING if 2.0 * variation < ray else 4.0
+            sign = row[7]
+        b[VARIATION, k], b[TILT, k], b[ARM_BAND, k] = variation, tilt, arm * turn + right * slide
+        pairs[1, k, 0], pairs[1, k, 1] = x, y
+        pairs[2, k, 0], pairs[2, k, 1] = sign * w[SLOPES + k, 1], sign * w[SLOPES + k, 2]
+        moment = (x * pairs[2, k, 1] - y * pairs[2, k, 0]) / length
+        b[MOMENT, k] = abs(moment)
+        b[MOMENT_BAND, k] = ((arm + b[ARM_BAND, k]) * tilt + b[ARM_BAND, k] + ROUNDINGS * size) / length
+        b[PUSH, k] = pairs[2, k, 0] * cosine + pairs[2, k, 1] * sine
+        b[FORCE_BAND, k] = tilt + turn + ROUNDINGS
+
+
+@inner
+def turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> tuple[float, float]:
+    """Size of the cross product of two normals, and how much it varies over a part."""
+    one, other = pairs[2, i, 0] * pairs[2, j, 1], pairs[2, i, 1] * pairs[2, j, 0]
+    cross = one - other
+    band = b[TILT, i] + b[TILT, j] + b[TILT, i] * b[TILT, j]
+    if abs(pairs[2, i, 0]) != abs(pairs[2, j, 0]) or abs(pairs[2, i, 1]) != abs(pairs[2, j, 1]) or cross != 0.0:
+        # Normals of exactly the same or opposite direction, as lines have, are parallel without error.
+        band += ROUNDINGS * (abs(one) + abs(other))
+    return (abs(cross), min(band, arcs_turned_by(record, features, i, j, pairs, w, b)))
+
+
+@inner
+def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> float:
+    """How much the cross product of the normals of two arcs varies over a part; infinite for others.
+
+    Only the difference of the rays from their centres counts, which depends on the orientation alone where both pegs are on
+    one jaw: parallel normals stay so wherever the part slides.
+    """
+    one, two = features[int(record[FEATURES + i])], features[int(record[FEATURES + j])]
+    if one[0] == 0.0 or two[0] == 0.0:
+        return inf
+    x, y = pairs[1, j, 0] - pairs[1, i, 0], pairs[1, j, 1] - pairs[1, i, 1]
+    varies = hypot(x, y) * b[OTHERS, 0] + abs(w[MOVING, i] - w[MOVING, j]) * b[OTHERS, 1]
+    apart = hypot(x - two[1] + one[1], y - two[2] + one[2])
+    return (b[TILT, i] * (apart + varies) + varies) / two[6] + ROUNDING
+
+
+@inner
+def is_broken(record: Array, features: Array, setting: Array, w: Array, pairs: Array, null: Array, b: Array) -> bool:
+    """Whether some rule is broken everywhere in a part."""
+    reach = 0.0
+    right, left = inf, -inf
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        reach = max(reach, b[VARIATION, k] if row[0] == 0.0 else row[6] * b[TILT, k])
+        if w[MOVING, k] == 0.0:
+            left = max(left, w[STEP_X, k])
+        else:
+            right = min(right, w[STEP_X, k] + w[UNKNOWNS, 3])
+    if right - left + b[OTHERS, 1] + HAIR < setting[MIN_GAP] - GAP_SLACK:
+        return True
+    if end_slack(record, features, pairs[0], setting[CONTACT_MARGIN]) + reach + HAIR < 0.0:
+        return True
+    size = minors(pairs[1], pairs[2], setting[WRENCH_LENGTH], null)
+    for k in range(4):
+        b[MINOR_BAND, k] = 0.0
+    for i in range(4):
+        for j in range(i + 1, 4):
+            cross, band = turned_by(record, features, i, j, pairs, w, b)
+            for a in range(4):
+                if a != i and a != j:
+                    moment = b[MOMENT_BAND, a] + ROUNDINGS * b[MOMENT, a]
+                    b[MINOR_BAND, 6 - i - j - a] += b[MOMENT, a] * band + cross * moment + band * moment
+    doubt = b[MINOR_BAND, 0] + b[MINOR_BAND, 1] + b[MINOR_BAND, 2] + b[MINOR_BAND, 3]
+    if size + doubt < LEAST_SPAN:
+        return True
+    size = max(size - doubt, 0.0)
+    return not (may_clamp(1.0, size, w, null, b) or may_clamp(-1.0, size, w, null, b))
+
+
+@inner
+def may_clamp(sign: float, size: float, w: Array, null: Array, b: Array) -> bool:
+    """Whether forces of one sign may close, and closing the vise clamp; the force is the left jaw's push, and as well what
+    the right jaw takes up. ``size`` is the least that the sizes of the minors add up to."""
+    left = right = 0.0
+    for k in range(4):
+        band = b[MINOR_BAND, k]
+        if sign * null[k] + band < LEAST_CLOSURE * size:
+            return False
+        push = sign * null[k] * b[PUSH, k]
+        doubt = abs(null[k]) * b[FORCE_BAND, k] + band * abs(b[PUSH, k]) + band * b[FORCE_BAND, k]
+        if w[MOVING, k] == 0.0:
+            left += doubt - push
+        else:
+            right += doubt + push
+    return left >= LEAST_CLAMPING * size and right >= LEAST_CLAMPING * size

@@ -1,0 +1,140 @@
+"""Where the four contacts of a fixture are, and the contact matrix that all its figures come from.
+
+With c the centre of the part, L the length of the wrenches and x the direction in which the right jaw moves, the contact
+matrix A (4, 4) has a row for each peg:
+
+    n_x,  n_y,  (q - c) x n / L,  n . x on the right jaw and 0 on the left
+
+for a contact at q with outward unit normal n. It answers both questions one asks of a fixture.
+
+- Motion: let peg i stand delta_i too far towards the part. Then to first order A y = -delta, where y holds the part's
+  movement at c (x, y), its turn times L, and how far the jaw closes.
+- Force: pegs press with f >= 0 against the part, a load (g_x, g_y, moment m about c) acts on it, the right jaw is pushed
+  with a force F. Then A^T f = (g_x, g_y, m / L, F).
+
+So one inverse serves for both; its last row is the peg forces per unit of jaw force, and that row scaled to sum 1 is the
+null vector of the wrenches. The duality of motions and forces is that of virtual work.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, nan, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@inner
+def end_distance(row: Array, x: float, y: float) -> float:
+    """Distance in mm along a feature, an (8,) row, from the foot of a point to the nearer end; negative beyond it.
+
+    A whole circle has no end: half its circumference is told, the farthest that a contact could be from any point.
+    """
+    dx, dy = x - row[1], y - row[2]
+    if row[0] == 0.0:
+        return row[5] - abs(dx * row[3] + dy * row[4])
+    if row[5] >= np.pi:
+        return np.pi * row[6]
+    return (row[5] - abs(atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy))) * row[6]
+
+
+@inner
+def invert(matrix: Array, out: Array) -> bool:
+    """Invert a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
+
+    Returns
+    -------
+    bool
+        Whether there is an inverse.
+    """
+    for i in range(4):
+        for j in range(4):
+            out[i, j] = 1.0 if i == j else 0.0
+    for k in range(4):
+        best = k
+        for i in range(k + 1, 4):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        pivot = matrix[best, k]
+        if not abs(pivot) > 0.0:
+            return False
+        for j in range(4):
+            one, other = matrix[best, j] / pivot, out[best, j] / pivot
+            matrix[best, j], out[best, j] = matrix[k, j], out[k, j]
+            matrix[k, j], out[k, j] = one, other
+        for i in range(4):
+            if i != k:
+                factor = matrix[i, k]
+                for j in range(4):
+                    matrix[i, j] -= factor * matrix[k, j]
+                    out[i, j] -= factor * out[k, j]
+    return True
+
+
+@compiled
+def contact_matrices_of(
+    pegs: Array,
+    pose: Array,
+    right: Array,
+    faces: IntArray,
+    features: Array,
+    starts: IntArray,
+    center: Array,
+    length: float,
+    points: Array,
+    normals: Array,
+    ends: Array,
+    inverses: Array,
+) -> None:
+    """Contacts of N fixtures and the inverses of their contact matrices.
+
+    Parameters
+    ----------
+    pegs : (N, 4, 2) peg centres in the vise frame, in mm.
+    pose : (N, 3) orientation in radians and translation in mm.
+    right : (N, 4) 1 for a peg on the right jaw, 0 on the left.
+    faces : (N, 4) number of the face each peg touches.
+    features : (F, 8) rows of contact features about c, ordered by face.
+    starts : where the features of each face number begin, one more than there are numbers.
+    center : (2,) c.
+    length : L in mm.
+    points : (N, 4, 2) receives the peg centres in the part's frame about c, in mm.
+    normals : (N, 4, 2) receives the outward unit normals in the part's frame.
+    ends : (N, 4) receives the distances in mm along the features to their nearer ends.
+    inverses : (N, 4, 4) receives the inverses; NaN where there is none, or a face has no feature.
+    """
+    matrix = np.empty((4, 4))
+    for k in range(len(pegs)):
+        cosine, sine = cos(pose[k, 0]), sin(pose[k, 0])
+        known = True
+        for i in range(4):
+            px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
+            x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
+            # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
+            nearest, chosen = -inf, -1
+            for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
+                distance = end_distance(features[f], x, y)
+                if distance > nearest:
+                    nearest, chosen = distance, f
+            known = known and chosen >= 0
+            row = features[max(chosen, 0)]
+            nx, ny = row[4], -row[3]
+            if row[0] != 0.0:
+                nx, ny = row[7] * (x - row[1]), row[7] * (y - row[2])
+                size = hypot(nx, ny)
+                nx, ny = nx / size, ny / size
+            points[k, i, 0], points[k, i, 1] = x, y
+            normals[k, i, 0], normals[k, i, 1] = nx, ny
+            ends[k, i] = nearest
+            matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
+            matrix[i, 3] = right[k, i] * (nx * cosine - ny * sine)
+        if not (invert(matrix, inverses[k]) and known):
+            for i in range(4):
+                ends[k, i] = nan
+                for j in range(4):
+                    inverses[k, i, j] = nan

@@ -1,0 +1,182 @@
+"""Figures of quality of whole tables of fixtures (model: "Quality"), from their contact matrices
+(``kernels.statics.contact_matrix``)."""
+
+from __future__ import annotations
+
+from math import hypot, inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.statics.reactions import largest_reaction
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@inner
+def wrench_radius(points: Array, normals: Array, length: float) -> float:
+    """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, q x n / L); no unit.
+
+    The largest unit-norm load that pegs resist with forces that sum to 1. Reference: C. Ferrari, J. Canny, *Planning
+    optimal grasps*, IEEE ICRA (1992).
+
+    Parameters
+    ----------
+    points : (4, 2) peg centres or contact points about c in mm (both lie on the lines of action).
+    normals : (4, 2) outward unit normals.
+    length : L in mm.
+    """
+    least = inf
+    for k in range(4):
+        a, b, c = (k + 1) % 4, (k + 2) % 4, (k + 3) % 4
+        ax, ay = normals[a, 0], normals[a, 1]
+        az = (points[a, 0] * ay - points[a, 1] * ax) / length
+        ux, uy = normals[b, 0] - ax, normals[b, 1] - ay
+        uz = (points[b, 0] * normals[b, 1] - points[b, 1] * normals[b, 0]) / length - az
+        vx, vy = normals[c, 0] - ax, normals[c, 1] - ay
+        vz = (points[c, 0] * normals[c, 1] - points[c, 1] * normals[c, 0]) / length - az
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        least = min(least, abs(nx * ax + ny * ay + nz * az) / sqrt(nx * nx + ny * ny + nz * nz))
+    return least
+
+
+@inner
+def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
+    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (8, 3) and their number.
+
+    A face that one peg touches adds its error to the peg's; one that several pegs touch moves them all alike.
+    """
+    count = 0
+    for i in range(4):
+        sharing, first = 0, True
+        for j in range(4):
+            if faces[j] == faces[i]:
+                sharing += 1
+                first = first and j >= i
+        if sharing > 1 and first:
+            for m in range(3):
+                out[count, m] = 0.0
+                for j in range(4):
+                    if faces[j] == faces[i]:
+                        out[count, m] += face * inverse[m, j]
+            count += 1
+        own = peg if sharing > 1 else peg + face
+        for m in range(3):
+            out[count, m] = own * inverse[m, i]
+        count += 1
+    return count
+
+
+@inner
+def farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: Array) -> float:
+    """Largest movement of a point of the silhouette, to first order.
+
+    A point q about c moves by v + turn (-q_y, q_x). On an arc with centre m and radius r the point that moves most lies in
+    the direction in which the turn adds to the centre's movement, and moves by |v(m)| + r |turn|.
+
+    Parameters
+    ----------
+    vx, vy : movement of c in mm.
+    turn : in radians.
+    corners : (C, 2) corners of the silhouette about c.
+    arcs : (A, 6) its convex arcs: centre about c, radius, direction from the centre to the middle (x, y), cosine of half
+        the sweep.
+    """
+    most = 0.0
+    for k in range(len(corners)):
+        x, y = vx - turn * corners[k, 1], vy + turn * corners[k, 0]
+        most = max(most, x * x + y * y)
+    most = sqrt(most)
+    for k in range(len(arcs)):
+        x, y = vx - turn * arcs[k, 1], vy + turn * arcs[k, 0]
+        speed = hypot(x, y)
+        moved = speed + abs(turn) * arcs[k, 2]
+        if moved > most:
+            # The direction d with turn (-d_y, d_x) along (x, y), of length ``speed``.
+            side = 1.0 if turn > 0.0 else -1.0
+            if side * (y * arcs[k, 3] - x * arcs[k, 4]) >= speed * arcs[k, 5]:
+                most = moved
+    return most
+
+
+@inner
+def location_error(
+    inverse: Array,
+    faces: IntArray,
+    length: float,
+    tolerances: Array,
+    corners: Array,
+    arcs: Array,
+    work: Array,
+) -> float:
+    """Worst movement in mm of a point of the silhouette when pegs and faces are off by their tolerances.
+
+    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners move alike.
+
+    Parameters
+    ----------
+    inverse : (4, 4) of the contact matrix.
+    faces : (4,) touched.
+    length : L in mm.
+    tolerances : (2,) of a peg and of a face, in mm.
+    corners, arcs : see :func:`farthest_movement`.
+    work : (8, 3) work space.
+    """
+    count = generators(inverse, faces, tolerances[0], tolerances[1], work)
+    worst = 0.0
+    for signs in range(1 << (count - 1)):
+        x, y, turn = work[count - 1, 0], work[count - 1, 1], work[count - 1, 2]
+        for m in range(count - 1):
+            sign = 1.0 if (signs >> m) & 1 else -1.0
+            x += sign * work[m, 0]
+            y += sign * work[m, 1]
+            turn += sign * work[m, 2]
+        worst = max(worst, farthest_movement(x, y, turn / length, corners, arcs))
+    return worst
+
+
+@compiled
+def figures(
+    points: Array,
+    normals: Array,
+    ends: Array,
+    inverses: Array,
+    faces: IntArray,
+    length: float,
+    tolerances: Array,
+    corners: Array,
+    arcs: Array,
+    loads: Array,
+    out: Array,
+) -> None:
+    """Closure margin, clamp amplification, wrench radius, location error, end distance and load reaction of N fixtures.
+
+    Parameters
+    ----------
+    points, normals, ends, inverses : see ``kernels.statics.contact_matrix.contact_matrices_of``.
+    faces : (N, 4) touched.
+    length, tolerances, corners, arcs : see :func:`location_error`.
+    loads : (M, 11) rows, see ``kernels.statics.reactions``.
+    out : (N, 6) receives the figures; NaN for a load reaction without loads, and for all where the contact matrix has no
+        inverse.
+    """
+    work = np.empty((8, 3))
+    for k in range(len(points)):
+        inverse = inverses[k]
+        # The last row of the inverse: peg forces per unit of jaw force, in proportion to the null vector.
+        total, least, most = 0.0, inf, 0.0
+        nearest = inf
+        for i in range(4):
+            force = inverse[3, i]
+            total += force
+            least, most = min(least, force), max(most, force)
+            nearest = min(nearest, ends[k, i])
+        known = total == total
+        out[k, 0] = least / total if known else np.nan
+        out[k, 1] = most if known else np.nan
+        out[k, 2] = wrench_radius(points[k], normals[k], length) if known else np.nan
+        out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, work) if known else np.nan
+        out[k, 4] = nearest if known else np.nan
+        out[k, 5] = largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan

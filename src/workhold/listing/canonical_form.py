@@ -1,0 +1,193 @@
+"""Fixtures on their way to a table: in the form they are listed in, listed once, twins told apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.kernels.contact import rules as record
+from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
+from workhold.proof.deciding import peg_integers, setting_of
+
+__all__ = [
+    "SAME_POSE",
+    "Candidates",
+    "Twins",
+    "candidates_of",
+    "changes",
+    "joined",
+    "listed_once",
+    "packed",
+    "canonical_form",
+    "twins",
+]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Orientations nearer than this, in radians, are one pose.
+SAME_POSE = 1e-6
+# Places nearer than this, in mm, are one.
+SAME_PLACE = 1e-6
+# Bits of a packed number.
+WORD = 63
+
+
+@define(frozen=True, eq=False)
+class Candidates:
+    """N fixtures on their way to a table; pegs of the left jaw first, (N, 4) unless said otherwise.
+
+    Parameters
+    ----------
+    kind : (N,) 1 or 2.
+    feature, column, row : touched feature and lattice place; columns count on each jaw, rows on both alike.
+    theta : (N,) orientation of the workpiece in radians.
+    point : (N, 4, 2) peg centres in the workpiece's frame about the centre of the part, in mm.
+    opening : (N,) x distance in mm from the rightmost left peg to the leftmost right peg.
+    null, force : null vector and forces per unit of clamping force.
+    """
+
+    kind: IntArray
+    feature: IntArray
+    column: IntArray
+    row: IntArray
+    theta: Array
+    point: Array
+    opening: Array
+    null: Array
+    force: Array
+
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Candidates:
+        """The candidates of an index array or mask, in its order."""
+        return Candidates(*(getattr(self, name)[order] for name in CANDIDATE_FIELDS))
+
+
+CANDIDATE_FIELDS = ("kind", "feature", "column", "row", "theta", "point", "opening", "null", "force")
+
+
+def candidates_of(records: Array, problem: Problem) -> Candidates:
+    """Proven records as candidates."""
+    count = len(records)
+    feature, column, row = peg_integers(records)
+    point, opening, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
+    contacts_of(records, problem.rows, setting_of(problem), point, opening, null, force)
+    kind = records[:, record.KIND].astype(np.int64)
+    return Candidates(kind, feature, column, row, -records[:, record.PSI], point, opening, null, force)
+
+
+def joined(parts: list[Candidates]) -> Candidates:
+    """All candidates of several lists as one."""
+    return Candidates(*(np.concatenate([getattr(p, name) for p in parts]) for name in CANDIDATE_FIELDS))
+
+
+def canonical_form(c: Candidates) -> Candidates:
+    """Bring candidates to the one form each fixture is listed in (``kernels.contact.canonical_form.stand``)."""
+    theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
+    order = np.empty((len(c.kind), 4), np.int64)
+    to_canonical_form(c.kind, theta, column, row, order, SAME_POSE)
+    place = 4 * np.arange(len(order))[:, None] + order
+    point = c.point.reshape(-1, 2)[place]
+    feature, null, force = (np.ravel(values)[place] for values in (c.feature, c.null, c.force))
+    return Candidates(c.kind, feature, column, row, theta, point, c.opening, null, force)
+
+
+def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
+    """Whole numbers packed into as few numbers (N,) as hold them, in lexicographic order.
+
+    Parameters
+    ----------
+    columns : (N, K) numbers from 0 upward, each time with the largest there may be.
+    """
+    words: list[IntArray] = []
+    free = 0
+    for numbers, largest in columns:
+        bits = int(largest).bit_length()
+        for k in range(numbers.shape[1]):
+            if free < bits or not words:
+                words.append(np.zeros(len(numbers), np.int64))
+                free = WORD
+            words[-1] = (words[-1] << bits) | numbers[:, k]
+            free -= bits
+    return words
+
+
+def packed_holes(c: Candidates) -> list[IntArray]:
+    """Types and holes of candidates, packed."""
+    return packed((c.kind[:, None], 2), *((numbers, numbers.max(initial=0)) for numbers in (c.column, c.row)))
+
+
+def changes(words: list[IntArray]) -> NDArray[np.bool_]:
+    """Which entries (N,) of packed numbers differ from the one before; the first does."""
+    fresh = np.zeros(len(words[0]), np.bool_)
+    fresh[:1] = True
+    for word in words:
+        fresh[1:] |= word[1:] != word[:-1]
+    return fresh
+
+
+def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
+    """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in all these."""
+    words = packed_holes(c)
+    order = np.lexsort([c.theta, *reversed(words)])
+    fresh = changes([word[order] for word in words])
+    fresh[1:] |= np.diff(c.theta[order]) > SAME_POSE
+    return order, np.cumsum(fresh)
+
+
+def listed_once(c: Candidates) -> Candidates:
+    """Sort by type, holes, orientation and place, and drop repetitions: same holes, same pose.
+
+    A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same holes and the
+    same orientation may still differ in where the workpiece lies; one number that mixes all that tells them apart.
+    """
+    if len(c.kind) == 0:
+        return c
+    first, group = same_holes_first(c)
+    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening)[first]
+    order = np.lexsort([place, group])
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
+    # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its place.
+    run = np.empty(len(order), np.int64)
+    run[order] = np.cumsum(new)
+    order = np.lexsort([*reversed(packed((run[:, None], len(run)), (c.feature[first], c.feature.max())))])
+    return c.take(first[order[np.concatenate([[True], np.diff(run[order]) > 0])]])
+
+
+@define(frozen=True, eq=False)
+class Twins:
+    """Fixtures split into sets with the same faces, holes and orientation that differ only in where the workpiece lies.
+
+    Parameters
+    ----------
+    first : (N,) indices of the one of each set with the best closure margin, in an order by type, holes, orientation and
+        faces.
+    others : (M,) indices of the others, in the same order.
+    owner : (M,) for each of the others the place of its set in ``first``.
+    """
+
+    first: IntArray
+    others: IntArray
+    owner: IntArray
+
+    def kept(self, chosen: NDArray[np.bool_]) -> IntArray:
+        """Indices, ascending, of the fixtures of the chosen sets (N,)."""
+        return np.sort(np.concatenate([self.first[chosen], self.others[chosen[self.owner]]]))
+
+
+def twins(c: Candidates, face: IntArray) -> Twins:
+    """Find fixtures that have the same faces (N, 4), holes and orientation."""
+    if len(c.kind) == 0:
+        return Twins(*(np.zeros(0, np.int64) for _ in range(3)))
+    order, sets = same_holes_first(c)
+    group = np.empty(len(order), np.int64)
+    group[order] = sets
+    words = packed((group[:, None], len(group)), (face, face.max()))
+    margin = -np.round(c.null.min(axis=1), 9)
+    order = np.lexsort([c.point[:, 0, 1], c.point[:, 0, 0], margin, *reversed(words)])
+    first = changes([word[order] for word in words])
+    return Twins(order[first], order[~first], (np.cumsum(first) - 1)[~first])

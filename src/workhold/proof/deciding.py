@@ -1,0 +1,313 @@
+"""Deciding which records are fixtures: in double precision where that is enough, else in ball arithmetic.
+
+A record tells where four contacts are and how far the exact ones may be from there. It goes through up to four stages, and
+leaves with the first that decides it:
+
+1. a certificate of its solution (``kernels.proof.newton_kantorovich``), with all rules decided by enclosures;
+2. the same for the features' rows as they are, without what rounding may have done to the drawing before;
+3. the interval Newton method in double precision (``kernels.proof.interval_newton``): boxes in which no fixture can be
+   are dropped, and those with exactly one solution go through stage 2;
+4. the same method in ball arithmetic (``settling``).
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from threading import Event, Lock
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem, Progress
+from workhold.kernels.contact import rules as record
+from workhold.kernels.contact.equations import BACKWARD_ERROR
+from workhold.kernels.proof.interval_newton import interval_newton, jacobians
+from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
+from workhold.model.proof import Undecided
+from workhold.model.vise import Vise
+
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import Outcome
+
+__all__ = ["Account", "Course", "decided", "is_left", "merged", "peg_integers", "setting_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# The precision of balls is one for the whole process, so one thread at a time works with them.
+BALLS = Lock()
+# Lines are parallel within this angle in radians (model).
+PARALLEL = 1e-9
+# Records looked at between two looks at the flag that stops the work.
+OPEN_BLOCK = 64
+GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"
+UNBOUNDED = "where its contacts may lie could not be bounded"
+
+
+@define(eq=False)
+class Course:
+    """How far the deciding of records has come, and whether it is to stop.
+
+    Parameters
+    ----------
+    total : records to decide.
+    progress : told the fraction done and how many records still may be fixtures.
+    cancel : when set, what takes long is left out.
+    """
+
+    total: int
+    progress: Progress | None = None
+    cancel: Event | None = None
+    done: int = field(default=0, init=False)
+    kept: int = field(default=0, init=False)
+    lock: Lock = field(factory=Lock, init=False)
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether somebody asked to stop."""
+        return self.cancel is not None and self.cancel.is_set()
+
+    def advance(self, done: int, kept: int) -> None:
+        """Records are decided, and some of them kept; may be called from any thread."""
+        with self.lock:
+            self.done += done
+            self.kept += kept
+        if self.progress is not None and done:
+            self.progress(self.fraction, self.kept)
+
+    @property
+    def fraction(self) -> float:
+        """The part of the records that is decided."""
+        return min(self.done / max(self.total, 1), 1.0)
+
+
+@define(frozen=True)
+class Account:
+    """What became of records: how many there were, proven fixtures, how many the first certificate left open, how many were
+    pairs of chords that the engine had given up, the undecided, and how many were left when the work was stopped."""
+
+    records: int
+    verified: int
+    escalated: int
+    given_up: int
+    undecided: tuple[Undecided, ...]
+    left: int = 0
+
+    @classmethod
+    def together(cls, accounts: list[Account]) -> Account:
+        """Several accounts as one."""
+        lost = tuple(item for account in accounts for item in account.undecided)
+        records, verified, escalated, given_up, left = (
+            sum(getattr(account, name) for account in accounts)
+            for name in ("records", "verified", "escalated", "given_up", "left")
+        )
+        return cls(records, verified, escalated, given_up, lost, left)
+
+
+def is_left(kind: IntArray) -> NDArray[np.bool_]:
+    """Which of the four pegs are on the left jaw, (N, 4)."""
+    return np.arange(4) < np.where(kind == 1, 2, 3)[:, None]
+
+
+def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
+    """Features, columns and rows of records, each (N, 4)."""
+    whole = records[:, record.FEATURES : record.PSI].astype(np.int64)
+    return whole[:, :4], whole[:, 4:8], whole[:, 8:12]
+
+
+def peg_places(row: Array, vise: Vise) -> list[tuple[float, float]]:
+    """Places of the four pegs of one record in mm from the first, with the right jaw at zero."""
+    _, columns, rows = (numbers[0] for numbers in peg_integers(row[None]))
+    right = ~is_left(row[[record.KIND]].astype(np.int64))[0]
+    height = rows * vise.pitch[1] + right * vise.row_offset
+    return [(float(x), float(y)) for x, y in zip(columns * vise.pitch[0], height, strict=True)]
+
+
+def setting_of(problem: Problem) -> Array:
+    """What the kernels must know of a problem, see ``kernels.contact.equations``."""
+    vise = problem.vise
+    lengths = [*vise.pitch, vise.row_offset, vise.min_gap, vise.peg_radius]
+    return np.array([*lengths, problem.contact_margin, problem.wrench_length, problem.backward_error], np.float64)
+
+
+def box_reach(records: Array, length: float) -> Array:
+    """How far the exact unknowns (L psi, tail x, tail y, apart) may be from those of records, (N, 4) in mm."""
+    turn, radius = length * records[:, record.REACH] + LEAST_REACH, records[:, record.RADIUS] + LEAST_REACH
+    return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
+
+
+def decided(records: Array, problem: Problem, course: Course | None = None) -> tuple[Array, Account]:
+    """Decide records.
+
+    Parameters
+    ----------
+    records : (N, 19) from an engine, laid out as ``kernels.contact.rules`` says.
+    course : told how far the work has come, and asked whether to stop.
+
+    Returns
+    -------
+    (those proven to be fixtures, with their solutions to the last digits; what became of all)
+    """
+    course = course or Course(len(records))
+    given_up = records[:, record.KIND] < 0.0
+    lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
+    chosen = records[~given_up] if lost else records
+    proven, rest = sifted(chosen, problem, setting_of(problem))
+    rest = rest[~has_three_parallels(rest, problem)]
+    course.advance(len(records) - len(rest), len(proven))
+    settled, reasons, left = escalated(rest, problem, course)
+    if len(settled):
+        proven = np.concatenate([proven, settled])
+    account = Account(
+        len(records) - left, len(proven), len(rest) - left + len(lost), len(lost), (*lost, *reasons), left
+    )
+    return proven, account
+
+
+def sifted(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+    """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
+    solutions = np.empty((len(records), 4))
+    discs = discs_around(problem.outline, problem.vise.peg_radius)
+    verdicts = certified(records, problem.rows, problem.outline, discs, setting, solutions)
+    is_proven = verdicts == PROVEN
+    proven = records[is_proven]
+    proven[:, record.PSI : record.REACH] = solutions[is_proven]
+    return proven, records[verdicts == OPEN]
+
+
+def has_three_parallels(records: Array, problem: Problem) -> NDArray[np.bool_]:
+    """Which records (N,) have three pegs on lines that are parallel: the fourth peg then has no share in any closure.
+
+    Lines parallel within ``PARALLEL`` are parallel (model). Where rounding makes them not quite so, the exact contact may be
+    anywhere along them, which takes long to decide and means nothing.
+    """
+    rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
+    x, y, is_line = rows[..., 3], rows[..., 4], rows[..., 0] == 0.0
+    out = np.zeros(len(records), np.bool_)
+    for triple in combinations(range(4), 3):
+        parallel = is_line[:, triple].all(axis=1)
+        for i, j in combinations(triple, 2):
+            parallel &= np.abs(x[:, i] * y[:, j] - y[:, i] * x[:, j]) <= PARALLEL
+        out |= parallel
+    return out
+
+
+def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
+    """Decide open records by the later stages: the fixtures among them, what stays undecided, and how many were left when
+    the work was stopped."""
+    if len(records) == 0:
+        return records, [], 0
+    setting = setting_of(problem)
+    setting[BACKWARD_ERROR] = 0.0
+    proven, rest = sifted(records, problem, setting)
+    course.advance(len(records) - len(rest), len(proven))
+    together = merged(rest, problem)
+    course.advance(len(rest) - len(together), 0)
+    found, waiting, left = [proven], [together[:0]], 0
+    for k in range(0, len(together), OPEN_BLOCK):
+        block = together[k : k + OPEN_BLOCK]
+        if course.is_stopped:
+            left += len(together) - k
+            break
+        proven, rest = interval_newton_in_doubles(block, problem, setting)
+        found.append(proven)
+        waiting.append(rest)
+        course.advance(max(len(block) - len(rest), 0), len(proven))
+    settled, reasons, unsettled = records_in_balls(merged(np.concatenate(waiting), problem), problem, course)
+    return np.concatenate([*found, settled]), reasons, left + unsettled
+
+
+def interval_newton_in_doubles(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+    """Open records narrowed: the fixtures found, and the boxes that stay open."""
+    bounded = np.isfinite(records).all(axis=1)
+    known = records[bounded]
+    left, _, right = np.linalg.svd(jacobians(known, problem.rows, setting))
+    frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
+    verdicts, roots = interval_newton(known, problem.rows, setting, frames)
+    proven, unsure = sifted(roots, problem, setting)
+    return proven, np.concatenate([records[~bounded], known[verdicts == OPEN], unsure])
+
+
+def merged(records: Array, problem: Problem) -> Array:
+    """Records of the same pegs on the same features whose boxes overlap, as one with a box around all."""
+    if len(records) < 2:
+        return records
+    order = np.lexsort([records[:, k] for k in range(record.PSI, -1, -1)])
+    records = records[order]
+    same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
+    reach = box_reach(records, problem.wrench_length)
+    middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
+    lows, highs = middle - reach, middle + reach
+    bounded = np.asarray(np.isfinite(reach).all(axis=1))
+    kept = np.ones(len(records), np.bool_)
+    last, low, high = 0, lows[0], highs[0]
+    for k in range(1, len(records)):
+        if same[k - 1] and bounded[k] and (lows[k] <= high).all() and (low <= highs[k]).all():
+            low, high = np.minimum(low, lows[k]), np.maximum(high, highs[k])
+            records[last] = around(records[last], low, high, problem.wrench_length)
+            kept[k] = False
+        else:
+            last, low, high = k, lows[k], highs[k]
+    return np.asarray(records[kept])
+
+
+def around(row: Array, low: Array, high: Array, length: float) -> Array:
+    """A record whose box holds what is between two corners, (4,) each in mm."""
+    center, half = (low + high) / 2.0, (high - low) / 2.0
+    out = row.copy()
+    out[record.PSI : record.REACH] = center[0] / length, *center[1:]
+    out[record.REACH], out[record.RADIUS] = half[0] / length, max(half[1], half[2], half[3] / 2.0)
+    return out
+
+
+def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
+    """Records settled one by one in ball arithmetic: the fixtures among them, what stays undecided, and how many were
+    left when the work was stopped."""
+    found: list[Array] = []
+    reasons: list[Undecided] = []
+    left = 0
+    for k, row in enumerate(records):
+        outcome = record_in_balls(row, problem, course)
+        if outcome is None:
+            left = len(records) - k
+            break
+        if outcome.reason:
+            reasons.append(undecided(row, problem, outcome.reason))
+        for solution in outcome.fixtures:
+            fixed = row.copy()
+            fixed[record.PSI : record.REACH] = solution
+            found.append(fixed)
+        course.advance(1, len(outcome.fixtures))
+    return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons, left
+
+
+def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | None:
+    """One record settled in ball arithmetic; None when the work was stopped before."""
+    from workhold.proof.interval_newton import Box, Limits, Outcome, solutions_in
+
+    length = problem.wrench_length
+    turn, right, up, slide = (float(v) for v in box_reach(row[None], length)[0])
+    if not np.isfinite([turn, right, up, slide]).all():
+        return Outcome((), UNBOUNDED)
+    psi, x, y, apart = (float(v) for v in row[record.PSI : record.REACH])
+    box = Box(
+        features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
+        offsets=peg_places(row, problem.vise),
+        lefts=2 if row[record.KIND] == 1.0 else 3,
+        middle=(psi, x, y, apart),
+        reach=(turn / length, right, up, slide),
+    )
+    limits = Limits(problem.contact_margin, problem.vise.min_gap, length)
+    with BALLS:
+        return solutions_in(box, limits, lambda: course.is_stopped)
+
+
+def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
+    """A record that is not decided, for the account."""
+    feature, column, line = peg_integers(row[None])
+    faces = problem.faces[feature[0]].tolist()
+    kind = "I" if abs(row[record.KIND]) == 1.0 else "II"
+    theta = float(np.degrees(-row[record.PSI]) % 360.0)
+    return Undecided(kind, tuple(faces), tuple(column[0].tolist()), tuple(line[0].tolist()), theta, reason)

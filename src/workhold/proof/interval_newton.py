@@ -1,0 +1,346 @@
+"""What double precision leaves open, settled in ball arithmetic (python-flint).
+
+A candidate is a box of the four unknowns (psi, tail x, tail y, apart) that holds the exact contact, if there is one. At a
+nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
+directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in which some rule
+is broken everywhere, are dropped; the interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
+there is none or exactly one solution, which then is judged at rising precision; what remains is halved. What is left after
+``MOST_BOXES`` boxes stays undecided.
+
+References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
+203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import pi
+
+import numpy as np
+from attrs import frozen
+from flint import arb, arb_mat, ctx
+from numpy.typing import NDArray
+
+from workhold.kernels.contact import rules as rule
+
+__all__ = ["Box", "Limits", "Outcome", "contact_value", "solutions_in"]
+
+PRECISIONS = (128, 256, 512)
+MOST_BOXES = 10000
+# The exact solution of a box may lie on its rim, so boxes are made larger by this part.
+RIM = 0.1
+
+
+@frozen
+class Limits:
+    """Limits in mm that a candidate is judged by: contact margin, smallest gap, and L of the wrenches."""
+
+    margin: float
+    min_gap: float
+    length: float
+
+
+@frozen
+class Box:
+    """A candidate: features touched, pegs' places, and where its solution may be.
+
+    Parameters
+    ----------
+    features : four feature rows of ten numbers (``geometry.segment.segment_rows`` and the slack of both ends).
+    offsets : four pegs' places in mm from the first peg, with the right jaw at zero.
+    lefts : how many of the pegs, the first ones, are on the left jaw.
+    middle : psi in radians, tail x, tail y and apart in mm.
+    reach : how far each may be off.
+    """
+
+    features: Sequence[Sequence[float]]
+    offsets: Sequence[tuple[float, float]]
+    lefts: int
+    middle: tuple[float, float, float, float]
+    reach: tuple[float, float, float, float]
+
+
+@frozen
+class Outcome:
+    """What became of a box: the middles of the solutions proven to be fixtures, and why it is undecided, if it is."""
+
+    fixtures: tuple[tuple[float, float, float, float], ...]
+    reason: str
+
+
+@frozen(eq=False)
+class Places:
+    """Contacts on a box of unknowns: centres, unit normals (outward), arms from the first peg to each, equations, their
+    Jacobian, all as balls."""
+
+    rows: Sequence[Sequence[float]]
+    centers: list[tuple[arb, arb]]
+    normals: list[tuple[arb, arb]]
+    arms: list[tuple[arb, arb]]
+    values: list[arb]
+    slopes: list[list[arb]]
+    axis: tuple[arb, arb]
+
+
+def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
+    """Contact equation of a peg's centre: its distance from a line, (distance² - R²) / 2R from an arc's centre, in mm."""
+    x, y = center[0] - row[1], center[1] - row[2]
+    if row[0] == 0.0:
+        return (row[4] * x - row[3] * y) / (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
+    return (x * x + y * y - arb(row[6]) ** 2) / (2 * arb(row[6]))
+
+
+def places(box: Box, unknowns: Sequence[arb]) -> Places:
+    """Everything about the four contacts on a box of unknowns."""
+    psi, x, y, apart = unknowns
+    cosine, sine = psi.cos(), psi.sin()
+    centers, normals, arms, values, slopes = [], [], [], [], []
+    for k, (row, (dx, dy)) in enumerate(zip(box.features, box.offsets, strict=True)):
+        right = int(k >= box.lefts)
+        reach = (dx + right * apart, arb(dy))
+        turned = (cosine * reach[0] - sine * reach[1], sine * reach[0] + cosine * reach[1])
+        center = (x + turned[0], y + turned[1])
+        if row[0] == 0.0:
+            size = (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
+            gradient = (row[4] / size, -row[3] / size)
+            normal = gradient
+        else:
+            gradient = ((center[0] - row[1]) / row[6], (center[1] - row[2]) / row[6])
+            normal = (row[7] * gradient[0], row[7] * gradient[1])
+        slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
+        slope.append((gradient[0] * cosine + gradient[1] * sine) * right)
+        centers.append(center)
+        normals.append(normal)
+        arms.append(turned)
+        values.append(contact_value(row, center))
+        slopes.append(slope)
+    return Places(box.features, centers, normals, arms, values, slopes, (cosine, sine))
+
+
+def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> list[arb]:
+    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign)."""
+    out = [
+        slack
+        for row, center in zip(box.features, here.centers, strict=True)
+        for slack in end_slacks(row, center, limits.margin)
+    ]
+    along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
+    for left in along[: box.lefts]:
+        out += [right - left - (arb(limits.min_gap) - rule.GAP_SLACK) for right in along[box.lefts :]]
+    size = sum((abs(minor) for minor in minors), arb(0))
+    out.append(size - rule.LEAST_SPAN)
+    sign = 1 if sum(float(minor.mid()) for minor in minors) >= 0 else -1
+    if any(sign * minor < 0 for minor in minors) and not any(sign * minor > 0 for minor in minors):
+        sign = -sign
+    for minor in minors:
+        out.append(sign * minor - rule.LEAST_CLOSURE * size)
+    push = [n[0] * here.axis[0] + n[1] * here.axis[1] for n in here.normals]
+    # The force is the left jaw's push, and as well what the right jaw takes up.
+    out.append(-sum((sign * minors[k] * push[k] for k in range(box.lefts)), arb(0)) - rule.LEAST_CLAMPING * size)
+    out.append(sum((sign * minors[k] * push[k] for k in range(box.lefts, 4)), arb(0)) - rule.LEAST_CLAMPING * size)
+    return out
+
+
+def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
+    """How far in mm a contact is from breaking the rule of ends, at both ends of its feature."""
+    dx, dy = center[0] - row[1], center[1] - row[2]
+    along, across = dx * row[3] + dy * row[4], dy * row[3] - dx * row[4]
+    if row[0] == 0.0:
+        return [row[5] - along - margin + row[9], row[5] + along - margin + row[8]]
+    if row[5] >= pi:
+        return []
+    angle = arb.atan2(across, along)
+    return [(row[5] - angle) * row[6] - margin + row[9], (row[5] + angle) * row[6] - margin + row[8]]
+
+
+def wrench_minors(here: Places, length: float) -> list[arb]:
+    """Signed 3 x 3 minors of the wrenches (n, q x n / L)."""
+    n = here.normals
+    # The minors do not depend on the point that moments are taken about; from the first peg the others are known best.
+    t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.arms, n, strict=True)]
+
+    def cross(i: int, j: int) -> arb:
+        one, two = here.rows[i], here.rows[j]
+        if one[0] == 0.0 or two[0] == 0.0:
+            return n[i][0] * n[j][1] - n[i][1] * n[j][0]
+        # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
+        # where both pegs are on one jaw: parallel normals stay so wherever the part slides.
+        x = here.arms[j][0] - here.arms[i][0] - (arb(two[1]) - one[1])
+        y = here.arms[j][1] - here.arms[i][1] - (arb(two[2]) - one[2])
+        return (n[i][0] * y - n[i][1] * x) * (two[7] / arb(two[6]))
+
+    out = []
+    for k in range(4):
+        a, b, c = (i for i in range(4) if i != k)
+        minor = t[a] * cross(b, c) - t[b] * cross(a, c) + t[c] * cross(a, b)
+        out.append(-minor if k % 2 else minor)
+    return out
+
+
+@frozen(eq=False)
+class Frame:
+    """Directions of the Jacobian's singular vectors at the middle of a box.
+
+    Parameters
+    ----------
+    box : the candidate.
+    right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined last.
+    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact balls.
+    length : L in mm.
+    """
+
+    box: Box
+    right: NDArray[np.float64]
+    combining: arb_mat
+    turning: arb_mat
+    length: float
+
+    @classmethod
+    def of(cls, box: Box, limits: Limits) -> Frame:
+        """The frame of a box."""
+        slopes = places(box, [arb(m) for m in box.middle]).slopes
+        jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
+        jacobian[:, 0] /= limits.length
+        u, _, v = np.linalg.svd(jacobian)
+        left, right = (arb_mat(4, 4, [float(e) for e in matrix.T.ravel()]) for matrix in (u, v))
+        return cls(box, v.T, left, right, limits.length)
+
+    def start(self) -> list[arb]:
+        """The whole box, in the frame's coordinates in mm, a little larger."""
+        reach = [self.box.reach[0] * self.length, *self.box.reach[1:]]
+        spans = np.abs(self.right.T) @ np.array(reach)
+        return [arb(0, float(span) * (1.0 + RIM)) for span in spans]
+
+    def unknowns(self, place: Sequence[arb]) -> list[arb]:
+        """The unknowns at a place in the frame."""
+        steps = [sum((float(self.right[j, k]) * place[k] for k in range(4)), arb(0)) for j in range(4)]
+        return [
+            m + (s / self.length if j == 0 else s) for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
+        ]
+
+    def places(self, place: Sequence[arb]) -> Places:
+        """The contacts at a place in the frame."""
+        return places(self.box, self.unknowns(place))
+
+    def values(self, here: Places) -> list[arb]:
+        """The combined contact equations."""
+        return list((self.combining * arb_mat(4, 1, here.values)).entries())
+
+    def slopes(self, here: Places) -> list[list[arb]]:
+        """The Jacobian of the combined contact equations by the frame's coordinates."""
+        scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
+        slopes = self.combining * arb_mat(scaled) * self.turning
+        return [[slopes[i, j] for j in range(4)] for i in range(4)]
+
+    def step(self, place: list[arb], here: Places) -> tuple[list[arb] | None, bool]:
+        """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
+        whether it holds exactly one. ``here`` are the contacts at the place."""
+        middle = [arb(p.mid()) for p in place]
+        values, slopes = self.values(self.places(middle)), self.slopes(here)
+        out, inside = list(place), True
+        for k in range(4):
+            rest = values[k] + sum((slopes[k][j] * (out[j] - middle[j]) for j in range(4) if j != k), arb(0))
+            if slopes[k][k].contains(0):
+                inside = False
+                if not (rest + slopes[k][k] * (out[k] - middle[k])).contains(0):
+                    return None, False
+                continue
+            image = middle[k] - rest / slopes[k][k]
+            if not image.overlaps(out[k]):
+                return None, False
+            inside = inside and out[k].contains_interior(image)
+            out[k] = image if out[k].contains(image) else out[k].intersection(image)
+        return out, inside
+
+
+def never() -> bool:
+    """Nobody asks to stop."""
+    return False
+
+
+def solutions_in(box: Box, limits: Limits, is_stopped: Callable[[], bool] = never) -> Outcome | None:
+    """Find every fixture of a box, or say why that cannot be decided; None when the work was stopped before."""
+    with ctx.workprec(PRECISIONS[0]):
+        frame = Frame.of(box, limits)
+        waiting = [frame.start()]
+        roots: list[list[arb]] = []
+        looked_at = 0
+        while waiting:
+            place = waiting.pop()
+            looked_at += 1
+            if is_stopped():
+                return None
+            if looked_at > MOST_BOXES:
+                return Outcome(
+                    (), "the contacts are a double solution, or so nearly that its clamping force is not decided"
+                )
+            here = frame.places(place)
+            if is_empty(box, here, limits):
+                continue
+            smaller, unique = frame.step(place, here)
+            if smaller is None:
+                continue
+            if unique:
+                roots.append(smaller)
+                continue
+            if any(s.rad() < 0.7 * p.rad() for s, p in zip(smaller, place, strict=True)):
+                waiting.append(smaller)
+                continue
+            waiting += halves(smaller)
+    return judged(frame, roots, limits)
+
+
+def is_empty(box: Box, here: Places, limits: Limits) -> bool:
+    """Whether some contact equation has no zero, or some rule is broken, everywhere in a place."""
+    if any(value > 0 or value < 0 for value in here.values):
+        return True
+    minors = wrench_minors(here, limits.length)
+    if any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
+        # Of opposite signs, so that nothing closes.
+        return True
+    return any(slack < 0 for slack in slacks(box, here, minors, limits))
+
+
+def halves(place: list[arb]) -> list[list[arb]]:
+    """Both halves of a place, cut where it is longest, a little more than half each."""
+    widths = [float(p.rad()) for p in place]
+    cut = widths.index(max(widths))
+    out = []
+    for side in (-1, 1):
+        half = list(place)
+        half[cut] = arb((place[cut].mid() + side * widths[cut] / 2).mid(), widths[cut] * 0.5001)
+        out.append(half)
+    return out
+
+
+def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Outcome:
+    """Judge the solutions of a box by the rules, at rising precision."""
+    fixtures: list[tuple[float, float, float, float]] = []
+    reason = ""
+    for root in roots:
+        verdict = 0
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                root = refined(frame, root)
+                unknowns = frame.unknowns(root)
+                here = places(frame.box, unknowns)
+                values = slacks(frame.box, here, wrench_minors(here, limits.length), limits)
+                verdict = -1 if any(v < 0 for v in values) else int(all(v > 0 for v in values))
+            if verdict != 0:
+                break
+        if verdict == 0:
+            reason = "a rule is met exactly at its edge"
+        if verdict > 0:
+            psi, x, y, apart = (float(u.mid()) for u in unknowns)
+            fixtures.append((psi, x, y, apart))
+    return Outcome(tuple(fixtures), reason)
+
+
+def refined(frame: Frame, root: list[arb]) -> list[arb]:
+    """A proven solution to the precision in force."""
+    for _ in range(12):
+        closer, _ = frame.step(root, frame.places(root))
+        if closer is None or not any(c.rad() < 0.5 * r.rad() for c, r in zip(closer, root, strict=True)):
+            break
+        root = closer
+    return root

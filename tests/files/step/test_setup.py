@@ -1,0 +1,148 @@
+"""A set-up written as a STEP assembly and read again: bodies, names, volumes, and pegs that touch the part."""
+
+from __future__ import annotations
+
+import re
+from cmath import exp
+from math import atan, pi, radians, sin, tan
+from pathlib import Path
+from typing import Any
+
+import attrs
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.gp import gp_Pnt
+
+from workhold.errors import InputError
+from workhold.files.step.setup import plate_of, setup_step, write_setup_step
+from workhold.files.step.solids import Solid, read_solids
+from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.result import LEFT, RIGHT, hole_position
+from workhold.model.vise import Vise
+from workhold.model.workpiece import Workpiece
+
+VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
+# A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise; with a
+# notch of radius 6.25.
+LYING = [
+    [(3, -5, 0), (20, -5, -0.5), (30, -5, 0), (67, -5, 0), (67, 35, 0), (11, 32, tan(pi / 8)), (3, 24, 0)],
+    [(45, 15, -1), (35, 15, -1)],
+]
+NOTCH = 4 * atan(0.5)
+LYING_AREA = 64 * 40 - 8 * 11 - 56 * 3 / 2 + 16 * pi - 25 * pi - 6.25**2 / 2 * (NOTCH - sin(NOTCH))
+
+
+def part(pose: Pose, name: str = "part") -> Workpiece:
+    """The part in its own coordinates."""
+    turn = exp(-1j * radians(pose.theta_deg))
+    loops = [[(turn * (complex(x, y) - complex(pose.x, pose.y)), bulge) for x, y, bulge in loop] for loop in LYING]
+    return Workpiece.from_loops(name, [[(z.real, z.imag, bulge) for z, bulge in loop] for loop in loops])
+
+
+def fixture(pose: Pose, jaw_separation: float = 50.0) -> Fixture:
+    """The four pegs about the part."""
+    holes = [("left", 0, 0), ("left", 0, 2), ("right", 1, 0), ("right", 1, 2)]
+    pegs = []
+    for jaw, column, row in holes:
+        x, y = hole_position(VISE, RIGHT if jaw == "right" else LEFT, column, row, jaw_separation)
+        pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, 0, 0.5))
+    return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, jaw_separation, {})
+
+
+POSES = [Pose(0.0, 0.0, 0.0), Pose(123.4, 31.7, -8.9)]
+
+
+def bodies(pose: Pose) -> dict[str, list[Solid]]:
+    """The solids of a set-up as read again: the part, pegs and plates, told apart by where they lie in z."""
+    kinds: dict[str, list[Solid]] = {"part": [], "peg": [], "plate": []}
+    for solid in read_solids(setup_step(fixture(pose), part(pose), VISE, thickness=12, plate_thickness=8)):
+        low, high = round(solid.low[2], 9), round(solid.high[2], 9)
+        kinds[{(0, 12): "part", (-8, 12): "peg", (-8, 0): "plate"}[low, high]].append(solid)
+    return kinds
+
+
+def distance(shape: Any, other: Any) -> float:
+    """Distance of two shapes in mm."""
+    return float(BRepExtrema_DistShapeShape(shape, other).Value())
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_every_peg_axis_is_one_radius_from_the_part(pose: Pose) -> None:
+    """The distance from each peg's axis to the part is the peg radius to 1e-6 mm, so that pegs only touch it."""
+    kinds = bodies(pose)
+    assert [len(kinds[kind]) for kind in ("part", "peg", "plate")] == [1, 4, 2]
+    for peg in fixture(pose).pegs:
+        axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, 0), gp_Pnt(peg.x, peg.y, 12)).Edge()
+        assert distance(axis, kinds["part"][0].shape) == pytest.approx(3, abs=1e-6)
+    for peg_body in kinds["peg"]:
+        assert distance(peg_body.shape, kinds["part"][0].shape) == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_volumes_are_those_of_prisms(pose: Pose) -> None:
+    """Part: its area times its height. Pegs: cylinders. Plates: rows 1 to 3 and both columns of holes in a box."""
+    kinds = bodies(pose)
+    assert kinds["part"][0].volume == pytest.approx(12 * LYING_AREA, rel=1e-9)
+    assert [peg.volume for peg in kinds["peg"]] == pytest.approx([20 * pi * 9] * 4, rel=1e-9)
+    assert [plate.volume for plate in kinds["plate"]] == pytest.approx([8 * (20 * 36 - 6 * 9 * pi)] * 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_pegs_stand_in_holes_of_the_plates(pose: Pose) -> None:
+    """The wall of its hole is one radius around each peg's axis."""
+    left, right = sorted(bodies(pose)["plate"], key=lambda plate: plate.low[0])
+    for peg in fixture(pose).pegs:
+        axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, -7), gp_Pnt(peg.x, peg.y, -1)).Edge()
+        own = left if peg.jaw == "left" else right
+        assert distance(axis, own.shape) == pytest.approx(3, abs=1e-9)
+
+
+def test_bodies_are_named_by_what_they_are() -> None:
+    """The part by its name, pegs by their holes, plates by their jaws; lengths are millimetres."""
+    text = setup_step(fixture(POSES[1]), part(POSES[1], "Joe's bracket"), VISE).decode()
+    names = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text)
+    pegs = ["peg L-A1", "peg L-A3", "peg R-B1", "peg R-B3"]
+    assert names == ["Joe''s bracket set-up", "Joe''s bracket", *pegs, "left jaw", "right jaw"]
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+
+
+def test_the_same_set_up_gives_the_same_bytes(tmp_path: Path) -> None:
+    """No date, and no numbers that count through the life of the process."""
+    first, second = tmp_path / "first.step", tmp_path / "second.step"
+    for path in (first, second):
+        write_setup_step(fixture(POSES[1]), part(POSES[1]), VISE, path)
+    assert first.read_bytes() == second.read_bytes()
+    assert b"1970-01-01T00:00:00" in first.read_bytes()[:400]
+
+
+def test_plates_of_a_nearly_closed_vise_do_not_overlap() -> None:
+    """With a jaw separation below two radii the plates end inside their holes, and apart from each other."""
+    solids = read_solids(setup_step(fixture(POSES[0], 4.0), part(POSES[0]), VISE))
+    left, right = sorted((s for s in solids if s.high[2] < 1e-9), key=lambda plate: plate.low[0])
+    assert left.high[0] < right.low[0]
+    assert left.volume < 10 * (left.high[0] - left.low[0]) * (left.high[1] - left.low[1]) - 10 * pi * 9
+
+
+def test_a_fine_lattice_shows_only_what_the_pegs_need() -> None:
+    """A pitch of 0.5 mm would give tens of thousands of holes; the plates hold those between the pegs only."""
+    fine = Vise(pitch=0.5, columns=200, peg_radius=0.2)
+    plate = plate_of("left", fixture(POSES[0]), part(POSES[0]), fine)
+    assert len(plate.holes) == 200 * 3
+
+
+@pytest.mark.parametrize(
+    ("radius", "options", "said"),
+    [
+        (0.0, {}, "pegs of radius 0 have no body"),
+        (3.0, {"thickness": 0.0}, "thickness 0.0 is not a positive length"),
+        (3.0, {"plate_thickness": float("nan")}, "plate thickness nan is not a positive length"),
+    ],
+)
+def test_what_has_no_body_is_refused(radius: float, options: dict[str, float], said: str) -> None:
+    """Points for pegs, and bodies of no thickness."""
+    with pytest.raises(InputError, match=said):
+        setup_step(fixture(POSES[0]), part(POSES[0]), attrs.evolve(VISE, peg_radius=radius), **options)

@@ -1,0 +1,216 @@
+"""Vises by name and from files: every figure in mm, every preset with a source, every slip one sentence."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from workhold.errors import InputError
+from workhold.files.toolkit.dowels import dowel_series, dowel_size
+from workhold.files.toolkit.form import checked
+from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.model.holes import holes_named
+from workhold.model.tolerance import Tolerance
+
+OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
+
+
+def write(folder: Path, entries: dict[str, Any]) -> Path:
+    """A vise file of entries as they stand in TOML."""
+    path = folder / "jaws.toml"
+    path.write_text("".join(f"{key} = {value}\n" for key, value in entries.items()))
+    return path
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_presets_are_vises_with_a_source(name: str) -> None:
+    """Each makes a vise, has words and a source, and passes the checks that a user's file has to pass."""
+    loaded = load_vise(name)
+    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)+", name)
+    assert loaded.name == name
+    assert loaded.title and loaded.source
+    assert loaded.vise.rows is None
+    content = tomllib.loads((files("workhold") / "data" / "vises" / f"{name}.toml").read_text())
+    assert checked(content) == content
+    assert 0 < loaded.tolerance.peg < 0.2
+    assert loaded.tolerance.face == Tolerance().face
+
+
+def test_figures_of_the_presets() -> None:
+    """Pitch, peg diameter and columns as published, in mm; an inch is 25.4 mm."""
+    figures = {name: load_vise(name).fields for name in preset_names()}
+    told = {name: (f["pitch"], 2 * f["peg_radius"], f["columns"]) for name, f in figures.items()}
+    assert told == {
+        "gripper-one-column": ((10, 10), 6, 1),
+        "gripper-two-columns": ((10, 10), 6, 2),
+        "plate-half-inch": ((12.7, 12.7), 6.35, 4),
+        "plate-20mm": ((20, 20), 6, 3),
+        "plate-25mm": ((25, 25), 6, 3),
+        "plate-one-inch": ((25.4, 25.4), 6.35, 3),
+        "table-50mm": ((50, 50), 16, 2),
+        "table-100mm": ((100, 100), 28, 2),
+    }
+
+
+def test_tolerances_follow_from_pin_and_hole() -> None:
+    """By hand: a pressed 6 mm pin at most 0.009 too wide, hole placed to the assumed 0.01; a 16 h7 pin in a D10 hole."""
+    assert load_vise("plate-20mm").tolerance.peg == pytest.approx(0.009 / 2 + 0.01, abs=1e-12)
+    assert load_vise("table-50mm").tolerance.peg == pytest.approx((0.138 + 0.018) / 2 + 0.05, abs=1e-12)
+    assert load_vise("plate-one-inch").tolerance.peg == pytest.approx(0.0003 / 2 * 25.4 + 0.01, abs=1e-12)
+    assert load_vise("gripper-one-column").tolerance == Tolerance()
+
+
+def test_dowels_are_near_their_names_and_grow() -> None:
+    """Pins within 0.03 mm of their nominal diameter, limits in order; the metric standards have the ten sizes 3 to 25."""
+    for series in dowel_series():
+        assert series.source
+        for size in series.sizes:
+            for limits in filter(None, (size.pin, size.hole)):
+                assert limits[0] < limits[1]
+                assert max(abs(limit - size.nominal) for limit in limits) < 0.034
+        nominals = [round(size.nominal, 6) for size in series.sizes]
+        assert nominals == sorted(set(nominals))
+        if series.unit.name == "mm":
+            assert nominals == [3, 4, 5, 6, 8, 10, 12, 16, 20, 25]
+
+
+def test_widths_of_the_iso_classes() -> None:
+    """IT6 and IT8 of ISO 286-1 in micrometres: 6, 8, 9, 11, 13 and 14, 18, 22, 27, 33 by range of diameters."""
+    ranges = {3: (6, 14), 6: (8, 18), 10: (9, 22), 16: (11, 27), 25: (13, 33)}
+    for diameter, (six, eight) in ranges.items():
+        for name, width in (("ISO 2338 m6", six), ("iso  2338 h8", eight)):
+            low, high = dowel_size(name, diameter).pin
+            assert high - low == pytest.approx(width / 1000, abs=1e-9)
+
+
+def test_a_file_in_inches(tmp_path: Path) -> None:
+    """Every length of the file is in its unit, and comes out in mm; holes are blocked by name."""
+    path = write(
+        tmp_path,
+        {
+            "title": '"my jaws"',
+            "unit": '"inch"',
+            "pitch": "[1, 0.5]",
+            "columns": "3",
+            "rows": "9",
+            "peg_radius": "0.125",
+            "body_radius": "0.2",
+            "min_gap": "0.5",
+            "max_opening": "6",
+            "row_offset": "-0.25",
+            "blocked": '["L-A", "R-B3"]',
+            "pin_diameter": "[0.2495, 0.25]",
+            "hole_diameter": "[0.25, 0.2505]",
+            "hole_position": "0.0005",
+            "face_tolerance": "0.002",
+        },
+    )
+    loaded = load_vise(path)
+    assert loaded.fields == {
+        "pitch": (25.4, 12.7),
+        "columns": 3,
+        "rows": 9,
+        "peg_radius": 3.175,
+        "body_radius": 5.08,
+        "min_gap": 12.7,
+        "max_opening": 152.4,
+        "row_offset": -6.35,
+        "blocked": (holes_named("L-A"), holes_named("R-B3")),
+    }
+    # The smallest pin in the widest hole: 0.0010 of clearance and 0.0005 of size, halved.
+    assert loaded.tolerance.peg == pytest.approx((0.00075 + 0.0005) * 25.4, abs=1e-8)
+    assert loaded.tolerance.face == pytest.approx(0.002 * 25.4)
+    assert (loaded.name, loaded.title, loaded.unit.name) == ("jaws", "my jaws", "inch")
+
+
+def test_a_standard_gives_the_pin_and_the_file_the_hole(tmp_path: Path) -> None:
+    """ISO 2338 recommends no hole; an entry of the file goes before the standard's; a plain tolerance before both."""
+    pin = {**OWN, "dowel": '"iso 2338 H8"', "hole_diameter": "[6.0, 6.012]"}
+    fit = load_vise(write(tmp_path, pin)).fit
+    assert fit is not None and (fit.pin, fit.hole) == ((5.982, 6.0), (6.0, 6.012))
+    assert load_vise(write(tmp_path, {**pin, "peg_tolerance": "0.5"})).tolerance.peg == 0.5
+
+
+def test_a_file_goes_before_a_preset(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unlike a folder, a file of a preset's name is meant; capitals of a preset do not matter."""
+    monkeypatch.chdir(tmp_path)
+    Path("table-50mm").mkdir()
+    assert load_vise("Table-50MM").fields["pitch"] == (50, 50)
+    write(tmp_path, OWN).rename("plate-25mm")
+    assert load_vise("plate-25mm").fields["pitch"] == (20, 20)
+
+
+WITHOUT = object()
+BAD = [
+    ({"unit": WITHOUT}, 'unit is missing: write unit = "mm" or unit = "inch"'),
+    ({"pitch": WITHOUT}, "pitch is missing: write the distance between holes"),
+    ({"unit": '"ell"'}, "Unit 'ell' is not known"),
+    ({"unit": '"m"'}, 'the unit of a vise is "mm" or "inch"'),
+    ({"pitch": '"20"'}, "pitch is not what it should be"),
+    ({"pitch": "[20]"}, "pitch is not what it should be"),
+    ({"pitch": "nan"}, "pitch is not what it should be"),
+    ({"pitch": "-20"}, "pitch -20.0 is not a positive length"),
+    ({"columns": "2.5"}, "columns is not what it should be: write how many"),
+    ({"rows": '"many"'}, "rows is not what it should be: write a whole number"),
+    ({"max_opening": "inf"}, "max_opening is not what it should be: write a finite number"),
+    ({"title": "3"}, "title is not what it should be: write text in quotes"),
+    ({"peg_radius": "11"}, "pegs of radius 11 overlap"),
+    ({"colums": "3"}, '"colums" is no entry of a vise: did you mean columns?'),
+    ({"weight": "3"}, '"weight" is no entry of a vise: the entries are unit, pitch'),
+    ({"blocked": '["B3"]'}, "'B3' names no hole"),
+    ({"blocked": '["L-C1"]'}, "hole L-C1 is blocked, but each jaw has only 2 columns"),
+    ({"blocked": "[3]"}, "blocked is not what it should be"),
+    ({"dowel": '"DIN 1"'}, 'dowel "DIN 1" is not known: the standards are ASME B18.8.5M'),
+    ({"dowel": '"ASME B18.8.2"'}, "ASME B18.8.2 has no dowel of 0.2362 in: its sizes are 0.125, "),
+    ({"dowel": '"ISO 2338 m6"'}, "the pin is given without its hole"),
+    ({"hole_diameter": "[6, 6.012]"}, "hole_diameter is given without the pin"),
+    ({"hole_position": "0.02"}, "hole_position is given without the pin"),
+    ({"pin_diameter": "[3, 3.01]", "hole_diameter": "[6, 6.01]"}, "pin_diameter 3 to 3.01 mm is not that of a peg"),
+    ({"dowel": '"ASME B18.8.5M"', "hole_position": "-1"}, "hole_position -1 is negative"),
+    ({"peg_tolerance": "-1"}, "peg tolerance -1.0 is not a length"),
+    ({"pitch": ""}, "the file is not valid TOML: invalid value"),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), BAD)
+def test_bad_files_are_one_sentence_with_the_file_and_the_entry(
+    tmp_path: Path, change: dict[str, Any], message: str
+) -> None:
+    entries = {key: value for key, value in (OWN | change).items() if value is not WITHOUT}
+    with pytest.raises(InputError) as caught:
+        load_vise(write(tmp_path, entries))
+    told = str(caught.value)
+    assert told.startswith("jaws.toml: ")
+    assert message in told
+    assert "\n" not in told and told.endswith((".", "?"))
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("plate-20", "'plate-20': file not found, and no vise has that name (try plate-20mm, "),
+        ("welding", "(try gripper-one-column, gripper-two-columns, plate-half-inch, "),
+        ("", "'': file not found"),
+        ("jaws.toml", "'jaws.toml': file not found"),
+        (".", ".: this is not a file"),
+    ],
+)
+def test_unknown_vises_come_with_names_that_are_near(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError) as caught:
+        load_vise(name)
+    assert message in str(caught.value)
+
+
+def test_binary_files_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "jaws.toml"
+    path.write_bytes(b"pitch = \xff")
+    with pytest.raises(InputError, match=r"jaws\.toml: the file is not UTF-8 text \(byte 8\)"):
+        load_vise(path)

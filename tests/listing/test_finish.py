@@ -1,0 +1,95 @@
+"""Bringing fixtures to one form and listing each once."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from attrs import evolve
+from numpy.typing import NDArray
+
+from workhold.listing.canonical_form import Candidates, canonical_form, changes, listed_once, packed, twins
+
+
+def candidates(count: int) -> Candidates:
+    """The same Type I fixture some times over."""
+
+    def repeated(values: object, kind: type = float) -> NDArray[np.generic]:
+        return np.repeat(np.array([values], dtype=kind), count, axis=0)
+
+    return Candidates(
+        kind=repeated(1, int),
+        feature=repeated([0, 1, 2, 3], int),
+        column=repeated([0, 1, 0, 0], int),
+        row=repeated([0, 2, 1, 4], int),
+        theta=repeated(0.5),
+        point=repeated([[0.0, 0.0], [3.0, 4.0], [20.0, 1.0], [21.0, 6.0]]),
+        opening=repeated(17.0),
+        null=repeated([0.1, 0.2, 0.3, 0.4]),
+        force=repeated([0.5, 1.0, 1.5, 2.0]),
+    )
+
+
+def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
+    """A contact at a tangent joint is found on both faces, with rounding between the two: one is kept."""
+    twice = candidates(2)
+    feature = twice.feature.copy()
+    feature[1, 2] = 7
+    twice = evolve(twice, feature=feature, theta=twice.theta + np.array([0.0, 3e-9]), point=twice.point + 1e-9)
+    assert len(listed_once(twice).kind) == 1
+
+
+def test_same_holes_and_orientation_in_two_places_are_two() -> None:
+    """The same holes and orientation with the part elsewhere is another fixture; with the same faces it is a twin."""
+    both = candidates(2)
+    point = both.point.copy()
+    point[1] += [1.0, -2.0]
+    both = evolve(both, point=point, null=np.array([[0.1, 0.2, 0.3, 0.4], [0.25, 0.25, 0.25, 0.25]]))
+    kept = listed_once(both)
+    assert len(kept.kind) == 2
+    sets = twins(kept, kept.feature)
+    assert kept.null[sets.first].min() == 0.25
+    assert len(sets.others) == 1
+    assert sets.owner.tolist() == [0]
+
+
+def test_half_turn_swaps_the_jaws_to_one_form() -> None:
+    """Seen from the other side, with rows and columns counted the other way, a Type I fixture has the same form."""
+    here = candidates(1)
+    there = evolve(
+        here,
+        feature=here.feature[:, ::-1],
+        column=5 - here.column[:, ::-1],
+        row=9 - here.row[:, ::-1],
+        theta=here.theta + pi,
+        point=here.point[:, ::-1],
+        null=here.null[:, ::-1],
+        force=here.force[:, ::-1],
+    )
+    one, other = canonical_form(here), canonical_form(there)
+    for name in ("kind", "feature", "column", "row", "null"):
+        assert np.array_equal(getattr(one, name), getattr(other, name))
+    assert np.allclose(one.theta, other.theta)
+
+
+def test_orientations_at_the_ends_of_the_half_turn_are_one() -> None:
+    """An orientation a hair below half a turn and one a hair above 0 are brought to the same side."""
+    here = candidates(2)
+    turned = evolve(here, theta=np.array([1e-9, 2e-9]))
+    assert (np.abs(canonical_form(turned).theta) < 1e-8).all()
+    below = evolve(here, theta=np.array([pi - 1e-9, 2 * pi - 1e-9]))
+    assert (np.abs(canonical_form(below).theta) < 1e-8).all()
+
+
+def test_packed_numbers_keep_their_order() -> None:
+    """Rows of whole numbers, packed into one number or several, are ordered as they were."""
+    random = np.random.default_rng(5)
+    for most, width in ((1, 2), (9, 4), (1000, 9), (1 << 40, 3)):
+        numbers = random.integers(0, most + 1, (300, width))
+        words = packed((numbers[:, :1], most), (numbers[:, 1:], most))
+        assert len(words) == -(-width // (63 // int(most).bit_length()))
+        order, packed_order = np.lexsort(numbers.T[::-1]), np.lexsort(words[::-1])
+        assert np.array_equal(numbers[order], numbers[packed_order])
+        fresh = np.ones(300, np.bool_)
+        fresh[1:] = (numbers[order][1:] != numbers[order][:-1]).any(axis=1)
+        assert np.array_equal(changes([word[order] for word in words]), fresh)

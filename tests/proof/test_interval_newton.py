@@ -1,0 +1,100 @@
+"""Boxes with two, one, a double or no solution are settled."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import ladders
+from exact_chords import exactly
+from workhold.proof import interval_newton as settling
+from workhold.proof.interval_newton import Box, Limits, Outcome, solutions_in
+
+# The ladders' right pegs stand among the left ones: any gap will do here.
+LIMITS = Limits(0.0, -100.0, 20.0)
+
+
+def box(height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES) -> Box:
+    """The ladders with psi within ``reach`` of 45 degrees and a turn."""
+    middle = ladders.near(np.pi / 4 + turn, height)
+    return Box(features, ladders.offsets(height), 2, middle, (reach, 10 * reach, 10 * reach, 20 * reach))
+
+
+def solutions(height: float) -> list[float]:
+    """The exact orientations, rounded."""
+    with exactly():
+        return sorted(float(psi) for psi in ladders.orientations(height))
+
+
+@pytest.mark.parametrize("rest", [1e-2, 1e-4, 1e-6, 1e-9])
+def test_of_two_solutions_in_a_box_the_one_that_clamps_is_found(rest: float) -> None:
+    """Both solutions touch and close, and closing the vise clamps one and frees the other."""
+    height = -2.5 + rest
+    low, high = solutions(height)
+    outcome = solutions_in(box(height, 0.0, 2.0 * (high - low)), LIMITS)
+    assert outcome.reason == ""
+    assert len(outcome.fixtures) == 1
+    psi = outcome.fixtures[0][0]
+    assert min(abs(psi - low), abs(psi - high)) < 1e-13
+    # With the materials on the other sides it is the other one.
+    turned = [[*row[:3], -row[3], -row[4], *row[5:]] for row in ladders.FEATURES]
+    other = solutions_in(box(height, 0.0, 2.0 * (high - low), turned), LIMITS)
+    assert len(other.fixtures) == 1
+    assert abs(psi + other.fixtures[0][0] - np.pi / 2) < 1e-13
+    assert abs(psi - other.fixtures[0][0]) > 0.9 * (high - low)
+
+
+@pytest.mark.parametrize("rest", [1e-2, 1e-4, 1e-6])
+def test_a_box_with_one_solution(rest: float) -> None:
+    """Each solution alone in its box: one is a fixture, told to the last digits, the other is not."""
+    height = -2.5 + rest
+    low, high = solutions(height)
+    found = []
+    for psi in (low, high):
+        outcome = solutions_in(box(height, psi - np.pi / 4 + 0.1 * (high - low), 0.3 * (high - low)), LIMITS)
+        assert outcome.reason == ""
+        found += outcome.fixtures
+    assert len(found) == 1
+    with exactly():
+        exact = [ladders.unknowns(psi, height) for psi in ladders.orientations(height)]
+        off = min(max(abs(float(v - w)) for v, w in zip(z, found[0], strict=True)) for z in exact)
+    assert off < 1e-13
+
+
+@pytest.mark.parametrize(("rest", "turn"), [(-1e-3, 0.0), (-1e-9, 0.0), (1e-4, 0.2), (1e-4, -0.2)])
+def test_a_box_without_solutions_is_discarded(rest: float, turn: float) -> None:
+    """Below the fold, or away from the solutions, nothing touches."""
+    assert solutions_in(box(-2.5 + rest, turn, 1e-3), LIMITS) == Outcome((), "")
+
+
+@pytest.mark.parametrize("reach", [1e-8, 1e-6, 1e-4])
+def test_an_exact_double_root_is_discarded(reach: float) -> None:
+    """Its clamping force is 0: it is no fixture, and nothing is left undecided."""
+    assert solutions_in(box(-2.5, 0.0, reach), LIMITS) == Outcome((), "")
+
+
+def large(half: float) -> Box:
+    """Ladders of 25 and 50 mm, 12 mm apart in height: sin psi = 3/5 or 4/5 exactly, and the first peg 15 or 20 mm down the
+    wall, which reaches ``half`` mm down and asks for no hair."""
+    wall = [*ladders.LEFT_WALL[:5], half, 0.0, 1.0, 0.0, 0.0]
+    floors = [[*row[:5], 90.0, *row[6:]] for row in ladders.FEATURES[1:]]
+    places = [(0.0, 0.0), (25.0, 0.0), (0.0, -12.0), (50.0, -12.0)]
+    return Box([wall, *floors], places, 2, (np.pi / 4, 0.0, -17.5, -12.0), (0.2, 5.0, 5.0, 9.0))
+
+
+def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
+    """A contact exactly at the end of its face is neither inside nor outside, whatever the precision; a hair decides."""
+    (fixture,) = solutions_in(large(90.0), LIMITS).fixtures
+    tail = round(-fixture[2])
+    assert tail in (15, 20)
+    assert abs(fixture[2] + tail) < 1e-13
+    assert solutions_in(large(float(tail)), LIMITS) == Outcome((), "a rule is met exactly at its edge")
+    assert solutions_in(large(tail - 1e-14), LIMITS) == Outcome((), "")
+    assert len(solutions_in(large(tail + 1e-14), LIMITS).fixtures) == 1
+
+
+def test_what_takes_too_many_boxes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(settling, "MOST_BOXES", 1)
+    outcome = solutions_in(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
+    assert outcome.fixtures == ()
+    assert outcome.reason
