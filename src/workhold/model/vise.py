@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import inf, isfinite, isnan, nan
-from typing import Any
+from typing import Any, ClassVar
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.model.holes import Holes
+from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 
-__all__ = ["Vise"]
+__all__ = ["OpeningVise", "Vise"]
 
 
 def pair(value: float | Iterable[float]) -> tuple[float, float]:
@@ -39,7 +40,7 @@ def all_holes(holes: Iterable[Holes]) -> tuple[Holes, ...]:
 
 
 @frozen
-class Vise:
+class Vise(Toolkit):
     """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
 
     Parameters
@@ -67,6 +68,11 @@ class Vise:
     >>> Vise(pitch=10, columns=2, peg_radius=3).min_gap
     10.0
     """
+
+    kind: ClassVar[str] = "vise"
+    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
+    clamping: ClassVar[int] = 1
+    symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
 
     pitch: tuple[float, float] = field(converter=pair)
     columns: int = field(converter=whole)
@@ -113,6 +119,43 @@ class Vise:
                 "in mm."
             )
         refuse_blocked(self)
+
+    @property
+    def carriers(self) -> tuple[Carrier, Carrier]:
+        """The left jaw, and the right jaw, whose travel is the jaw separation."""
+        left = Carrier(
+            "left",
+            self.pitch,
+            self.columns,
+            self.rows,
+            self.peg_radius,
+            self.body_radius,
+            blocked=tuple(holes for holes in self.blocked if holes.jaw == "left"),
+        )
+        right = evolve(
+            left,
+            name="right",
+            offset=((self.columns - 1) * self.pitch[0], self.row_offset),
+            blocked=tuple(holes for holes in self.blocked if holes.jaw == "right"),
+            travel=Travel(0.0, self.min_gap, self.max_opening),
+        )
+        return left, right
+
+    @property
+    def gap(self) -> float:
+        """The smallest gap in mm."""
+        return self.min_gap
+
+
+@frozen
+class OpeningVise(Vise):
+    """The vise that clamps by opening: its pegs hold the part from inside its holes, or around a waist.
+
+    Parameters, errors and all rules are those of :class:`Vise`; only the sign of clamping differs.
+    """
+
+    kind: ClassVar[str] = "opening-vise"
+    clamping: ClassVar[int] = -1
 
 
 def refuse_blocked(vise: Vise) -> None:
