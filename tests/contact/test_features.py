@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from exact_chords import exactly
 from strategies import outlines, vises
 from workhold.contact.features import contact_features, end_slacks, feature_rows
 from workhold.geometry.segment import Arc, segment_rows
@@ -15,6 +16,7 @@ from workhold.kernels.base.distance import outline_distance, segment_distance
 from workhold.model.diameter import outline_diameter
 from workhold.model.workpiece import Workpiece
 from workhold.statics.wrenches import outward_normals
+from workhold.verification.outline import Outline
 
 
 @given(outlines(), vises())
@@ -100,3 +102,15 @@ def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():
         inside = [f.segment for f in contact_features(part, 3.0) if f.face >= 4]
         assert [s.radius for s in inside] == pytest.approx(expected)
         assert all(s.is_full and s.sign == -1.0 for s in inside)
+
+
+@pytest.mark.parametrize(("turn", "tangent"), [(0.0, True), (3e-6, True), (3e-5, False), (1e-3, False), (0.05, False)])
+def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
+    """A half disc whose flat side's neighbours meet the arc under ``turn`` radians. Up to 1e-5 is the rounding of a bulge,
+    and a contact at the joint counts; from there on the joint is a corner, also one that the eye does not see."""
+    half = Workpiece.from_loops("half", [[[0, 0, 0], [30, 0, 0], [30, 10, tan(pi / 4 + turn / 2)], [0, 10, 0]]])
+    # Point pegs: their features end at the corners themselves.
+    assert (end_slacks(contact_features(half, 0.0)) > 0).any() == tangent
+    with exactly():
+        smooth = Outline.of(half).smooth
+    assert smooth[2] == (tangent, tangent)

@@ -6,28 +6,9 @@ from math import pi
 
 import numpy as np
 from attrs import evolve
-from numpy.typing import NDArray
 
-from workhold.listing.canonical_form import Candidates, canonical_form, changes, listed_once, packed, twins
-
-
-def candidates(count: int) -> Candidates:
-    """The same Type I fixture some times over."""
-
-    def repeated(values: object, kind: type = float) -> NDArray[np.generic]:
-        return np.repeat(np.array([values], dtype=kind), count, axis=0)
-
-    return Candidates(
-        kind=repeated(1, int),
-        feature=repeated([0, 1, 2, 3], int),
-        column=repeated([0, 1, 0, 0], int),
-        row=repeated([0, 2, 1, 4], int),
-        theta=repeated(0.5),
-        point=repeated([[0.0, 0.0], [3.0, 4.0], [20.0, 1.0], [21.0, 6.0]]),
-        opening=repeated(17.0),
-        null=repeated([0.1, 0.2, 0.3, 0.4]),
-        force=repeated([0.5, 1.0, 1.5, 2.0]),
-    )
+from candidate_examples import candidates
+from workhold.listing.canonical_form import canonical_form, changes, listed_once, packed, twins
 
 
 def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import cos, radians, sin
 from typing import Any
 
 import attrs
@@ -69,3 +70,20 @@ def test_a_wrong_order_is_a_fault(limited: Result) -> None:
     """The last before the first."""
     outcome = verify(attrs.evolve(limited, table=limited.table.take(slice(None, None, -1))))
     assert any("is better than the one before it" in fault for fault in outcome.faults)
+
+
+@pytest.mark.parametrize(("gap", "stands_over"), [(2.9, True), (3.2, True), (3.49, True), (3.51, False), (4.0, False)])
+def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, stands_over: bool) -> None:
+    """Bodies of radius 3.5 on pegs of radius 3: a round zone whose rim is between 3 and 3.5 mm from a peg's centre lies
+    under its body, though not under the peg."""
+    fixture = limited[0]
+    theta = radians(fixture.pose.theta_deg)
+    turn = complex(cos(theta), sin(theta))
+    places = [complex(peg.x - fixture.pose.x, peg.y - fixture.pose.y) / turn for peg in fixture.pegs]
+    # Away from the part, and so from the other pegs, which stand around it.
+    way = (places[0] - complex(*limited.workpiece.center)) / abs(places[0] - complex(*limited.workpiece.center))
+    center = places[0] + (gap + 0.5) * way
+    zone = circle_zone(center.real, center.imag, 0.5)
+    outcome = verify(attrs.evolve(limited, restrictions=Restrictions(zones=(zone,))))
+    told = any(item.index == 0 and "peg 1 stands over a keep-out zone" in item.reason for item in outcome.unproven)
+    assert told == stands_over

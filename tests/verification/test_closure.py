@@ -6,12 +6,18 @@ from math import cos, sin
 from random import Random
 
 import numpy as np
+import pytest
+from attrs import frozen
 from flint import arb
 from hypothesis import given
 
 from closing_forces import null_vectors
 from strategies import seeds
-from workhold.verification.closure import minors
+from workhold.verification.closure import closure_findings, minors
+from workhold.verification.contacts import Pose
+
+# The part as it is drawn.
+UPRIGHT = Pose.of(arb(0), arb(0), arb(0), arb(0))
 
 
 def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:
@@ -55,3 +61,40 @@ def test_three_normals_through_one_point_leave_nothing_to_the_fourth() -> None:
     vector = minors(points, [*directions, (arb(1), arb(0))])
     assert vector[3].contains(0)
     assert not vector[0].contains(0)
+
+
+@frozen(eq=False)
+class FixedContact:
+    """A contact at a place of the part with a normal, whatever the pose."""
+
+    place: tuple[arb, arb]
+    normal: tuple[arb, arb]
+    right: int
+
+    @property
+    def side(self) -> FixedContact:
+        """The touched side: it has one normal everywhere."""
+        return self
+
+    def in_part(self, pose: object) -> tuple[arb, arb]:
+        """The contact's place in the part."""
+        return self.place
+
+    def outward(self, point: object) -> tuple[arb, arb]:
+        """The outward normal."""
+        return self.normal
+
+
+@pytest.mark.parametrize("length", [0.4, 1.0, 30.0, 700.0])
+def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_part(length: float) -> None:
+    """Two lines of action along x and two along y, each ``offset`` from (0, 0): with moments over L the four minors are
+    2 offset / L in size, so their sum is 8 offset / L, and the rule of 1e-7 turns over where that is 1e-7."""
+    ways = [((0, 1), (1, 0)), ((1, 0), (0, 1)), ((0, -1), (-1, 0)), ((-1, 0), (0, -1))]
+    for part, spans in ((0.999, False), (1.001, True)):
+        offset = arb(part * 1e-7 * length / 8)
+        contacts = [
+            FixedContact((offset * x, offset * y), (arb(n), arb(m)), int(k > 1))
+            for k, ((x, y), (n, m)) in enumerate(ways)
+        ]
+        words = [found.reason for found in closure_findings(None, contacts, UPRIGHT, length)]  # type: ignore[arg-type]
+        assert any("their wrenches span only" in reason for reason in words) == (not spans)

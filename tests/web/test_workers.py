@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 from running_server import LONG, RunningServer, request, running_server
@@ -23,11 +24,17 @@ def pids(server: RunningServer) -> list[int]:
     return [worker.process.pid for worker in server.state.searchers.workers.values()]
 
 
+def tell(pid: int, what: signal.Signals) -> None:
+    """Send a signal to a worker; one that has ended meanwhile needs none."""
+    with suppress(ProcessLookupError):
+        os.kill(pid, what)
+
+
 def test_a_killed_worker_fails_its_search_only(pair: RunningServer) -> None:
     first, second = pair.submit(LONG), pair.submit(LONG)
     for url in (first, second):
         pair.state_when(url, lambda state: state["state"] == "running")
-    os.kill(pids(pair)[0], signal.SIGKILL)
+    tell(pids(pair)[0], signal.SIGKILL)
     pair.wait_until(lambda: any(job.is_over for job in pair.state.jobs.by_name.values()))
     states = [pair.client.get(url).json() for url in (first, second)]
     (failed,) = [state for state in states if state["state"] == "failed"]
@@ -43,7 +50,7 @@ def test_a_worker_that_dies_in_its_sleep_is_replaced(pair: RunningServer) -> Non
     pair.wait_until(lambda: not pair.state.searchers.busy)
     before = pids(pair)
     for pid in before:
-        os.kill(pid, signal.SIGKILL)
+        tell(pid, signal.SIGKILL)
     pair.wait_until(lambda: not set(before) & set(pids(pair)))
     for url in [pair.submit(request()) for _ in range(4)]:
         assert pair.outcome(url)["state"] == "done"
@@ -56,17 +63,17 @@ def test_a_worker_that_does_not_hear_is_ended_and_replaced(pair: RunningServer) 
     assert busy is not None
     before = pids(pair)
     for pid in before:
-        os.kill(pid, signal.SIGSTOP)
+        tell(pid, signal.SIGSTOP)
     pair.client.post(f"{url}/cancel")
     assert pair.outcome(url)["state"] == "cancelled"
     pair.wait_until(lambda: set(before) - set(pids(pair)))
     for pid in set(before) & set(pids(pair)):
-        os.kill(pid, signal.SIGCONT)
+        tell(pid, signal.SIGCONT)
     assert pair.outcome(pair.submit(request()))["state"] == "done"
 
 
 def test_a_desk_that_dies_is_replaced(pair: RunningServer) -> None:
     (desk,) = pair.state.desks.workers.values()
-    os.kill(desk.process.pid, signal.SIGKILL)
+    tell(desk.process.pid, signal.SIGKILL)
     assert pair.client.get("/api/parts/flange").status_code in (200, 503)
     assert pair.client.get("/api/parts/flange").status_code == 200

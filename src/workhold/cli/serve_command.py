@@ -14,6 +14,7 @@ __all__ = ["serve"]
 
 LIMITS = "Limits"
 HIGHEST_PORT = 65_535
+FIRST_RUN = "workhold: compiling for this machine, which takes about 20 seconds the first time."
 
 
 def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
@@ -64,8 +65,6 @@ def serve(
     from workhold.web.limits import Limits
     from workhold.web.serve import run_server
 
-    prepare()
-
     def listening(address: str) -> None:
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
         if open_:
@@ -73,7 +72,7 @@ def serve(
 
             webbrowser.open(address)
 
-    run_server(host, at, Limits(**figures), allow_host or (), listening)
+    run_server(host, at, Limits(**figures), allow_host or (), listening, prepare)
 
 
 def limit_value(option: str, text: str) -> float:
@@ -97,5 +96,5 @@ def prepare() -> None:
     if is_first_run():
         from workhold.cli.warming import compile_kernels
 
-        typer.echo("workhold: compiling for this machine, which takes about 20 seconds the first time.", err=True)
+        typer.echo(FIRST_RUN, err=True)
         compile_kernels(Event())

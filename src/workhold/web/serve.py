@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from ipaddress import ip_address
 from typing import Any
 
@@ -81,6 +82,7 @@ def run_server(
     limits: Limits,
     more_hosts: Collection[str] = (),
     listening: Callable[[str], None] | None = None,
+    prepare: Callable[[], None] | None = None,
 ) -> None:
     """Serve until interrupted.
 
@@ -90,6 +92,7 @@ def run_server(
     limits : how much to give.
     more_hosts : further names that the server may be called by.
     listening : called with the page's address once it is there.
+    prepare : called before the first worker is started, when the address is known to be free.
 
     Raises
     ------
@@ -100,10 +103,11 @@ def run_server(
     shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
     server = make_server(limits, hosts_of(host, more_hosts), lambda: None if listening is None else listening(shown))
     try:
-        server.run(sockets=[listener])
-    except KeyboardInterrupt:
-        # uvicorn raises it again after a clean stop.
-        pass
+        if prepare is not None:
+            prepare()
+        # uvicorn raises an interrupt again after a clean stop.
+        with suppress(KeyboardInterrupt):
+            server.run(sockets=[listener])
     finally:
         listener.close()
 

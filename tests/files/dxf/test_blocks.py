@@ -140,6 +140,18 @@ def test_unequal_scales_are_fine_for_lines_only(tmp_path: Path) -> None:
         load(tmp_path / "part.dxf")
 
 
+def test_a_block_turned_half_way_inside_an_unequal_scale_is_skewed(tmp_path: Path) -> None:
+    """Turned by 45 degrees its axes come out equally long and not square to each other: circles become ellipses."""
+    document, space = new_dxf()
+    inner = document.blocks.new("INNER")
+    inner.add_circle((0, 0), 5)
+    document.blocks.new("OUTER").add_blockref("INNER", (0, 0), dxfattribs={"rotation": 45})
+    space.add_blockref("OUTER", (0, 0), dxfattribs={"xscale": 2, "yscale": 3})
+    document.saveas(tmp_path / "part.dxf")
+    with pytest.raises(InputError, match="unequal scales turn into ellipses"):
+        load(tmp_path / "part.dxf")
+
+
 def test_block_entities_on_layer_0_take_the_inserts_layer(tmp_path: Path) -> None:
     """Layer 0 inside a block means the INSERT's layer, through every level; other layers are kept."""
     document, space = new_dxf()

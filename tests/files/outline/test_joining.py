@@ -297,3 +297,14 @@ def test_an_arc_shifted_as_a_whole_shifts_back_by_half(tmp_path: Any, backwards:
     arc = next(s for s in part.segments if isinstance(s, Arc))
     assert arc.radius == pytest.approx(10, abs=1e-7)
     assert arc.center == pytest.approx((30.0003, 10.0003), abs=1e-7)
+
+
+@pytest.mark.parametrize(("times", "closes"), [(2.0, False), (2.9, False), (3.1, True), (10.0, True)])
+def test_a_chain_closes_on_itself_only_over_a_gap_much_shorter_than_it_is(times: float, closes: bool) -> None:
+    """A triangle open at a corner, its sides together 2 to 10 times as long as the opening, within the tolerance: a chain
+    less than three times as long as its opening is a hook that somebody drew, and stays open."""
+    gap = 0.5
+    height = gap / 2 * (times * times - 1) ** 0.5
+    hook = Chain(((0.0, 0.0), (gap / 2, height), (gap, 0.0)), (0.0, 0.2), ("HOOK segment 0", "HOOK segment 1"))
+    joined = join([hook], 2 * gap)
+    assert (len(joined.loops), len(joined.strays)) == ((1, 0) if closes else (0, 1))

@@ -157,10 +157,10 @@ def test_transform_functions(tmp_path: Path, text: str, factor: float) -> None:
 
 
 def test_unequal_scales_are_fine_for_lines_only(tmp_path: Path) -> None:
-    """Skewed lines are lines; skewed arcs are refused by name and place."""
+    """Skewed lines are lines; skewed arcs are refused by name and place, also those whose axes keep their lengths."""
     body = '<g transform="skewX(20) scale(2 3)"><rect width="10" height="5"/></g>'
     assert area(read_svg(tmp_path, body, MM).workpiece) == pytest.approx(300)
-    for text in ("scale(2 3)", "skewX(20)", "skewY(-3)", "matrix(1 0 0.1 1 0 0)"):
+    for text in ("scale(2 3)", "skewX(20)", "skewY(-3)", "matrix(1 0 0.1 1 0 0)", "matrix(1 0 0.6 0.8 0 0)"):
         with pytest.raises(InputError, match=r"path 'd' at \(0, 0\) has arcs that its transform turns into ellipses"):
             read_svg(tmp_path, f'<g transform="{text}">{D}</g>', MM)
 
