@@ -19,6 +19,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.apart import limit_memory, limit_processor
 
 __all__ = ["CANCEL", "Order", "worker_main"]
 
@@ -66,7 +67,8 @@ def worker_main(connection: Connection, kind: str, memory_bytes: int) -> None:
     connection.send(("ready", 0, None))
     while True:
         number, name, seconds, payload, cancel = orders.get()
-        limit_processor(seconds)
+        # Far more than the wall time allows means that the task is deaf.
+        limit_processor((os.cpu_count() or 1) * (seconds + SPARE_SECONDS))
 
         def report(value: Any, number: int = number) -> None:
             connection.send(("report", number, value))
@@ -106,25 +108,3 @@ def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, An
             continue
         newest, cancel = message[0], Event()
         orders.put((*message, cancel))
-
-
-def limit_memory(size: int) -> None:
-    """Let the process take no more address space than this, where the system can see to it."""
-    try:
-        import resource
-    except ImportError:
-        return
-    resource.setrlimit(resource.RLIMIT_AS, (size, size))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def limit_processor(seconds: float) -> None:
-    """Let the system end the process if a task takes far more processor time than its wall time allows."""
-    try:
-        import resource
-    except ImportError:
-        return
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    spent = used.ru_utime + used.ru_stime
-    soft = int(spent + (os.cpu_count() or 1) * (seconds + SPARE_SECONDS)) + 1
-    resource.setrlimit(resource.RLIMIT_CPU, (soft, resource.getrlimit(resource.RLIMIT_CPU)[1]))

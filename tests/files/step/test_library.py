@@ -11,6 +11,7 @@ import pytest
 from fakes import fake_result
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
+from workhold.files.step.reader import read_step
 from workhold.files.step.setup import write_setup_step
 
 STEP = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"
@@ -69,11 +70,9 @@ def test_a_missing_library_is_one_sentence_with_the_remedy(
 ) -> None:
     """Reading and writing say the same."""
     block(error)
-    part = tmp_path / "part.step"
-    part.write_text(STEP)
     result = fake_result(1)
     for attempt in (
-        lambda: read_workpiece(part),
+        lambda: read_step(STEP.encode()),
         lambda: write_setup_step(result[0], result.workpiece, result.vise, tmp_path / "set-up.step"),
     ):
         with pytest.raises(InputError) as caught:

@@ -287,12 +287,12 @@ def from_step(
     InputError
         For wrong content, or choices that do not apply to STEP.
     """
-    from workhold.files.step.reader import read_step
+    from workhold.files.step.reader import read_step_apart
 
     refuse_layers(layers)
     if unit is not None:
         raise InputError("the STEP file gives its own unit: leave --drawing-unit out.")
-    drawing = read_step(content, axis=axis, section_height=section, part_number=part_number)
+    drawing = read_step_apart(content, axis=axis, section_height=section, part_number=part_number)
     return from_drawing(path, drawing, None, 0.0)
 
 

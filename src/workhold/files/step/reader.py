@@ -12,18 +12,65 @@ from collections.abc import Sequence
 from math import inf
 from typing import Any
 
+import numpy as np
+
 from workhold.errors import InputError
-from workhold.files.outline.chain import Drawing
+from workhold.files.apart import run_apart
+from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import SAME_HEIGHT, Layer, SolidFace, layers_of, solid_faces
 from workhold.files.step.library import load_step_library
 from workhold.files.step.regions import GAP, Borders, area_of, borders, level_region, section, union
 from workhold.files.step.solids import AXES, along, chosen_solid, lost_remarks, read_solids, solid_remarks, sub_shapes
+from workhold.geometry.segment import Line, segment_rows
+from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["read_step"]
+__all__ = ["read_step", "read_step_apart"]
 
 # Shares by which the volume of a solid and that of its layers may differ; the library integrates free-form faces roughly.
 SAME_VOLUME, FREE_VOLUME = 1e-5, 1e-2
+
+
+def read_step_apart(content: bytes, **options: Any) -> Drawing:
+    """What :func:`read_step` reads, in a process of its own: damaged files bring the library down, or keep it busy forever.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_step`, and for a file that the process does not survive.
+    """
+    told = run_apart(__name__, content, options, "the STEP file")
+    chains = [
+        Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels)) for points, bulges, labels in told[0]
+    ]
+    return Drawing(tuple(chains), tuple(told[1]))
+
+
+def prepare() -> None:
+    """Load the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
+    load_step_library()
+    rows = segment_rows([Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))])
+    is_inside(0.2, 0.2, rows)
+    outline_distances(np.zeros((1, 2)), rows)
+
+
+def plain(content: bytes, **options: Any) -> Any:
+    """Chains and remarks of :func:`read_step` as plain data.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_step`, and where the library or the arithmetic after it fails over what it was given.
+    """
+    try:
+        drawing = read_step(content, **options)
+    except (ArithmeticError, LookupError, RuntimeError, TypeError) as error:
+        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+    except Exception as error:
+        if not type(error).__module__.startswith("OCP"):
+            raise
+        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+    return [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains], drawing.remarks
 
 
 def read_step(

@@ -1,0 +1,167 @@
+"""Work on foreign data in a process of its own, for libraries that a damaged file brings down.
+
+Whatever happens to the process, its starter goes on: a crash, a time-out and a lack of memory each become one sentence.
+The process is started through pipes rather than by ``multiprocessing``, so that it works from any script, and its answer
+is JSON, which cannot do anything. It ends with its starter, also where that is killed, and where a library is deaf to
+signals.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from importlib import import_module
+from threading import Timer
+from typing import Any
+
+from workhold.errors import InputError
+
+__all__ = ["limit_memory", "limit_processor", "run_apart"]
+
+# Address space that the libraries themselves take is a third of this; a large file needs some fifty times its size.
+MEMORY_BYTES, MEMORY_FACTOR = 5 << 29, 50
+# Processor seconds for any file, and for every million bytes of it.
+SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
+# Wall time is longer, since the machine may be busy, and the program's own code may have to be compiled.
+WALL_FACTOR = 10.0
+START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); from workhold.files.apart import answer; answer()"
+
+
+def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
+    """The plain data that ``module.plain(content, **options)`` returns, after ``module.prepare()``, in a process of its own.
+
+    Parameters
+    ----------
+    module : its full name; ``prepare`` loads what the work needs and has no limit of time.
+    content : foreign data.
+    options : plain data.
+    what : the data, in words that begin a sentence.
+
+    Raises
+    ------
+    InputError
+        What the work raises, or a sentence that the process crashed, took too long or took too much memory.
+    """
+    seconds = SECONDS + SECONDS_PER_MILLION * len(content) / 1e6
+    memory = MEMORY_BYTES + MEMORY_FACTOR * len(content)
+    order = {"module": module, "options": dict(options), "seconds": seconds, "memory": memory, "size": len(content)}
+    # The same modules as here, and none from the folder that happens to be the current one.
+    command = [sys.executable, "-P", "-c", f"import sys; sys.path[:] = sys.argv[1:]; {START}", *sys.path]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        assert process.stdin is not None and process.stdout is not None
+        clock = Timer(WALL_FACTOR * seconds, process.kill)
+        clock.start()
+        try:
+            with suppress(BrokenPipeError):
+                process.stdin.write(json.dumps(order).encode() + b"\n" + content)
+                process.stdin.flush()
+            # Its pipe stays open until it has answered: the process ends when it closes.
+            told = process.stdout.read()
+            process.wait()
+        finally:
+            process.kill()
+            clock.cancel()
+            with suppress(BrokenPipeError):
+                process.stdin.close()
+    return outcome(told, process.returncode, seconds, memory, what)
+
+
+def outcome(told: bytes, code: int, seconds: float, memory: int, what: str) -> Any:
+    """What a process that has ended answered.
+
+    Raises
+    ------
+    InputError
+        See :func:`run_apart`.
+    """
+    kind, value = "", None
+    with suppress(ValueError):
+        kind, value = json.loads(told)
+    if kind == "done":
+        return value
+    if kind == "refused":
+        raise InputError(value)
+    if kind == "fault":
+        raise RuntimeError(f"in the process that reads {what}:\n{value}")
+    if kind == "memory":
+        raise InputError(f"{what} needs more than {memory / 1e9:.1f} GB of memory to read: save less in it.")
+    if code in (-getattr(signal, "SIGXCPU", 0), -getattr(signal, "SIGKILL", 0)):
+        raise InputError(
+            f"{what} was given up after {seconds:.0f} s of reading: it is damaged, or holds too much; save less in it."
+        )
+    raise InputError(f"{what} is damaged so that the library that reads it breaks down: save it anew.")
+
+
+def answer() -> None:
+    """Do the work that stands on standard input and write its outcome to standard output; the process's main function."""
+    # Libraries write what they like to the usual output, which nobody reads from now on.
+    out = os.dup(1)
+    os.dup2(2, 1)
+    order = json.loads(sys.stdin.buffer.readline())
+    content = sys.stdin.buffer.read(order["size"])
+    end_with_starter()
+    try:
+        limit_memory(order["memory"])
+        told = ("done", worked(order, content))
+    except InputError as error:
+        told = ("refused", str(error))
+    except MemoryError:
+        told = ("memory", "")
+    except Exception:
+        import traceback
+
+        told = ("fault", traceback.format_exc())
+    with os.fdopen(out, "wb") as stream:
+        stream.write(json.dumps(told).encode())
+    # A library that a damaged file has upset may break down while it tidies up.
+    os._exit(0)
+
+
+def worked(order: Mapping[str, Any], content: bytes) -> Any:
+    """The result of an order's work."""
+    module = import_module(order["module"])
+    prepare: Callable[[], None] = module.prepare
+    prepare()
+    limit_processor(order["seconds"])
+    return module.plain(content, **order["options"])
+
+
+def end_with_starter() -> None:
+    """Let the system end this process when its starter has closed the pipe to it, whatever either is doing."""
+    if sys.platform == "win32":
+        return
+    import fcntl
+
+    # The default action of SIGIO, which comes when the other end of the pipe closes, is to end the process.
+    fcntl.fcntl(0, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(0, fcntl.F_SETFL, fcntl.fcntl(0, fcntl.F_GETFL) | os.O_ASYNC)
+
+
+def limit_memory(size: int) -> None:
+    """Let the process take no more address space than this, where the system can see to it."""
+    try:
+        import resource
+    except ImportError:
+        return
+    most = resource.getrlimit(resource.RLIMIT_AS)[1]
+    size = size if most == resource.RLIM_INFINITY else min(size, most)
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def limit_processor(seconds: float) -> None:
+    """Let the system end the process when it has taken so many processor seconds from now on."""
+    try:
+        import resource
+    except ImportError:
+        return
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    soft = int(used.ru_utime + used.ru_stime + seconds) + 1
+    soft = soft if most == resource.RLIM_INFINITY else min(soft, most)
+    resource.setrlimit(resource.RLIMIT_CPU, (soft, most))

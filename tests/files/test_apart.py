@@ -1,0 +1,109 @@
+"""Work in a process of its own: whatever becomes of the process, its starter gets an answer or one sentence."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from workhold.errors import InputError
+from workhold.files import apart
+from workhold.files.apart import run_apart
+
+# A module whose work is what its content says.
+MODULE = """
+import os, signal, sys, time
+from pathlib import Path
+from workhold.errors import InputError
+def prepare(): pass
+def plain(content, **options):
+    if content == b"crash": os.kill(os.getpid(), signal.SIGSEGV)
+    if content == b"loop":
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        while True: pass
+    if content == b"hog": return len(bytearray(1 << 40))
+    if content == b"refuse": raise InputError("this is refused.")
+    if content == b"fault": raise ValueError("a mistake")
+    if content == b"noise": os.write(1, b"words of a library")
+    if content == b"sleep":
+        Path(options["place"]).write_text(str(os.getpid()))
+        time.sleep(100)
+    return [len(content), options]
+"""
+
+
+@pytest.fixture
+def work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A module, on the path of this process only, that does what its content says."""
+    (tmp_path / "foreign_work.py").write_text(MODULE)
+    monkeypatch.syspath_prepend(tmp_path)
+    return "foreign_work"
+
+
+def test_content_and_options_go_there_and_plain_data_come_back(work: str) -> None:
+    """A megabyte passes through the pipes, and what a library prints does not mix with the answer."""
+    assert run_apart(work, b"x" * 1_000_000, {"axis": None}, "the file") == [1_000_000, {"axis": None}]
+    assert run_apart(work, b"noise", {}, "the file") == [5, {}]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"crash", "the file is damaged so that the library that reads it breaks down: save it anew."),
+        (b"loop", "the file was given up after 1 s of reading: it is damaged, or holds too much; save less in it."),
+        (b"hog", "the file needs more than 2.7 GB of memory to read: save less in it."),
+        (b"refuse", "this is refused."),
+    ],
+)
+def test_every_bad_end_is_one_sentence(work: str, monkeypatch: pytest.MonkeyPatch, content: bytes, said: str) -> None:
+    """A crash, an endless loop deaf to SIGTERM, a lack of memory, and a refusal of the work itself."""
+    monkeypatch.setattr(apart, "SECONDS", 0.9)
+    with pytest.raises(InputError) as caught:
+        run_apart(work, content, {}, "the file")
+    assert str(caught.value) == said
+
+
+def test_a_mistake_of_the_program_stays_one(work: str) -> None:
+    """It is no fault of the file's, and its traceback is told."""
+    with pytest.raises(RuntimeError, match="a mistake"):
+        run_apart(work, b"fault", {}, "the file")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_the_process_ends_with_its_starter(work: str, tmp_path: Path, number: int) -> None:
+    """Ctrl-C, SIGTERM and SIGKILL of the starter alone leave no process behind."""
+    place = tmp_path / "number"
+    script = tmp_path / "starter.py"
+    # No ``if __name__ == "__main__"``.
+    script.write_text(
+        f"from workhold.files.apart import run_apart\nrun_apart('foreign_work', b'sleep', {{'place': {str(place)!r}}}, '')"
+    )
+    starter = subprocess.Popen([sys.executable, script], stderr=subprocess.DEVNULL)
+    wait_until(lambda: place.exists() and place.read_text() != "")
+    starter.send_signal(number)
+    assert starter.wait(20) != 0
+    wait_until(lambda: not is_alive(int(place.read_text())))
+
+
+def wait_until(holds) -> None:  # type: ignore[no-untyped-def]
+    """Wait until a condition holds, half a minute at most."""
+    end = time.monotonic() + 30
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def is_alive(number: int) -> bool:
+    """Whether there is a process of a number that has not ended."""
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    stat = Path(f"/proc/{number}/stat")
+    return not (stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z")
