@@ -35,7 +35,7 @@ def compile_kernels(cancel: Event) -> None:
     silent = subprocess.DEVNULL
     path = os.pathsep.join(entry for entry in sys.path if entry)
     process = subprocess.Popen(
-        [sys.executable, "-c", SECOND_PROCESS],
+        [sys.executable, "-P", "-c", SECOND_PROCESS],
         env={**os.environ, "PYTHONPATH": path},
         stdin=silent,
         stdout=silent,

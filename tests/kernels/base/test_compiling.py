@@ -75,6 +75,34 @@ def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
     assert blocked.read_text() == "not a folder"
 
 
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize(
+    "damage", [lambda old: b"", lambda old: old[: len(old) // 2], lambda old: bytes(len(old)), lambda old: old[::-1]]
+)
+def test_a_damaged_cache_is_thrown_away_and_made_anew(copy, tmp_path, ending, damage):
+    """Empty, halved, zeroed and garbled files, as a loss of power leaves them: same answer, and whole files afterwards."""
+    cache = tmp_path / "cache"
+    run(copy, cache)
+    whole = {path: path.read_bytes() for path in cache.rglob(f"*.{ending}")}
+    assert whole
+    for path, content in whole.items():
+        path.write_bytes(damage(content))
+    assert run(copy, cache) == pytest.approx(5.0, abs=1e-8)
+    assert all(path.read_bytes() != damage(content) for path, content in whole.items())
+
+
+def test_a_process_that_belongs_to_no_user_does_without_a_cache(monkeypatch):
+    """Where no home folder can be told, nothing is stored and nothing fails."""
+    for name in ("WORKHOLD_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+
+    def nobody(path: Path) -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "expanduser", nobody)
+    assert compiling.cache_folder.__wrapped__() is None
+
+
 def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
     """Any change of any source, and any new source, changes the hash; the same sources give the same hash."""
     package = tmp_path / "kernels"

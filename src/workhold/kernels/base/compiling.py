@@ -8,10 +8,12 @@ change of any source starts a new folder. Where no folder can be written, kernel
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, cached_property
 from hashlib import sha256
 from pathlib import Path
@@ -20,7 +22,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config as numba_config
-from numba.core.caching import FunctionCache, NullCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.runtime.nrt import rtsys
 
 __all__ = ["cache_folder", "compiled", "inner", "is_first_run"]
@@ -28,6 +30,8 @@ __all__ = ["cache_folder", "compiled", "inner", "is_first_run"]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FOLDERS_KEPT = 3
+# Bytes of the hash in front of machine code.
+SEAL = 32
 # Whether kernels that only kernels call are made callable from Python too, for tests; it takes longer to compile.
 ALL_CALLABLE = os.environ.get("WORKHOLD_KERNELS") == "callable"
 # The module and the kernel that every search compiles, and that takes longest.
@@ -56,8 +60,8 @@ def user_cache() -> Path:
 @cache
 def cache_folder() -> Path | None:
     """The folder for the compiled code of exactly these sources, or None where nothing can be written."""
-    folder = user_cache() / f"kernels-{source_hash()}"
     try:
+        folder = user_cache() / f"kernels-{source_hash()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -87,12 +91,49 @@ def is_first_run() -> bool:
     return folder is None or next(folder.rglob(f"{'.'.join(LONGEST_KERNEL)}-*.nbi"), None) is None
 
 
+class SealedFile(IndexDataCacheFile):
+    """Numba's files of one function's cache, where a damaged one (a loss of power leaves empty and halved files) is as none.
+
+    Machine code stands behind its hash, because running damaged code would end the process.
+    """
+
+    def _load_index(self) -> Any:
+        """The index; empty where it is missing or damaged, so that it is made anew."""
+        try:
+            return super()._load_index()  # type: ignore[no-untyped-call]
+        except Exception:
+            return {}
+
+    def _save_data(self, name: str, data: Any) -> None:
+        """Write machine code behind its hash."""
+        content = self._dump(data)  # type: ignore[no-untyped-call]
+        with self._open_for_write(self._data_path(name)) as stream:  # type: ignore[no-untyped-call]
+            stream.write(sha256(content).digest() + content)
+
+    def _load_data(self, name: str) -> Any:
+        """Machine code; what numba takes for a missing file where it is not what was written."""
+        content = Path(self._data_path(name)).read_bytes()  # type: ignore[no-untyped-call]
+        seal, content = content[:SEAL], content[SEAL:]
+        if sha256(content).digest() != seal:
+            raise FileNotFoundError(name)
+        return pickle.loads(content)
+
+
 class StoredCode(FunctionCache):
-    """Numba's cache of one function, without the wait before machine code is read.
+    """Numba's cache of one function, whose files are sealed, without the wait before machine code is read.
 
     Numba would first set up all it needs to compile, a fifth of a second. Code that is there needs only the allocator of
     arrays; where it is not there, the compiler sets up the rest itself.
     """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        self._cache_file.__class__ = SealedFile
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Store machine code, unless the disk is full or does not let it."""
+        with suppress(OSError):
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code stored for a signature, or None."""
@@ -119,7 +160,7 @@ class LateCache:
             before = config.CACHE_DIR
             config.CACHE_DIR = str(self.folder)
             try:
-                return StoredCode(self.function)  # type: ignore[no-untyped-call]
+                return StoredCode(self.function)
             except RuntimeError:
                 return NullCache()
             finally:
