@@ -159,8 +159,8 @@ def expected(result: Result) -> list[tuple[Key, float]]:
     for fixture in (f for f in result if f.type == "I"):
         jaws, sliding_pair = [], False
         for p, q in (fixture.pegs[:2], fixture.pegs[2:]):
-            jaws.append((p.segment, q.segment, q.column - p.column, q.row - p.row))
-            directions = [getattr(lines[peg.segment], "tangent", None) for peg in (p, q)]
+            jaws.append((p.face, q.face, q.column - p.column, q.row - p.row))
+            directions = [getattr(lines[peg.face], "tangent", None) for peg in (p, q)]
             one, two = directions
             sliding_pair |= bool(one and two and abs(one[0] * two[1] - one[1] * two[0]) <= 1e-9)
         behind = (-np.radians(fixture.pose.theta_deg) - FIRST_ORIENTATION) % tau

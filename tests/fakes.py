@@ -23,16 +23,14 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
     """A result of ``count`` made-up fixtures, about a third of them of type II, ranked by closure margin."""
     random = np.random.default_rng(seed)
     vise = Vise(pitch=(10, 12.7), columns=3, peg_radius=3, row_offset=1 / 3)
-    kind = random.choice([1, 1, 2], count).astype(np.int8)
-    jaw = np.array([[0, 0, 1, 1], [0, 0, 0, 1]], np.int8)[kind - 1]
+    arrangement = random.choice([0, 0, 1], count).astype(np.int8)
     null_vector = random.dirichlet([2, 2, 2, 2], count).reshape(count, 4)
     null_vector = null_vector[np.argsort(-null_vector.min(axis=1))]
     table = FixtureTable(
-        type=kind,
-        jaw=jaw,
+        arrangement=arrangement,
         column=random.integers(0, 3, (count, 4)).astype(np.int32),
         row=random.integers(0, 30, (count, 4)).astype(np.int32),
-        segment=random.choice([face.number for face in plate().faces], (count, 4)).astype(np.int32),
+        face=random.choice([face.number for face in plate().faces], (count, 4)).astype(np.int32),
         theta=random.uniform(0, 2 * np.pi, count),
         position=random.uniform(-100, 100, (count, 2)),
         jaw_separation=random.uniform(10, 80, count),
@@ -40,7 +38,7 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
         force=null_vector / random.uniform(0.1, 0.5, (count, 1)),
         quality=fake_quality(null_vector, random),
     )
-    counts = {"I": int((kind == 1).sum()), "II": int((kind == 2).sum())}
+    counts = vise.arrangements_counted(arrangement)
     result = Result(plate(), vise, table, counts, {"I": counts["I"] // 2, "II": counts["II"] // 2})
     for name, value in changes.items():
         object.__setattr__(result, name, value)

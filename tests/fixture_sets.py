@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from math import pi, radians, tau
+from math import dist, pi, radians, tau
 from typing import Any
 
 import numpy as np
@@ -21,8 +21,7 @@ def listed(fixtures: Iterable[Fixture]) -> list[Listed]:
         {
             "type": f.type,
             "pegs": [
-                {"jaw": p.jaw, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.segment}
-                for p in f.pegs
+                {"jaw": p.jaw, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.face} for p in f.pegs
             ],
             "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
             "jaw_separation": f.jaw_separation,
@@ -60,10 +59,11 @@ class Judge:
         """Faults of a fixture, and whether it is within 1e-6 of a rule's edge."""
         return check_result.check(fixture, self.vise, self.by_loop, self.segments, self.face, self.runs)  # type: ignore[no-any-return]
 
-    def identity(self, fixture: Listed) -> tuple[Any, float]:
-        """What names a fixture: its pattern of faces and holes, and its orientation in radians."""
-        key, sign = check_result.canonical(fixture["pegs"], self.face, *self.vise["pitch"])
-        return key, (radians(fixture["pose"]["theta_deg"]) + (0 if sign == 1 else pi)) % tau
+    def identity(self, fixture: Listed) -> tuple[Any, float, tuple[float, float]]:
+        """What names a fixture: its pattern of faces and holes, its orientation in radians, its place on the part in mm."""
+        key, sign = check_result.canonical(fixture["pegs"], self.face, *self.vise["pitch"], self.vise["row_offset"])
+        theta = (radians(fixture["pose"]["theta_deg"]) + (0 if sign == 1 else pi)) % tau
+        return key, theta, tuple(check_result.on_part(fixture))  # type: ignore[return-value]
 
 
 def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
@@ -81,14 +81,14 @@ def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
 
 def missing(ours: list[Listed], expected: list[Listed], judge: Judge) -> list[Listed]:
     """Expected fixtures that are not among ours and are not marginal; both are given for the judge's part and vise."""
-    have: dict[Any, list[float]] = {}
+    have: dict[Any, list[tuple[float, tuple[float, float]]]] = {}
     for fixture in ours:
-        key, theta = judge.identity(fixture)
-        have.setdefault(key, []).append(theta)
+        key, *pose = judge.identity(fixture)
+        have.setdefault(key, []).append(tuple(pose))
     lost = []
     for fixture in expected:
-        key, theta = judge.identity(fixture)
-        found = any(abs((theta - t + pi) % tau - pi) < 1e-5 for t in have.get(key, []))
+        key, theta, place = judge.identity(fixture)
+        found = any(abs((theta - t + pi) % tau - pi) < 1e-5 and dist(place, p) < 1e-5 for t, p in have.get(key, []))
         if not found and not judge.check(fixture)[1] and not near_an_end(judge, fixture):
             lost.append(fixture)
     return lost

@@ -83,7 +83,7 @@ def contacts(fixture: Fixture, workpiece: Workpiece, radius: float) -> tuple[Arr
     for peg in fixture.pegs:
         x, y = peg.x - fixture.pose.x, peg.y - fixture.pose.y
         center = (cos(angle) * x + sin(angle) * y, cos(angle) * y - sin(angle) * x)
-        segment = segments[peg.segment]
+        segment = segments[peg.face]
         normal = np.array(segment.normal(segment.parameter(center)))
         normals.append(normal)
         points.append(np.array(center) - radius * normal)

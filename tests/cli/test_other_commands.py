@@ -28,9 +28,7 @@ def test_show_tells_all_that_has_to_be_set(run: Any, result_file: Path) -> None:
     assert f"turned by {fixture.pose.theta_deg:.3f} degrees" in outcome.stdout
     for peg in fixture.pegs:
         row = next(line for line in outcome.stdout.splitlines() if line.split()[:1] == [peg.hole])
-        assert row.split() == [
-            *(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.segment), f"{peg.force:.3f}")
-        ]
+        assert row.split() == [*(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.face), f"{peg.force:.3f}")]
 
 
 @pytest.mark.parametrize(("name", "start"), [("a.svg", b"<"), ("a.PNG", b"\x89PNG")])

@@ -23,11 +23,10 @@ def diamond_result() -> Result:
     fixture, workpiece, vise = diamond()
     null_vector = np.full((1, 4), 0.25)
     table = FixtureTable(
-        type=np.ones(1, np.int8),
-        jaw=np.array([[peg.jaw == "right" for peg in fixture.pegs]], np.int8),
+        arrangement=np.zeros(1, np.int8),
         column=np.array([[peg.column for peg in fixture.pegs]], np.int32),
         row=np.array([[peg.row for peg in fixture.pegs]], np.int32),
-        segment=np.array([[peg.segment for peg in fixture.pegs]], np.int32),
+        face=np.array([[peg.face for peg in fixture.pegs]], np.int32),
         theta=np.radians([fixture.pose.theta_deg]),
         position=np.array([[fixture.pose.x, fixture.pose.y]]),
         jaw_separation=np.array([fixture.jaw_separation]),

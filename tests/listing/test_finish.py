@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve
 
 from candidate_examples import candidates
-from workhold.listing.canonical_form import canonical_form, changes, listed_once, packed, twins
+from workhold.listing.canonical_form import canonical_form, changes, listed_once, packed
 
 
 def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
@@ -21,17 +21,28 @@ def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
 
 
 def test_same_holes_and_orientation_in_two_places_are_two() -> None:
-    """The same holes and orientation with the part elsewhere is another fixture; with the same faces it is a twin."""
+    """The same holes, faces and orientation with the part elsewhere is another fixture; which comes first does not depend
+    on the order in which they were found."""
     both = candidates(2)
     point = both.point.copy()
     point[1] += [1.0, -2.0]
-    both = evolve(both, point=point, null=np.array([[0.1, 0.2, 0.3, 0.4], [0.25, 0.25, 0.25, 0.25]]))
-    kept = listed_once(both)
-    assert len(kept.kind) == 2
-    sets = twins(kept, kept.feature)
-    assert kept.null[sets.first].min() == 0.25
-    assert len(sets.others) == 1
-    assert sets.owner.tolist() == [0]
+    both = evolve(both, point=point)
+    for order in ([0, 1], [1, 0], [1, 0, 1]):
+        assert listed_once(both.take(np.array(order))).point[:, 0].tolist() == [[1.0, -2.0], [0.0, 0.0]]
+
+
+def test_fixtures_are_in_the_order_of_types_holes_orientation_faces_and_place() -> None:
+    """Each of these counts only where those before it are equal."""
+    many = candidates(6)
+    kind, row, theta, feature, point = (
+        getattr(many, name).copy() for name in ("kind", "row", "theta", "feature", "point")
+    )
+    kind[5], row[4, 0], theta[3], feature[2, 0], point[1] = 2, 1, 0.6, 1, point[1] + 5.0
+    # So that each but the first would come first by what counts less.
+    point[2:] -= 5.0 * np.arange(1, 5)[:, None, None]
+    many = evolve(many, kind=kind, row=row, theta=theta, feature=feature, point=point)
+    listed = listed_once(many.take(np.array([3, 5, 1, 0, 4, 2])))
+    assert np.array_equal(listed.point, point)
 
 
 def test_half_turn_swaps_the_jaws_to_one_form() -> None:

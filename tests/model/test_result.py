@@ -7,7 +7,7 @@ import pytest
 
 from fakes import fake_result
 from workhold.model.fixture import Fixture
-from workhold.model.result import FixtureTable, hole_position
+from workhold.model.result import FixtureTable
 
 
 def test_a_result_is_a_sequence():
@@ -38,10 +38,10 @@ def test_fixtures_repeat_their_row_of_the_table():
         lefts = 2 if fixture.type == "I" else 3
         assert [peg.jaw for peg in fixture.pegs] == ["left"] * lefts + ["right"] * (4 - lefts)
         for m, peg in enumerate(fixture.pegs):
-            jaw = int(result.table.jaw[k, m])
-            place = hole_position(result.vise, jaw, peg.column, peg.row, fixture.jaw_separation)
-            assert (peg.x, peg.y) == pytest.approx(place)
-            assert peg.segment == result.table.segment[k, m] and peg.force == result.table.force[k, m]
+            left, right = result.vise.carriers
+            carrier = left if peg.jaw == "left" else right
+            assert (peg.x, peg.y) == carrier.place(peg.column, peg.row, fixture.jaw_separation)
+            assert peg.face == result.table.face[k, m] and peg.force == result.table.force[k, m]
         assert np.radians(fixture.pose.theta_deg) == pytest.approx(result.table.theta[k])
         assert fixture.quality["closure_margin"] == result.table.null_vector[k].min()
 

@@ -75,7 +75,7 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
         with ctx.workprec(256):
             faces = Outline.of(part).faces
             contacts = [
-                Contact(hole_place(peg, vise), int(peg.jaw == "right"), faces[peg.segment], arb(vise.peg_radius))
+                Contact(hole_place(peg, vise), int(peg.jaw == "right"), faces[peg.face], arb(vise.peg_radius))
                 for peg in fixture.pegs
             ]
             zero = certified_zero(partial(contact_system, contacts), start)

@@ -13,7 +13,7 @@ from workhold.files.result.writer import write_result
 from workhold.listing.best import BestFixtures
 from workhold.search.toolkit_search import ViseSearch
 
-# Parts with ties, twins, sliding pairs and coincidences; how many to keep.
+# Parts with ties, equal holes in two places, sliding pairs and coincidences; how many to keep.
 CASES = [
     ("widget", Vise(pitch=8, columns=2, peg_radius=3), 7),
     ("flange", Vise(pitch=10, columns=2, peg_radius=3), 40),
@@ -85,7 +85,7 @@ def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: py
 
 
 def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Between blocks no more candidates are held than the best, those that tie with the last, and twins."""
+    """Between blocks no more candidates are held than the best and those that tie with the last."""
     held: list[int] = []
     decide = BestFixtures.decide
 

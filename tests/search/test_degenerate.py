@@ -95,10 +95,10 @@ def test_a_contact_exactly_at_a_tangent_joint_is_listed_once() -> None:
         if abs(fixture.pose.theta_deg) < 1e-6
         and abs(fixture.pose.x - 1) < 1e-6
         and [peg.row for peg in fixture.pegs] == [0, 1, 0, 1]
-        and [peg.segment for peg in fixture.pegs[2:]] == [1, 2]
+        and [peg.face for peg in fixture.pegs[2:]] == [1, 2]
     ]
     assert len(straight) == 1
-    assert {peg.segment for peg in straight[0].pegs[:2]} <= {4, 5}
+    assert {peg.face for peg in straight[0].pegs[:2]} <= {4, 5}
 
 
 def test_a_seam_of_a_whole_circle_is_nowhere() -> None:

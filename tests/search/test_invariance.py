@@ -160,5 +160,5 @@ def test_number_of_threads_changes_nothing(name: str) -> None:
 
     vise = Vise(pitch=10, columns=3, peg_radius=3)
     one, three = (design(load(name), vise, threads=threads).table for threads in (1, 3))
-    for field in ("type", "jaw", "column", "row", "segment", "theta", "position", "jaw_separation", "null_vector"):
+    for field in ("arrangement", "column", "row", "face", "theta", "position", "jaw_separation", "null_vector"):
         assert np.array_equal(getattr(one, field), getattr(three, field))

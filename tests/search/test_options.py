@@ -14,7 +14,7 @@ from workhold import InputError, Result, Vise, design, load
 def keys(result: Result) -> list[object]:
     """Identities of all listed fixtures, sorted."""
     judge = Judge(result.workpiece, result.vise)
-    return sorted((key, round(theta, 6)) for key, theta in map(judge.identity, listed(result)))
+    return sorted((key, round(theta, 6)) for key, theta, _ in map(judge.identity, listed(result)))
 
 
 def vise(**changes: object) -> Vise:
@@ -45,7 +45,7 @@ def test_max_opening_moves_pegs_outward_or_forbids(free: Result) -> None:
     limited = design(free.workpiece, vise(max_opening=most))
     separation = limited.table.jaw_separation
     assert ((separation <= most + 1e-6) & (separation >= 10.0 - 1e-6)).all()
-    left = free.table.jaw == 0
+    left = free.vise.peg_carriers(free.table.arrangement) == 0
     span_left = np.where(left, free.table.column, 1).min(axis=1)
     span_right = 1 - np.where(left, 0, free.table.column).max(axis=1)
     needed = np.maximum(np.ceil((free.table.jaw_separation - most) / 10.0 - 1e-9), 0)
@@ -175,7 +175,7 @@ def test_distinct_counts_by_brute_force(name: str) -> None:
                 "pegs": [peg | {"segment": (peg["segment"] + 2 * k) % 8} if k else peg for peg in fixture["pegs"]],
                 "pose": fixture["pose"] | {"theta_deg": fixture["pose"]["theta_deg"] - 90.0 * k},
             }
-            key, theta = judge.identity(moved)
+            key, theta, _ = judge.identity(moved)
             images.append((str(key), round(theta, 4) % 6.2832, round(fixture["jaw_separation"], 4)))
         if not seen & set(images):
             sets[fixture["type"]] += 1

@@ -19,7 +19,7 @@ def identity(fixture: Any) -> tuple[Any, ...]:
     """What tells fixtures apart."""
     return (
         tuple(peg.hole for peg in fixture.pegs),
-        tuple(peg.segment for peg in fixture.pegs),
+        tuple(peg.face for peg in fixture.pegs),
         round(fixture.pose.theta_deg, 6),
     )
 

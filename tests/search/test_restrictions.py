@@ -39,7 +39,7 @@ def identities(result: Result, chosen: list[bool] | None = None) -> list[Key]:
     found = [judge.identity(fixture) for fixture in listed(result)]
     if chosen is not None:
         found = [identity for identity, is_chosen in zip(found, chosen, strict=True) if is_chosen]
-    return sorted((key, round(theta, 6)) for key, theta in found)
+    return sorted((key, round(theta, 6)) for key, theta, _ in found)
 
 
 def peg_places(fixture: Fixture) -> list[tuple[float, float]]:
@@ -54,7 +54,7 @@ def test_avoided_faces_are_not_touched_and_nothing_else_is_lost(free: Result) ->
     """What is left are exactly the fixtures that never touched them."""
     avoid = (1, 4)
     limited = design(free.workpiece, free.vise, restrictions=Restrictions(avoid=avoid))
-    chosen = [not any(peg.segment in avoid for peg in fixture.pegs) for fixture in free]
+    chosen = [not any(peg.face in avoid for peg in fixture.pegs) for fixture in free]
     assert 0 < sum(chosen) < len(free)
     assert identities(limited) == identities(free, chosen)
     assert limited.statistics["features"] < free.statistics["features"]
@@ -205,7 +205,7 @@ def test_any_segment_of_a_face_names_it() -> None:
     square = Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [60, 0, 0], [60, 50, 0], [0, 50, 0]]])
     for number in (0, 1):
         result = design(square, vise(), restrictions=Restrictions(avoid=(number,)))
-        assert len(result) == 0 or not (result.table.segment == 0).any()
+        assert len(result) == 0 or not (result.table.face == 0).any()
 
 
 @pytest.mark.parametrize(

@@ -37,8 +37,8 @@ def resting_on(result: Result, *faces: int) -> int:
     """How many fixtures have one jaw's pegs on all the given faces."""
     table = result.table
     count = 0
-    for jaws, segments in zip(table.jaw, table.segment, strict=True):
-        count += any(set(faces) <= set(segments[jaws == jaw].tolist()) for jaw in (0, 1))
+    for jaws, touched in zip(result.vise.peg_carriers(table.arrangement), table.face, strict=True):
+        count += any(set(faces) <= set(touched[jaws == jaw].tolist()) for jaw in (0, 1))
     return count
 
 
@@ -154,8 +154,8 @@ def test_a_concave_arc_a_hair_larger_or_smaller_than_a_peg(family: Family, play:
     assert_engines_agree(near)
     hidden = {3, 4, 5} if family is parts.slotted else set[int]()
     if hidden and play < -1e-8:
-        assert not hidden & set(near.table.segment.ravel().tolist())
-    stays = [f for f in open_wide if play > 1e-8 or not hidden & {peg.segment for peg in f.pegs}]
+        assert not hidden & set(near.table.face.ravel().tolist())
+    stays = [f for f in open_wide if play > 1e-8 or not hidden & {peg.face for peg in f.pegs}]
     carried = parts.carried_over(stays, part, vise)
     assert {c.verdict for c in carried} == {"proven"}
     assert missing(listed(near), listed([c.fixture for c in carried]), Judge(part, vise)) == []
@@ -300,9 +300,9 @@ def test_a_ring_held_from_inside_and_outside() -> None:
     vise = Vise(pitch=10, columns=1, peg_radius=3)
     result = design(parts.ring(8.0), vise)
     assert result.counts == {"I": 14, "II": 26}
-    inside = result.table.segment == 2
+    inside = result.table.face == 2
     assert (inside.sum(axis=1) == 2).all()
-    on_left = (inside & (result.table.jaw == 0)).sum(axis=1)
-    assert (on_left[result.table.type == 1] == 1).sum() == 2
+    on_left = (inside & (vise.peg_carriers(result.table.arrangement) == 0)).sum(axis=1)
+    assert (on_left[result.table.arrangement == 0] == 1).sum() == 2
     assert_holds(result)
     assert_engines_agree(result)

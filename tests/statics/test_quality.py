@@ -63,7 +63,7 @@ class TestHeld:
             points, normals = contacts(fixture, result.workpiece, radius)
             centers = points + radius * normals
             walks = [
-                walk(result.workpiece, radius, peg.segment, center)
+                walk(result.workpiece, radius, peg.face, center)
                 for peg, center in zip(fixture.pegs, centers, strict=True)
             ]
             assert found == pytest.approx(min(walks), abs=1e-5)
@@ -75,8 +75,8 @@ class TestHeld:
         points = silhouette(result.workpiece)
         for fixture, found in list(zip(result, quality[:, LOCATION_ERROR], strict=True))[::2]:
             moves = np.array([movement(fixture, result, points, peg) for peg in range(4)])
-            faces = sorted({peg.segment for peg in fixture.pegs})
-            shares = np.array([[peg.segment == face for peg in fixture.pegs] for face in faces], float)
+            faces = sorted({peg.face for peg in fixture.pegs})
+            shares = np.array([[peg.face == face for peg in fixture.pegs] for face in faces], float)
             generators = np.concatenate([tolerance.peg * moves, tolerance.face * np.tensordot(shares, moves, axes=1)])
             corners = np.array(list(product((-1.0, 1.0), repeat=len(generators))))
             worst = np.linalg.norm(np.tensordot(corners, generators, axes=1), axis=2).max()
@@ -168,8 +168,7 @@ def solved(fixture: Fixture, result: Result, off: int, error: float) -> Array:
     """Orientation, place and opening of the jaws (4,) when one peg stands off by an error in mm, without first order."""
     segments = {face.number: face.segment for face in result.workpiece.faces}
     pegs = [
-        (peg.x, peg.y, peg.jaw == "right", segments[peg.segment], error * (k == off))
-        for k, peg in enumerate(fixture.pegs)
+        (peg.x, peg.y, peg.jaw == "right", segments[peg.face], error * (k == off)) for k, peg in enumerate(fixture.pegs)
     ]
     radius = result.vise.peg_radius
 

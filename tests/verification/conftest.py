@@ -25,7 +25,7 @@ def widget_result() -> Result:
     """Twelve fixtures of the widget in a vise with two columns, of both types."""
     result = design(load("widget"), Vise(pitch=8, columns=2, peg_radius=3))
     table = result.table
-    chosen = np.concatenate([np.flatnonzero(table.type == kind)[:600:100] for kind in (1, 2)])
+    chosen = np.concatenate([np.flatnonzero(table.arrangement == kind)[:600:100] for kind in (0, 1)])
     # Types apart, so in no order of quality.
     return attrs.evolve(result, table=table.take(chosen), ranking=())
 

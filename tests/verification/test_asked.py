@@ -36,7 +36,7 @@ def test_what_a_search_lists_keeps_what_was_asked(limited: Result) -> None:
 @pytest.mark.parametrize(
     ("restrictions", "words"),
     [
-        (lambda r: Restrictions(avoid=(r[0].pegs[2].segment,)), "which is to be avoided"),
+        (lambda r: Restrictions(avoid=(r[0].pegs[2].face,)), "which is to be avoided"),
         (lambda r: Restrictions(zones=(circle_zone(*r.workpiece.center, 500.0),)), "stands over a keep-out zone"),
         (lambda r: Restrictions(angles=((r[0].pose.theta_deg + 0.01, r[0].pose.theta_deg + 1),)), "outside the angles"),
     ],

@@ -195,8 +195,6 @@ def test_a_fixture_struck_out_or_listed_twice(verified: Verify) -> None:
     assert [(u.index, u.verdict, u.reason) for u in outcome.unproven] == [
         (12, "refuted", "it is the same as fixture 3")
     ]
-    outcome = verified(lambda data: data.update(twins=[data["fixtures"][2]]))
-    assert [(u.index, u.twin) for u in outcome.unproven] == [(0, True)]
 
 
 def test_loops_run_the_wrong_way(verified: Verify) -> None:

@@ -81,7 +81,7 @@ def fixture_of(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) ->
 
 def neighbour(random: Random, fixture: Fixture, vise: Vise, faces: list[int]) -> list[Hole] | None:
     """The holes and faces of a fixture with one or two of them changed."""
-    holes: list[Any] = [[peg.jaw, peg.column, peg.row, peg.segment] for peg in fixture.pegs]
+    holes: list[Any] = [[peg.jaw, peg.column, peg.row, peg.face] for peg in fixture.pegs]
     for _ in range(random.randint(1, 2)):
         hole = random.choice(holes)
         change = random.choice(["row", "column", "face"])

@@ -66,7 +66,7 @@ def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, res
     assert [row["rank"] for row in listed] == list(range(1, len(result) + 1))
     for row, fixture in zip(listed, result, strict=True):
         assert row["holes"] == [peg.hole for peg in fixture.pegs]
-        assert row["faces"] == [peg.segment for peg in fixture.pegs]
+        assert row["faces"] == [peg.face for peg in fixture.pegs]
         assert row["theta_deg"] == pytest.approx(fixture.pose.theta_deg, abs=1e-9)
         assert row["quality"] == pytest.approx(dict(fixture.quality))
 

@@ -90,7 +90,7 @@ def plural(count: int, word: str) -> str:
 def counts_sentence(result: Result) -> str:
     """How many fixtures there are, of which type, and how many differ under the part's symmetry."""
     total = sum(result.found.values())
-    kinds = ", ".join(f"{result.found[kind]} of type {kind}" for kind in ("I", "II"))
+    kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     sentence = (
         f"{plural(total, 'fixture')}: {kinds}; {sum(result.distinct.values())} distinct under the part's symmetry"
     )
@@ -142,7 +142,7 @@ def proof_counts(proof: Proof) -> str:
 
 def undecided_words(item: Undecided) -> str:
     """One undecided candidate: where it is and why."""
-    faces = ", ".join(str(face) for face in item.segments)
+    faces = ", ".join(str(face) for face in item.faces)
     return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
 
 
@@ -208,7 +208,7 @@ def fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit = MILLIME
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
     pegs = Table(("hole", "jaw", x, y, ">face", ">force per jaw force"))
     for peg in fixture.pegs:
-        pegs.add_row(peg.hole, peg.jaw, unit.number(peg.x), unit.number(peg.y), str(peg.segment), f"{peg.force:.3f}")
+        pegs.add_row(peg.hole, peg.jaw, unit.number(peg.x), unit.number(peg.y), str(peg.face), f"{peg.force:.3f}")
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {fixture.type}",

@@ -65,6 +65,5 @@ def unproven_sentences(outcome: Verification, count: int) -> list[str]:
     sentences = [f"The file: {fault}." for fault in outcome.faults]
     unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
     for fixture in unproven[: max(count, 0)]:
-        what = "Twin" if fixture.twin else "Fixture"
-        sentences.append(f"{what} {fixture.index + 1} is {fixture.verdict}: {fixture.reason}.")
+        sentences.append(f"Fixture {fixture.index + 1} is {fixture.verdict}: {fixture.reason}.")
     return sentences

@@ -68,7 +68,7 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> Bench:
     """Put everything in its place."""
     loops = placed_loops(workpiece, fixture.pose)
     part = extent(loops[0])
-    faces = [placed(face_of(workpiece, peg.segment), fixture.pose) for peg in fixture.pegs]
+    faces = [placed(face_of(workpiece, peg.face), fixture.pose) for peg in fixture.pegs]
     contacts = [contact_of(peg, face) for peg, face in zip(fixture.pegs, faces, strict=True)]
     jaws = jaw_views(fixture, vise, part)
     whole = part.union(jaws[0].plate).union(jaws[1].plate)

@@ -31,7 +31,7 @@ def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, z
     view = View.fitting(bounds, room)
     d = outline_path(workpiece.loop_segments, view)
     group.path(d, fill=PART_FILL, fill_rule="evenodd")
-    for face in dict.fromkeys(peg.segment for peg in fixture.pegs):
+    for face in dict.fromkeys(peg.face for peg in fixture.pegs):
         group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
     group.path(d, BLACK, 1.4)
     for point in contacts(workpiece, fixture):
@@ -61,6 +61,6 @@ def contacts(workpiece: Workpiece, fixture: Fixture) -> list[Point]:
     back = Pose(-pose.theta_deg, 0.0, 0.0)
     points = []
     for peg in fixture.pegs:
-        (x, y), _ = contact_of(peg, placed(face_of(workpiece, peg.segment), pose))
+        (x, y), _ = contact_of(peg, placed(face_of(workpiece, peg.face), pose))
         points.append(placed_point((x - pose.x, y - pose.y), back))
     return points

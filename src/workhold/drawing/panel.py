@@ -113,7 +113,7 @@ def draw_peg_table(column: Column, fixture: Fixture, lengths: LengthUnit) -> Non
     column.row(["Peg in", "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
     for peg, place in zip(fixture.pegs, places, strict=True):
         force = f"{peg.force:z.3f}".replace("-", "−")
-        column.row([peg.hole, str(peg.segment), *place, force], ends, size)
+        column.row([peg.hole, str(peg.face), *place, force], ends, size)
     column.y += 2
     column.words("x, y: peg centre, from the centre of hole L-A1.", 11, fill=GREY)
     column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)

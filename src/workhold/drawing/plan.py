@@ -182,7 +182,7 @@ def draw_labels(
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
     pegs = bench.fixture.pegs
-    numbers = list(dict.fromkeys(peg.segment for peg in pegs))
+    numbers = list(dict.fromkeys(peg.face for peg in pegs))
     direction = -radians(bench.fixture.pose.theta_deg) / 2
     places = placer.place(
         [
@@ -252,7 +252,7 @@ def mark_label(point: Point, name: str) -> Label:
 
 def face_tag(bench: Bench, face_number: int, view: View) -> Label:
     """Candidates for the number of a face: inside the part, beside the contacts on it."""
-    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.segment == face_number)
+    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.face == face_number)
     face = bench.faces[index]
     size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     half = face.half_extent

@@ -59,6 +59,6 @@ def result_sheet(
         jaw_force=jaw_force,
         friction=friction,
         loads=load_cases(fixture, workpiece, vise, asked, jaw_force, friction),
-        others=same_holes(result.table, rank - 1, result.twins),
+        others=same_holes(result.table, rank - 1),
     )
     return draw_sheet(fixture, workpiece, vise, details)

@@ -127,7 +127,7 @@ def write_pegs(column: Column, sheet: Sheet) -> None:
     rows = []
     for peg in sheet.fixture.pegs:
         number = sheet.lengths.number
-        row = [peg.hole, peg.jaw, str(peg.segment), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
+        row = [peg.hole, peg.jaw, str(peg.face), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, newtons(force * peg.force)])
     write_table(column, header, rows)
     column.paragraph("x, y: centre of the peg, from the centre of hole L-A1 of the fixed jaw.", NOTE)
@@ -270,12 +270,12 @@ def steps(sheet: Sheet) -> list[str]:
     left = listed([peg.hole for peg in fixture.pegs if peg.jaw == "left"])
     right = listed([peg.hole for peg in fixture.pegs if peg.jaw == "right"])
     outer = len(sheet.workpiece.loops[0])
-    inside = [peg.hole for peg in fixture.pegs if peg.segment >= outer]
+    inside = [peg.hole for peg in fixture.pegs if peg.face >= outer]
     around = (
         f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part." if inside else ""
     )
     turn = f"turned {fixture.pose.theta_deg:.1f}° counter-clockwise from its drawing"
-    touch = listed([f"face {peg.segment} at {peg.hole}" for peg in fixture.pegs])
+    touch = listed([f"face {peg.face} at {peg.hole}" for peg in fixture.pegs])
     force = "" if sheet.details.jaw_force is None else f" with {newtons(sheet.details.jaw_force)}"
     return [
         f"Put pegs in {left} of the fixed left jaw and {right} of the sliding right jaw.",

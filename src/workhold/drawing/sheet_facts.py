@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import ceil, cos, hypot, inf, radians, sin
 
-import numpy as np
 from attrs import frozen
 
 from workhold.contact.features import contact_features, end_slacks
@@ -111,7 +110,7 @@ def edge_distances(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> list[f
         point = in_part(peg, fixture)
         nearest = (inf, inf)
         for feature, joined in zip(features, smooth, strict=True):
-            if feature.face != peg.segment:
+            if feature.face != peg.face:
                 continue
             segment = feature.segment
             half, parameter = segment.half_extent, segment.parameter(point)
@@ -136,15 +135,12 @@ def in_part(peg: Peg, fixture: Fixture) -> tuple[float, float]:
     return c * x + s * y, c * y - s * x
 
 
-def same_holes(table: FixtureTable, index: int, twins: FixtureTable) -> int:
-    """How many other fixtures, of a table or of its twins, have their pegs in the same holes as the one of an index."""
-    count = -1
-    for others in (table, twins):
-        same = np.ones(len(others), dtype=bool)
-        for name in ("jaw", "column", "row"):
-            same &= (getattr(others, name) == getattr(table, name)[index]).all(axis=1)
-        count += int(same.sum())
-    return count
+def same_holes(table: FixtureTable, index: int) -> int:
+    """How many other fixtures of a table have their pegs in the same holes as the one of an index."""
+    same = table.arrangement == table.arrangement[index]
+    for holes in (table.column, table.row):
+        same &= (holes == holes[index]).all(axis=1)
+    return int(same.sum()) - 1
 
 
 def cautions_of(
@@ -159,7 +155,7 @@ def cautions_of(
     found: list[Caution] = []
     for peg, distance in zip(fixture.pegs, distances, strict=True):
         if distance < NEAR_END:
-            place = f"{peg.hole} touches face {peg.segment} only {lengths.words(distance)} from its end"
+            place = f"{peg.hole} touches face {peg.face} only {lengths.words(distance)} from its end"
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
     margin = fixture.quality.get("closure_margin", inf)
     if margin < WEAK_CLOSURE:
@@ -170,7 +166,7 @@ def cautions_of(
     largest = max(fixture.pegs, key=lambda peg: peg.force)
     if largest.force > LARGE_AMPLIFICATION:
         words = f"{largest.hole} pushes {largest.force:.1f} times as hard as the jaws: tighten gently"
-        found.append(Caution("amplification", f"{words}, it may mark face {largest.segment}."))
+        found.append(Caution("amplification", f"{words}, it may mark face {largest.face}."))
     error, off = fixture.quality.get("location_error", 0.0), details.tolerance.peg + details.tolerance.face
     if error > LARGE_LOCATION_ERROR * off:
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"

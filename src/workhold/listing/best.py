@@ -9,7 +9,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.listing.canonical_form import Candidates, joined, listed_once, twins
+from workhold.listing.canonical_form import Candidates, joined, listed_once
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
 from workhold.listing.ranking import Preference, best_marked
@@ -62,16 +62,15 @@ class BestFixtures:
         self.kept = self.cut(everything, ties=True)
 
     def cut(self, everything: Candidates, ties: bool) -> Candidates:
-        """The best ``most`` of fixtures that are listed once, with their twins; and with those that tie with the last."""
-        sets = twins(everything, self.problem.faces[everything.feature])
-        if len(sets.first) <= self.most:
+        """The best ``most`` of fixtures that are listed once, and those that tie with the last."""
+        if len(everything.kind) <= self.most:
             return everything
-        table = self.preference.measured(placed(everything.take(sets.first), self.problem), self.problem)
+        table = self.preference.measured(placed(everything, self.problem), self.problem)
         chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)
         self.has_dropped |= not chosen.all()
         if self.preference.by_margin_alone:
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - SLACK, 0.0)
-        return everything.take(sets.kept(chosen))
+        return everything.take(chosen)
 
     def finished(self) -> tuple[Candidates, Account]:
         """The best fixtures and the account of all records, once the search is over."""

@@ -1,4 +1,4 @@
-"""Fixtures on their way to a table: in the form they are listed in, listed once, twins told apart."""
+"""Fixtures on their way to a table: in the form they are listed in, listed once."""
 
 from __future__ import annotations
 
@@ -16,14 +16,12 @@ from workhold.proof.deciding import peg_integers, setting_of
 __all__ = [
     "SAME_POSE",
     "Candidates",
-    "Twins",
     "candidates_of",
     "changes",
     "joined",
     "listed_once",
     "packed",
     "canonical_form",
-    "twins",
 ]
 
 Array = NDArray[np.float64]
@@ -139,7 +137,7 @@ def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
 
 
 def listed_once(c: Candidates) -> Candidates:
-    """Sort by type, holes, orientation and place, and drop repetitions: same holes, same pose.
+    """Sort by type, holes, orientation, faces and place, and drop repetitions: same holes, same pose.
 
     A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same holes and the
     same orientation may still differ in where the workpiece lies; one number that mixes all that tells them apart.
@@ -154,40 +152,8 @@ def listed_once(c: Candidates) -> Candidates:
     # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its place.
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
-    order = np.lexsort([*reversed(packed((run[:, None], len(run)), (c.feature[first], c.feature.max())))])
-    return c.take(first[order[np.concatenate([[True], np.diff(run[order]) > 0])]])
-
-
-@define(frozen=True, eq=False)
-class Twins:
-    """Fixtures split into sets with the same faces, holes and orientation that differ only in where the workpiece lies.
-
-    Parameters
-    ----------
-    first : (N,) indices of the one of each set with the best closure margin, in an order by type, holes, orientation and
-        faces.
-    others : (M,) indices of the others, in the same order.
-    owner : (M,) for each of the others the place of its set in ``first``.
-    """
-
-    first: IntArray
-    others: IntArray
-    owner: IntArray
-
-    def kept(self, chosen: NDArray[np.bool_]) -> IntArray:
-        """Indices, ascending, of the fixtures of the chosen sets (N,)."""
-        return np.sort(np.concatenate([self.first[chosen], self.others[chosen[self.owner]]]))
-
-
-def twins(c: Candidates, face: IntArray) -> Twins:
-    """Find fixtures that have the same faces (N, 4), holes and orientation."""
-    if len(c.kind) == 0:
-        return Twins(*(np.zeros(0, np.int64) for _ in range(3)))
-    order, sets = same_holes_first(c)
-    group = np.empty(len(order), np.int64)
-    group[order] = sets
-    words = packed((group[:, None], len(group)), (face, face.max()))
-    margin = -np.round(c.null.min(axis=1), 9)
-    order = np.lexsort([c.point[:, 0, 1], c.point[:, 0, 0], margin, *reversed(words)])
-    first = changes([word[order] for word in words])
-    return Twins(order[first], order[~first], (np.cumsum(first) - 1)[~first])
+    features = (c.feature[first], c.feature.max())
+    order = np.lexsort([*reversed(packed((run[:, None], len(run)), features))])
+    once = order[np.concatenate([[True], np.diff(run[order]) > 0])]
+    words = [place, *reversed(packed((group[:, None], len(group)), features))]
+    return c.take(first[once[np.lexsort([word[once] for word in words])]])

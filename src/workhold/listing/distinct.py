@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.contact.problem import Problem
 from workhold.geometry.symmetry import Rotation, rotations_onto_itself
 from workhold.kernels.contact.canonical_form import to_canonical_form
 from workhold.listing.canonical_form import SAME_POSE, Candidates, changes, packed
-from workhold.model.workpiece import Workpiece
 
 __all__ = ["count_distinct"]
 
@@ -44,23 +44,21 @@ def precedes(a: list[IntArray], a_pose: Array, b: list[IntArray], b_pose: Array)
     return before
 
 
-def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece, threads: int = 1) -> dict[str, int]:
+def count_distinct(c: Candidates, problem: Problem, threads: int = 1) -> dict[str, int]:
     """How many sets of each type the fixtures form when those equivalent under the part's rotations count once.
 
     Parameters
     ----------
     c : the fixtures, each listed once.
-    face : (N, 4) numbers of the faces their pegs touch.
+    problem : what was searched.
     threads : how many threads share the work.
     """
-    if len(face) == 0:
-        return {"I": 0, "II": 0}
+    workpiece, face = problem.workpiece, problem.faces[c.feature]
     faces = workpiece.faces
     rotations = rotations_onto_itself([f.segment for f in faces])
-    if len(rotations) == 1:
+    if len(face) == 0 or len(rotations) == 1:
         # Only the part as it lies; every fixture is a set of its own.
-        counts = np.bincount(c.kind, minlength=3)
-        return {"I": int(counts[1]), "II": int(counts[2])}
+        return problem.vise.arrangements_counted(c.kind - 1)
     numbers = np.array([f.number for f in faces])
     x0, y0, x1, y1 = workpiece.bounds
 
@@ -81,5 +79,4 @@ def count_distinct(c: Candidates, face: IntArray, workpiece: Workpiece, threads:
     order = np.lexsort([pose, *reversed(key)])
     fresh = changes([word[order] for word in key])
     fresh[1:] |= np.diff(pose[order]) > 2 * SAME_POSE
-    counts = np.bincount(c.kind[order[fresh]], minlength=3)
-    return {"I": int(counts[1]), "II": int(counts[2])}
+    return problem.vise.arrangements_counted(c.kind[order[fresh]] - 1)

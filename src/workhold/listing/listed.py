@@ -9,15 +9,15 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.problem import TYPES, Problem, Progress
+from workhold.contact.problem import Problem, Progress
 from workhold.listing.best import BestFixtures
-from workhold.listing.canonical_form import Candidates, twins
+from workhold.listing.canonical_form import Candidates
 from workhold.listing.distinct import count_distinct
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
 from workhold.listing.ranking import Preference, rank
 from workhold.model.proof import Proof
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.proof.deciding import Account
 
 __all__ = ["Work", "best_result", "listed_result", "result_of"]
@@ -86,24 +86,18 @@ def result_of(
     problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work, threads: int = 1
 ) -> Result:
     """The result of fixtures that are listed once."""
-    sets = twins(candidates, problem.faces[candidates.feature])
-    listed = candidates.take(sets.first)
-    everything = preference.measured(placed(listed, problem), problem, threads)
-    kept_apart = FixtureTable.empty()
-    if len(sets.others):
-        kept_apart = preference.measured(placed(candidates.take(sets.others), problem), problem)
+    everything = preference.measured(placed(candidates, problem), problem, threads)
     ranked = everything.take(rank(everything.quality, preference.ranking))
     return Result(
         workpiece=problem.workpiece,
         vise=problem.vise,
         table=ranked,
-        found={name: int((ranked.type == k + 1).sum()) for k, name in enumerate(TYPES)},
-        distinct=count_distinct(listed, problem.faces[listed.feature], problem.workpiece, threads),
+        found=problem.vise.arrangements_counted(ranked.arrangement),
+        distinct=count_distinct(candidates, problem, threads),
         complete=work.complete and account.left == 0,
         contact_margin=problem.contact_margin,
-        notes=notes(len(kept_apart), len(account.undecided)),
+        notes=notes(len(account.undecided)),
         statistics=work.statistics,
-        twins=kept_apart,
         proof=proof_of(account, work),
         restrictions=problem.restrictions,
         ranking=preference.ranking,
@@ -123,17 +117,9 @@ def proof_of(account: Account, work: Work) -> Proof:
     return Proof(work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
 
 
-def notes(twin_count: int, undecided_count: int) -> tuple[str, ...]:
+def notes(undecided_count: int) -> tuple[str, ...]:
     """Remarks on a search that a user should read."""
-    out = []
-    if twin_count:
-        some = "1 fixture has a twin" if twin_count == 1 else f"{twin_count} fixtures have twins"
-        out.append(
-            f"{some}: the same holes, faces and orientation with the part in another place, kept apart from the list."
-        )
-    if undecided_count:
-        some = "1 candidate is undecided" if undecided_count == 1 else f"{undecided_count} candidates are undecided"
-        out.append(
-            f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
-        )
-    return tuple(out)
+    if undecided_count == 0:
+        return ()
+    some = "1 candidate is undecided" if undecided_count == 1 else f"{undecided_count} candidates are undecided"
+    return (f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason.",)

@@ -209,11 +209,10 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
     x = column[:, 0] * vise.pitch[0] - (cosine * anchor[:, 0] - sine * anchor[:, 1])
     y = row[:, 0] * vise.pitch[1] - (sine * anchor[:, 0] + cosine * anchor[:, 1])
     return FixtureTable(
-        type=c.kind.astype(np.int8),
-        jaw=(~left).astype(np.int8),
+        arrangement=(c.kind - 1).astype(np.int8),
         column=column.astype(np.int32),
         row=row.astype(np.int32),
-        segment=problem.faces[c.feature].astype(np.int32),
+        face=problem.faces[c.feature].astype(np.int32),
         theta=c.theta,
         position=np.stack([x, y], axis=1),
         jaw_separation=found.separation(vise),

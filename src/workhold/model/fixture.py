@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal
 
 from attrs import frozen
 
@@ -11,7 +10,7 @@ from workhold.model.holes import hole_name
 
 __all__ = ["Fixture", "Jaw", "Peg", "Pose"]
 
-Jaw = Literal["left", "right"]
+Jaw = str
 
 
 @frozen
@@ -20,19 +19,19 @@ class Peg:
 
     Parameters
     ----------
-    jaw : "left" or "right".
+    jaw : name of the carrier it stands on: "left" or "right" of a vise.
     column, row : the hole, counted from 0.
     x, y : the peg's centre in the vise frame, in mm.
-    segment : number of the face it touches.
+    face : number of the face it touches.
     force : contact force per unit of clamping force.
     """
 
-    jaw: Jaw
+    jaw: str
     column: int
     row: int
     x: float
     y: float
-    segment: int
+    face: int
     force: float
 
     @property
@@ -56,15 +55,15 @@ class Fixture:
 
     Parameters
     ----------
-    type : "I" for two pegs on each jaw, "II" for three on the left and one on the right.
-    pegs : the four pegs, those of the left jaw first.
+    type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one on the right.
+    pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : where the workpiece lies.
     jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first.
     quality : figures of merit by name.
     """
 
-    type: Literal["I", "II"]
-    pegs: tuple[Peg, Peg, Peg, Peg]
+    type: str
+    pegs: tuple[Peg, ...]
     pose: Pose
     jaw_separation: float
     quality: Mapping[str, float]

@@ -13,15 +13,15 @@ class Undecided:
 
     Parameters
     ----------
-    type : "I" or "II".
-    segments : the four faces (a pair of chords names the tail and the head of each).
+    type : name of the arrangement.
+    faces : the four faces (a pair of chords names the tail and the head of each).
     columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg.
     theta_deg : orientation of the workpiece in degrees, about which it would be.
     reason : why it is not decided, in one sentence without a full stop.
     """
 
     type: str
-    segments: tuple[int, int, int, int]
+    faces: tuple[int, int, int, int]
     columns: tuple[int, int, int, int]
     rows: tuple[int, int, int, int]
     theta_deg: float

@@ -15,24 +15,24 @@ from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.restrictions import Restrictions
 from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "hole_positions", "unknown_quality"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "unknown_quality"]
 
 LEFT, RIGHT = 0, 1
 
 
 @define(frozen=True, eq=False)
 class FixtureTable:
-    """N fixtures as arrays; the pegs of the left jaw come first in every row.
+    """N fixtures as arrays; pegs stand in every row in the order of their arrangement.
 
     Parameters
     ----------
-    type : (N,) int8, 1 for Type I and 2 for Type II.
-    jaw : (N, 4) int8, 0 left and 1 right.
+    arrangement : (N,) int8, index into the toolkit's arrangements.
     column, row : (N, 4) int32, the hole.
-    segment : (N, 4) int32, number of the face touched.
+    face : (N, 4) int32, number of the face touched.
     theta : (N,) orientation of the workpiece in radians, in [0, 2 pi).
     position : (N, 2) translation of the pose in mm.
     jaw_separation : (N,) in mm.
@@ -41,11 +41,10 @@ class FixtureTable:
     quality : (N, 6) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
     """
 
-    type: NDArray[np.int8]
-    jaw: NDArray[np.int8]
+    arrangement: NDArray[np.int8]
     column: NDArray[np.int32]
     row: NDArray[np.int32]
-    segment: NDArray[np.int32]
+    face: NDArray[np.int32]
     theta: NDArray[np.float64]
     position: NDArray[np.float64]
     jaw_separation: NDArray[np.float64]
@@ -58,7 +57,7 @@ class FixtureTable:
             getattr(self, name.name).setflags(write=False)
 
     def __len__(self) -> int:
-        return len(self.type)
+        return len(self.arrangement)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
         """The fixtures of an index array or slice, in its order."""
@@ -69,11 +68,10 @@ class FixtureTable:
         """A table of no fixtures."""
         ints, floats = np.zeros((0, 4), np.int32), np.zeros((0, 4))
         return cls(
-            type=np.zeros(0, np.int8),
-            jaw=np.zeros((0, 4), np.int8),
+            arrangement=np.zeros(0, np.int8),
             column=ints,
             row=ints.copy(),
-            segment=ints.copy(),
+            face=ints.copy(),
             theta=np.zeros(0),
             position=np.zeros((0, 2)),
             jaw_separation=np.zeros(0),
@@ -108,7 +106,6 @@ class Result:
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
     contact_margin : smallest distance in mm that was asked for between a contact and the end of its feature.
     notes : remarks a user should read, one sentence each.
-    twins : fixtures with the same holes, faces and orientation as one listed, where the workpiece lies in another place.
     statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
@@ -126,7 +123,6 @@ class Result:
     complete: bool = True
     contact_margin: float = 0.0
     notes: tuple[str, ...] = field(default=())
-    twins: FixtureTable = field(factory=FixtureTable.empty)
     statistics: Mapping[str, int] = field(factory=dict)
     proof: Proof | None = None
     restrictions: Restrictions = field(factory=Restrictions)
@@ -137,7 +133,7 @@ class Result:
     @property
     def counts(self) -> dict[str, int]:
         """How many fixtures of each type are listed."""
-        return {"I": int((self.table.type == 1).sum()), "II": int((self.table.type == 2).sum())}
+        return self.vise.arrangements_counted(self.table.arrangement)
 
     def __len__(self) -> int:
         return len(self.table)
@@ -169,39 +165,25 @@ def hole_position(vise: Vise, jaw: int, column: int, row: int, jaw_separation: f
     return x, y
 
 
-def hole_positions(
-    vise: Vise,
-    jaw: NDArray[Any],
-    column: NDArray[Any],
-    row: NDArray[Any],
-    jaw_separation: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """x and y (N, 4) in mm of the holes of N fixtures, see :func:`hole_position`; jaw, column and row are (N, 4)."""
-    across = (vise.columns - 1) * vise.pitch[0] + jaw_separation[:, None]
-    x = column * vise.pitch[0] + np.where(jaw == RIGHT, across, 0.0)
-    y = row * vise.pitch[1] + np.where(jaw == RIGHT, vise.row_offset, 0.0)
-    return x, y
-
-
 def whole_turn_degrees(theta: float) -> float:
     """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
     degrees = float(np.degrees(theta)) % 360.0
     return 0.0 if degrees > 360.0 - 1e-10 else degrees
 
 
-def fixture_at(table: FixtureTable, vise: Vise, index: int) -> Fixture:
+def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int) -> Fixture:
     """Make the :class:`Fixture` of one row of a table."""
     separation = float(table.jaw_separation[index])
+    arrangement = toolkit.arrangements[table.arrangement[index]]
     pegs = []
-    for k in range(4):
-        jaw, column, row = int(table.jaw[index, k]), int(table.column[index, k]), int(table.row[index, k])
-        x, y = hole_position(vise, jaw, column, row, separation)
-        segment, force = int(table.segment[index, k]), float(table.force[index, k])
-        pegs.append(Peg("right" if jaw == RIGHT else "left", column, row, x, y, segment, force))
+    for k, number in enumerate(arrangement.carriers):
+        carrier, column, row = toolkit.carriers[number], int(table.column[index, k]), int(table.row[index, k])
+        x, y = carrier.place(column, row, separation)
+        pegs.append(Peg(carrier.name, column, row, x, y, int(table.face[index, k]), float(table.force[index, k])))
     x, y = (float(v) for v in table.position[index])
     return Fixture(
-        type="I" if table.type[index] == 1 else "II",
-        pegs=(pegs[0], pegs[1], pegs[2], pegs[3]),
+        type=arrangement.name,
+        pegs=tuple(pegs),
         pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
         jaw_separation=separation,
         quality={

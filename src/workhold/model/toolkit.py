@@ -167,10 +167,24 @@ class Toolkit:
         """The arrangement of a name."""
         return next(a for a in self.arrangements if a.name == name)
 
+    def arrangements_counted(self, arrangement: NDArray[Any]) -> dict[str, int]:
+        """How many fixtures there are of each arrangement, from the indices (N,) of theirs."""
+        counts = np.bincount(arrangement, minlength=len(self.arrangements)).tolist()
+        return {one.name: count for one, count in zip(self.arrangements, counts, strict=True)}
+
+    def peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
+        """The carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
+        return np.asarray(np.array([one.carriers for one in self.arrangements], np.int8)[arrangement])
+
+    def carrier_names(self, arrangement: Arrangement) -> tuple[str, ...]:
+        """The name of each peg's carrier, in the order in which pegs are listed."""
+        return tuple(self.carriers[number].name for number in arrangement.carriers)
+
     def places(
-        self, carrier: NDArray[Any], column: NDArray[Any], row: NDArray[Any], travelled: NDArray[np.float64]
+        self, arrangement: NDArray[Any], column: NDArray[Any], row: NDArray[Any], travelled: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x and y (N, K) in mm of the holes of N fixtures; carrier, column and row are (N, K), travelled (N,)."""
+        """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement and travelled (N,)."""
+        carrier = self.peg_carriers(arrangement)
         x, y = np.zeros(column.shape), np.zeros(column.shape)
         for number, one in enumerate(self.carriers):
             across, along = one.place(column, row, travelled[:, None])

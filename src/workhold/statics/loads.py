@@ -108,7 +108,7 @@ def load_cases(
     touched = Touched.of(workpiece, vise)
     pose = np.array([[radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]])
     right = np.array([[peg.jaw == "right" for peg in fixture.pegs]])
-    faces = np.array([[peg.segment for peg in fixture.pegs]])
+    faces = np.array([[peg.face for peg in fixture.pegs]])
     contact_matrices = touched.contact_matrices(
         np.array([[(peg.x, peg.y) for peg in fixture.pegs]]), pose, right, faces
     )

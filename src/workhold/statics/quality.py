@@ -17,7 +17,7 @@ from workhold.kernels.statics.reactions import LOAD_LENGTH
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable, Result, fixture_at, hole_positions
+from workhold.model.result import FixtureTable, Result, fixture_at
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -65,9 +65,9 @@ def quality_of(
     def fill(start: int) -> None:
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
-        faces = block.segment.astype(np.int64)
-        right = block.jaw.astype(np.float64)
-        x, y = hole_positions(vise, block.jaw, block.column, block.row, block.jaw_separation)
+        faces = block.face.astype(np.int64)
+        right = vise.peg_carriers(block.arrangement).astype(np.float64)
+        x, y = vise.places(block.arrangement, block.column, block.row, block.jaw_separation)
         contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, right, faces)
         figures(
             contact_matrices.points,

@@ -91,8 +91,8 @@ def broken_restriction(fixture: Fixture, workpiece: Workpiece, vise: Vise, restr
     """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     avoided = {face.number for face in workpiece.faces if set(face.segments) & set(restrictions.avoid)}
     for position, peg in enumerate(fixture.pegs, 1):
-        if peg.segment in avoided:
-            return f"peg {position} touches face {peg.segment}, which is to be avoided"
+        if peg.face in avoided:
+            return f"peg {position} touches face {peg.face}, which is to be avoided"
         if any((h.jaw, h.column) == (peg.jaw, peg.column) and h.row in (None, peg.row) for h in vise.blocked):
             return f"peg {position} stands in {peg.hole}, which is blocked"
         for zone in restrictions.zones:
@@ -125,7 +125,7 @@ def wrong_figures(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vise,
     """For each fixture, by its place, with a figure of quality that is not what it comes to: the first of them in words."""
     if not fixtures:
         return {}
-    table = table_of(fixtures)
+    table = table_of(fixtures, vise)
     derived = quality_of(table, workpiece, vise, asked.tolerance, asked.loads)
     out: dict[int, str] = {}
     for number, figure in enumerate(FIGURES):
@@ -140,8 +140,9 @@ def wrong_figures(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vise,
     return out
 
 
-def table_of(fixtures: Sequence[Fixture]) -> FixtureTable:
-    """Fixtures as a table; pegs of the left jaw first."""
+def table_of(fixtures: Sequence[Fixture], vise: Vise) -> FixtureTable:
+    """Fixtures as a table; pegs in the order of their arrangements."""
+    names = [arrangement.name for arrangement in vise.arrangements]
     ordered = [sorted(fixture.pegs, key=lambda peg: peg.jaw == "right") for fixture in fixtures]
 
     def integers(name: str, kind: Any = np.int32) -> Any:
@@ -150,11 +151,10 @@ def table_of(fixtures: Sequence[Fixture]) -> FixtureTable:
     force = np.array([[peg.force for peg in pegs] for pegs in ordered])
     null = force / force.sum(axis=1, keepdims=True)
     return FixtureTable(
-        type=np.array([1 if fixture.type == "I" else 2 for fixture in fixtures], np.int8),
-        jaw=np.array([[peg.jaw == "right" for peg in pegs] for pegs in ordered], np.int8),
+        arrangement=np.array([names.index(fixture.type) for fixture in fixtures], np.int8),
         column=integers("column"),
         row=integers("row"),
-        segment=integers("segment"),
+        face=integers("face"),
         theta=np.radians([fixture.pose.theta_deg for fixture in fixtures]),
         position=np.array([[fixture.pose.x, fixture.pose.y] for fixture in fixtures]),
         jaw_separation=np.array([fixture.jaw_separation for fixture in fixtures]),

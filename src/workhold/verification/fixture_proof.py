@@ -96,14 +96,14 @@ class Judge:
         """Everything that speaks against a fixture, cheap rules first; nobody asks on after a definite finding."""
         yield from hole_findings(fixture, self.vise)
         for position, peg in enumerate(fixture.pegs, 1):
-            if peg.segment not in outline.faces:
-                yield Finding(True, f"peg {position} is on segment {peg.segment}, which does not name a face")
+            if peg.face not in outline.faces:
+                yield Finding(True, f"peg {position} is on segment {peg.face}, which does not name a face")
         radius = arb(self.vise.peg_radius)
         contacts = [
-            Contact(hole_place(peg, self.vise), int(peg.jaw == "right"), outline.faces[peg.segment], radius)
+            Contact(hole_place(peg, self.vise), int(peg.jaw == "right"), outline.faces[peg.face], radius)
             for peg in fixture.pegs
         ]
-        faces = [peg.segment for peg in fixture.pegs]
+        faces = [peg.face for peg in fixture.pegs]
         for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
             if isinstance(contact.side, ArcSide) and not contact.side.reach(radius) > 0:
                 yield Finding(True, f"peg {position} does not fit into the concave face {face}")

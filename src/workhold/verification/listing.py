@@ -19,7 +19,7 @@ from workhold.errors import InputError
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.holes import holes_named
 from workhold.model.quality import FIGURES
-from workhold.model.result import Result, fixture_at
+from workhold.model.result import Result
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.verification.asked import Asked, asked_in, asked_of
@@ -37,7 +37,7 @@ class Listing:
     Parameters
     ----------
     workpiece, vise, contact_margin : what was asked.
-    fixtures, twins : as listed.
+    fixtures : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
     faults : contradictions in the head of the file, one sentence each.
     asked : what was asked for beyond fixtures.
@@ -47,7 +47,6 @@ class Listing:
     vise: Vise
     contact_margin: float
     fixtures: Sequence[Fixture]
-    twins: Sequence[Fixture]
     counts: Mapping[str, int]
     found: Mapping[str, int]
     distinct: Mapping[str, int]
@@ -68,13 +67,11 @@ class Unusable:
 
 def listing_of(result: Result) -> Listing:
     """What a result claims that is not in a file."""
-    twins = [fixture_at(result.twins, result.vise, k) for k in range(len(result.twins))]
     return Listing(
         result.workpiece,
         result.vise,
         result.contact_margin,
         list(result),
-        twins,
         result.counts,
         result.found,
         result.distinct,
@@ -226,7 +223,6 @@ def checked(data: Any) -> Listing:
         vise,
         margin,
         fixtures_from(data, "fixtures"),
-        fixtures_from(data, "twins") if "twins" in data else [],
         counts,
         counts_from(data, "found", counts),
         counts_from(data, "distinct", counts),

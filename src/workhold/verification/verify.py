@@ -27,13 +27,11 @@ class Unproven:
     Parameters
     ----------
     index : its place in the list, from 0.
-    twin : whether the list is that of the twins.
     verdict : "refuted" or "undecided".
     reason : one sentence, without a full stop.
     """
 
     index: int
-    twin: bool
     verdict: Verdict
     reason: str
 
@@ -44,7 +42,7 @@ class Verification:
 
     Parameters
     ----------
-    proven, refuted, undecided : numbers of fixtures, twins included.
+    proven, refuted, undecided : numbers of fixtures.
     unproven : those that are not proven, in the order of the file.
     faults : what is wrong with the result as a whole, one sentence each, without a full stop.
     bits : the highest precision that was needed.
@@ -101,7 +99,7 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
     """Verify what a result claims."""
     judge = Judge(listing.workpiece, listing.vise, listing.contact_margin)
-    everything = [*listing.fixtures, *listing.twins]
+    everything = listing.fixtures
     seen = Seen()
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
@@ -114,7 +112,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
-            verdict, reason = "refuted", f"it is the same as {title(first, listing)}"
+            verdict, reason = "refuted", f"it is the same as fixture {first + 1}"
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
         progress((place + 1) / len(everything), doubtful)
@@ -124,21 +122,12 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     for number, words in wrong.items():
         rulings[sound[number]] = ("refuted", words)
     unproven = [
-        Unproven(place - twin * len(listing.fixtures), twin, verdict, reason)
-        for place, (verdict, reason) in enumerate(rulings)
-        if verdict != "proven"
-        for twin in [place >= len(listing.fixtures)]
+        Unproven(place, verdict, reason) for place, (verdict, reason) in enumerate(rulings) if verdict != "proven"
     ]
     tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
     order = order_faults(listing.fixtures, listing.asked.ranking)
     faults = (*listing.faults, *count_faults(listing), *order)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), faults, bits)
-
-
-def title(place: int, listing: Listing) -> str:
-    """A fixture in words, counted from 1, by its place among fixtures and twins."""
-    count = len(listing.fixtures)
-    return f"fixture {place + 1}" if place < count else f"twin {place - count + 1}"
 
 
 def count_faults(listing: Listing) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from attrs import evolve
 
-from workhold.files.result.writer import TYPE_JAWS, TYPE_NAMES, fixture_rows, load_entry, proof_entry, vise_entry
+from workhold.files.result.writer import fixture_rows, load_entry, proof_entry, vise_entry
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
@@ -18,6 +18,7 @@ from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -125,21 +126,23 @@ def figures_answer() -> list[dict[str, Any]]:
     ]
 
 
-def rows_answer(table: FixtureTable, vise: Vise, ranks: Iterable[int]) -> list[dict[str, Any]]:
+def rows_answer(table: FixtureTable, toolkit: Toolkit, ranks: Iterable[int]) -> list[dict[str, Any]]:
     """Fixtures as rows; ``ranks`` are those of the table's fixtures."""
     out: list[dict[str, Any]] = []
     quality, numbers = table.quality.tolist(), iter(ranks)
     # Figures are told one by one below, so the rows are made without them.
     bare = evolve(table, quality=np.full_like(table.quality, np.nan))
-    for kinds, rows in fixture_rows(bare, vise):
+    arrangements = [(one.name, toolkit.carrier_names(one)) for one in toolkit.arrangements]
+    for kinds, rows in fixture_rows(bare, toolkit):
         for kind, row in zip(kinds, rows, strict=True):
+            name, jaws = arrangements[kind]
             pegs = [row[6 * peg : 6 * peg + 6] for peg in range(4)]
             figures = zip(FIGURES, quality[len(out)], strict=True)
             out.append(
                 {
                     "rank": next(numbers),
-                    "type": TYPE_NAMES[kind],
-                    "holes": [hole_name(jaw, peg[0], peg[1]) for jaw, peg in zip(TYPE_JAWS[kind], pegs, strict=True)],
+                    "type": name,
+                    "holes": [hole_name(jaw, peg[0], peg[1]) for jaw, peg in zip(jaws, pegs, strict=True)],
                     "faces": [peg[4] for peg in pegs],
                     "theta_deg": row[24],
                     "x": row[25],
@@ -158,7 +161,7 @@ def fixture_answer(fixture: Fixture) -> dict[str, Any]:
     return {
         "type": fixture.type,
         "holes": [peg.hole for peg in fixture.pegs],
-        "faces": [peg.segment for peg in fixture.pegs],
+        "faces": [peg.face for peg in fixture.pegs],
         "theta_deg": fixture.pose.theta_deg,
         "x": fixture.pose.x,
         "y": fixture.pose.y,
@@ -178,7 +181,7 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[s
     for peg in fixture.pegs:
         dx, dy = peg.x - pose.x, peg.y - pose.y
         center = (float(c * dx + s * dy), float(c * dy - s * dx))
-        segment = segments[peg.segment]
+        segment = segments[peg.face]
         nx, ny = segment.normal(segment.parameter(center))
         size = hypot(nx, ny)
         x, y = float(c * nx - s * ny) / size, float(s * nx + c * ny) / size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Callable, Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from starlette.exceptions import HTTPException
@@ -159,7 +159,7 @@ async def fixtures(
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 200,
     sort: Annotated[str, Query(max_length=40)] = "rank",
     descending: bool = False,
-    type: Literal["I", "II"] | None = None,
+    type: Annotated[str | None, Query(max_length=40)] = None,
     face: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     angle: Annotated[str | None, Query(max_length=60, description="from..to in degrees")] = None,
 ) -> dict[str, Any]:
@@ -169,7 +169,7 @@ async def fixtures(
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is told even then.
-        selection.indices(EMPTY)
+        selection.indices(EMPTY, job.asked[0].vise)
         return {"total": 0, "revision": revision, "rows": []}
     indices = await asyncio.to_thread(job.chosen, selection)
     page = indices[offset : offset + limit]

@@ -89,8 +89,8 @@ class Job:
         """About how many bytes it keeps."""
         if self.result is None:
             return 0
-        tables = (self.result.table, self.result.twins)
-        return sum(getattr(t, a.name).nbytes for t in tables for a in t.__attrs_attrs__)
+        table = self.result.table
+        return sum(getattr(table, a.name).nbytes for a in table.__attrs_attrs__)
 
     def changed(self) -> None:
         """Tell those who watch."""
@@ -111,8 +111,8 @@ class Job:
             "fraction": round(self.fraction, 4),
             "found": self.found,
             "seconds": 0.0 if self.began is None else round(end - self.began, 3),
-            "counts": None if listed is None else {kind: int(listed.found[kind]) for kind in ("I", "II")},
-            "distinct": None if listed is None else {kind: int(listed.distinct[kind]) for kind in ("I", "II")},
+            "counts": None if listed is None else dict(listed.found),
+            "distinct": None if listed is None else dict(listed.distinct),
             "listed": 0 if result is None else len(result),
             "ranking": None if result is None else list(result.ranking),
             "complete": complete,
@@ -129,7 +129,7 @@ class Job:
             return np.zeros(0, np.intp)
         key = (self.revision, selection)
         if key not in self.orders:
-            indices = selection.indices(self.result.table)
+            indices = selection.indices(self.result.table, self.result.vise)
             while len(self.orders) >= ORDERS_KEPT:
                 self.orders.pop(next(iter(self.orders)))
             self.orders[key] = indices

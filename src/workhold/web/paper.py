@@ -12,7 +12,7 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.web.asked import plain
 from workhold.web.worker import Order
 
@@ -61,7 +61,7 @@ class PaperOrder:
         """An order that carries no more of a result than is needed."""
         small = plain(result)
         if not kind.startswith("sheet"):
-            small = evolve(small, table=result.table.take(slice(rank - 1, rank)), twins=FixtureTable.empty())
+            small = evolve(small, table=result.table.take(slice(rank - 1, rank)))
         return cls(kind, small, rank, len(result), *options)
 
     @property

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.model.quality import FIGURES, figure_number
 from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Toolkit
 
 __all__ = ["Selection", "angle_range"]
 
@@ -21,7 +22,7 @@ class Selection:
     ----------
     sort : "rank" or the key of a figure of quality; what is equal stays in the order of ranks.
     descending : largest first; fixtures without the figure are last either way.
-    type : "I", "II" or None for both.
+    type : name of an arrangement, or None for all.
     face : only fixtures that touch this face.
     angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
     """
@@ -32,13 +33,13 @@ class Selection:
     face: int | None = None
     angle: tuple[float, float] | None = None
 
-    def indices(self, table: FixtureTable) -> NDArray[np.intp]:
+    def indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
         """Indices of the chosen fixtures of a table, in order.
 
         Raises
         ------
         InputError
-            When there is nothing of that name to sort by.
+            When there is nothing of that name to sort by, or no such arrangement.
         """
         column = None if self.sort == "rank" else figure_number(self.sort)
         if column is None and self.sort != "rank":
@@ -46,9 +47,12 @@ class Selection:
             raise InputError(f"{self.sort[:40]!r} is nothing to sort by: choose rank or one of {known}.")
         chosen = np.ones(len(table), np.bool_)
         if self.type is not None:
-            chosen &= table.type == (1 if self.type == "I" else 2)
+            names = [one.name for one in toolkit.arrangements]
+            if self.type not in names:
+                raise InputError(f"type {self.type[:40]} is unknown: choose {' or '.join(names)}.")
+            chosen &= table.arrangement == names.index(self.type)
         if self.face is not None:
-            chosen &= (table.segment == self.face).any(axis=1)
+            chosen &= (table.face == self.face).any(axis=1)
         if self.angle is not None:
             low, high = self.angle
             chosen &= (np.degrees(table.theta) - low) % 360.0 <= high - low

@@ -107,8 +107,8 @@ def search(payload: tuple[Asked, int], order: Order) -> Found:
         preview=lambda result: order.report(("preview", plain(result))),
     )
     left_out = max(len(result) - most, 0)
-    if left_out or len(result.twins) > most:
-        result = evolve(result, table=result.table.take(slice(0, most)), twins=result.twins.take(slice(0, most)))
+    if left_out:
+        result = evolve(result, table=result.table.take(slice(0, most)))
     return Found(plain(result), left_out)
 
 

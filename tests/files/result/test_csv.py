@@ -29,7 +29,7 @@ def test_every_row_is_a_fixture(tmp_path: Path) -> None:
             assert (row[f"peg{k}_hole"], row[f"peg{k}_jaw"]) == (peg.hole, peg.jaw)
             assert (int(row[f"peg{k}_column"]), int(row[f"peg{k}_row"])) == (peg.column, peg.row)
             assert (float(row[f"peg{k}_x"]), float(row[f"peg{k}_y"])) == pytest.approx((peg.x, peg.y))
-            assert int(row[f"peg{k}_face"]) == peg.segment
+            assert int(row[f"peg{k}_face"]) == peg.face
             assert float(row[f"peg{k}_force"]) == pytest.approx(peg.force)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
-from workhold.files.result.writer import TYPE_JAWS, TYPE_NAMES, fixture_rows, known_figures
+from workhold.files.result.writer import fixture_rows, known_figures
 from workhold.model.holes import column_letters
 from workhold.model.result import Result
 
@@ -44,17 +44,19 @@ def result_csv_text(result: Result) -> Iterator[str]:
     pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
     yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
     letters = cache(column_letters)
+    arrangements = [(one.name, result.vise.carrier_names(one)) for one in result.vise.arrangements]
     number = 0
     for kinds, rows in fixture_rows(result.table, result.vise):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
+            name, jaws = arrangements[kind]
             theta, x, y, separation, *quality = row[24:]
-            fields = [str(number), TYPE_NAMES[kind], repr(theta), repr(x), repr(y), repr(separation)]
+            fields = [str(number), name, repr(theta), repr(x), repr(y), repr(separation)]
             fields += [f"{value:.12g}" for value in quality]
-            for peg, jaw in enumerate(TYPE_JAWS[kind]):
+            for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
-                hole = f"{'L' if jaw == 'left' else 'R'}-{letters(column)}{hole_row + 1}"
+                hole = f"{jaw[0].upper()}-{letters(column)}{hole_row + 1}"
                 fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
             lines.append(",".join(fields) + "\n")
         yield "".join(lines)

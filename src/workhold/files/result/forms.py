@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -119,21 +119,13 @@ class LoadPart(Part):
         return Load(tuple(self.points), self.force, self.directions, self.moment, self.name)
 
 
-class Counts(Part):
-    """Fixtures of each type."""
-
-    type_one: int = Field(alias="I", ge=0)
-    type_two: int = Field(alias="II", ge=0)
-
-    def by_type(self) -> dict[str, int]:
-        """The counts by the types' names."""
-        return {"I": self.type_one, "II": self.type_two}
+Counts = dict[str, Annotated[int, Field(ge=0)]]
 
 
 class UndecidedPart(Part):
     """One entry of the proof's list of what is not decided; columns and rows may be negative."""
 
-    type: Literal["I", "II"]
+    type: str
     segments: list[int] = Field(min_length=4, max_length=4)
     columns: list[int] = Field(min_length=4, max_length=4)
     rows: list[int] = Field(min_length=4, max_length=4)
@@ -142,8 +134,8 @@ class UndecidedPart(Part):
 
     def undecided(self) -> Undecided:
         """The entry as the model has it."""
-        segments, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
-        return Undecided(self.type, segments, columns, rows, self.theta_deg, self.reason)
+        faces, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
+        return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason)
 
 
 class ProofPart(Part):
@@ -176,7 +168,6 @@ class Head(Part):
     notes: list[str] = []
     statistics: dict[str, int] = {}
     proof: ProofPart | None = None
-    twins: list[Any] = []
     restrictions: RestrictionsPart = RestrictionsPart()
     ranking: list[str] = ["closure_margin"]
     tolerance: TolerancePart | None = None

@@ -7,7 +7,7 @@ it, is read line by line; any other layout of the same JSON is read as a whole. 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any, NoReturn
@@ -22,8 +22,9 @@ from workhold.files.result.forms import Head, ProofPart
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
-from workhold.model.result import FixtureTable, Result, hole_positions
+from workhold.model.result import FixtureTable, Result
 from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -34,17 +35,14 @@ BLOCK = 4096
 AGREEMENT = 1e-6
 LARGEST_NUMBER = 2**31 - 1
 
-TYPES = {"I": 1, "II": 2}
-JAWS = {"left": 0, "right": 1}
-
 
 @frozen
 class Columns:
-    """The fixtures of a file as arrays: (N,) types, (N, 4) jaws, (N, 4, 3) holes and faces, (N, 4, 3) x, y and forces,
-    (N, 4) pose in degrees and mm and jaw separation, (N, 6) figures of quality (NaN where the file gives none)."""
+    """The fixtures of a file as arrays: (N,) types and (N, 4) jaws by name, (N, 4, 3) holes and faces, (N, 4, 3) x, y and
+    forces, (N, 4) pose in degrees and mm and jaw separation, (N, 6) figures of quality (NaN where the file gives none)."""
 
-    types: NDArray[np.int8]
-    jaws: NDArray[np.int8]
+    types: NDArray[np.str_]
+    jaws: NDArray[np.str_]
     holes: NDArray[np.int32]
     contacts: NDArray[np.float64]
     placing: NDArray[np.float64]
@@ -79,31 +77,44 @@ def read_result(path: str | Path) -> Result:
     try:
         workpiece = Workpiece.from_loops(head.workpiece.name, head.workpiece.loops)
         vise, asked = head.vise.vise(), head.model_parts()
+        refuse_other_types(head, vise)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    table, twins = (
-        measured(checked_table(fixtures, workpiece, vise, path), workpiece, vise, asked["tolerance"], asked["loads"])
-        for fixtures in (columns, collected(head.twins, path))
-    )
+    table = checked_table(columns, workpiece, vise, path)
+    table = measured(table, workpiece, vise, asked["tolerance"], asked["loads"])
     result = Result(
         workpiece=workpiece,
         vise=vise,
         table=table,
-        found=(head.found or head.counts).by_type(),
-        distinct=(head.distinct or head.counts).by_type(),
+        found=head.found or head.counts,
+        distinct=head.distinct or head.counts,
         complete=head.complete,
         contact_margin=head.contact_margin,
         notes=tuple(head.notes),
-        twins=twins,
         statistics=head.statistics,
-        proof=None if head.proof is None else checked_proof(head.proof, workpiece, path),
+        proof=None if head.proof is None else checked_proof(head.proof, workpiece, vise, path),
         **asked,
     )
-    for name, count in head.counts.by_type().items():
-        if count != result.counts[name]:
-            listed = result.counts[name]
-            raise InputError(f"{path}: counts say {count} fixtures of type {name}, but {listed} are listed.")
+    for name, listed in result.counts.items():
+        if head.counts[name] != listed:
+            said = head.counts[name]
+            raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
     return result
+
+
+def refuse_other_types(head: Head, toolkit: Toolkit) -> None:
+    """Refuse counts of other types than the toolkit's.
+
+    Raises
+    ------
+    InputError
+        Naming the counts.
+    """
+    names = [one.name for one in toolkit.arrangements]
+    for key in ("counts", "found", "distinct"):
+        counts = getattr(head, key)
+        if counts is not None and set(counts) != set(names):
+            raise InputError(f"{key} does not give a number for each of the types {', '.join(names)} and no other.")
 
 
 def read_lines(path: Path) -> tuple[Any, Columns]:
@@ -195,13 +206,13 @@ def checked_head(data: Any, path: Path) -> Head:
         raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
 
 
-def checked_proof(part: ProofPart, workpiece: Workpiece, path: Path) -> Proof:
+def checked_proof(part: ProofPart, workpiece: Workpiece, toolkit: Toolkit, path: Path) -> Proof:
     """The account of the search.
 
     Raises
     ------
     InputError
-        When its counts do not add up, or an undecided candidate names a segment that is no face.
+        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no face.
     """
     accounted = part.discarded_by_bound + part.verified + len(part.undecided)
     if accounted != part.candidates:
@@ -209,7 +220,10 @@ def checked_proof(part: ProofPart, workpiece: Workpiece, path: Path) -> Proof:
             f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
         )
     faces = {face.number for face in workpiece.faces}
+    types = [one.name for one in toolkit.arrangements]
     for number, item in enumerate(part.undecided, 1):
+        if item.type not in types:
+            raise InputError(f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}.")
         if not faces.issuperset(item.segments):
             raise InputError(f"{path}: undecided candidate {number} of the proof names a segment that is no face.")
     return part.proof()
@@ -236,7 +250,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
             except (TypeError, ValueError, AttributeError) as error:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
             number += 1
-        kinds = (np.int8, np.int8, np.int32, np.float64, np.float64, np.float64)
+        kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
         shapes = ((), (4,), (4, 3), (4, 3), (4,), (len(FIGURES),))
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
@@ -246,19 +260,15 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
 
 def fixture_row(
     fixture: Any,
-) -> tuple[int, list[int], list[list[int]], list[list[float]], list[float], list[float]]:
+) -> tuple[str, list[str], list[list[int]], list[list[float]], list[float], list[float]]:
     """The numbers of one fixture, for one row of each array of :class:`Columns`."""
     name = fixture["type"]
-    if name not in TYPES:
-        raise ValueError(f"its type is {name!r}, not 'I' or 'II'")
     pegs, pose = fixture["pegs"], fixture["pose"]
     if not isinstance(pegs, list) or len(pegs) != 4:
         raise ValueError("it does not have four pegs")
-    jaws = []
-    for peg in pegs:
-        if peg["jaw"] not in JAWS:
-            raise ValueError(f"a peg's jaw is {peg['jaw']!r}, not 'left' or 'right'")
-        jaws.append(JAWS[peg["jaw"]])
+    jaws = [peg["jaw"] for peg in pegs]
+    if not all(isinstance(word, str) for word in (name, *jaws)):
+        raise ValueError("its type or a peg's jaw is not text")
     holes = [[peg["column"], peg["row"], peg["segment"]] for peg in pegs]
     contacts = [[peg["x"], peg["y"], peg["force"]] for peg in pegs]
     figures = fixture.get("quality", {})
@@ -271,22 +281,32 @@ def fixture_row(
     numbers = [value for contact in contacts for value in contact] + placing + known
     if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > 1e300 for value in numbers):
         raise ValueError("a length, an angle or a force is not a finite number")
-    return TYPES[name], jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+    return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+
+
+def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
+    """The place of each word among some names; -1 for a word that is none of them."""
+    out = np.full(words.shape, -1, np.int8)
+    for index, name in enumerate(names):
+        out[words == name] = index
+    return out
 
 
 def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path) -> FixtureTable:
-    """The table of the fixtures, pegs of the left jaw first.
+    """The table of the fixtures, pegs in the order of their arrangements.
 
     Raises
     ------
     InputError
         Naming the first fixture that contradicts the vise, the workpiece or itself.
     """
-    order = np.argsort(columns.jaws, axis=1, kind="stable")
-    jaw = np.take_along_axis(columns.jaws, order, axis=1)
+    arrangements, carriers = ([one.name for one in several] for several in (vise.arrangements, vise.carriers))
+    arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
+    order = np.argsort(jaw, axis=1, kind="stable")
+    jaw = np.take_along_axis(jaw, order, axis=1)
     hole = np.take_along_axis(columns.holes, order[:, :, None], axis=1)
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
-    column, row, segment = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
+    column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation = columns.placing.T
     force = np.ascontiguousarray(contact[:, :, 2])
 
@@ -295,22 +315,23 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
         if where.size:
             raise InputError(f"{path}: fixture {int(where[0]) + 1} {reason}.")
 
-    refuse(jaw.sum(axis=1) != 3 - columns.types, "does not have the pegs of its type on each jaw")
+    refuse(arrangement < 0, f"cannot be used: its type is not {' or '.join(arrangements)}")
+    refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
+    refuse(jaw != vise.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
     refuse(column >= vise.columns, f"has a peg in a column beyond the vise's {vise.columns}")
     if vise.rows is not None:
         refuse(row >= vise.rows, f"has a peg in a row beyond the vise's {vise.rows}")
     faces = [face.number for face in workpiece.faces]
-    refuse(~np.isin(segment, faces), "has a peg on a segment that does not name a face of the workpiece")
-    hole_x, hole_y = hole_positions(vise, jaw, column, row, separation)
+    refuse(~np.isin(face, faces), "has a peg on a segment that does not name a face of the workpiece")
+    hole_x, hole_y = vise.places(arrangement, column, row, separation)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
     refuse(force <= 0, "has a peg whose force is not positive")
     return FixtureTable(
-        type=columns.types,
-        jaw=jaw,
+        arrangement=arrangement,
         column=column,
         row=row,
-        segment=segment,
+        face=face,
         theta=np.radians(theta_deg) % (2 * np.pi),
         position=np.stack([x, y], axis=1),
         jaw_separation=separation.copy(),

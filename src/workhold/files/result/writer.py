@@ -23,13 +23,12 @@ from workhold.files.atomic import text_file
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
-from workhold.model.result import FixtureTable, Result, hole_positions
+from workhold.model.result import FixtureTable, Result
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 
 __all__ = [
     "FORMAT",
-    "TYPE_JAWS",
-    "TYPE_NAMES",
     "fixture_rows",
     "known_figures",
     "load_entry",
@@ -45,15 +44,11 @@ BLOCK = 4096
 LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10
 
-# Of the types as a table has them: their names, and the jaws of their pegs.
-TYPE_NAMES = {1: "I", 2: "II"}
-TYPE_JAWS = {1: ("left", "left", "right", "right"), 2: ("left", "left", "left", "right")}
-
 PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
 POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r'
 
 
-def fixture_template(name: str, jaws: tuple[str, str, str, str], figures: Sequence[Figure]) -> str:
+def fixture_template(name: str, jaws: Sequence[str], figures: Sequence[Figure]) -> str:
     """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
     pegs = ", ".join(PEG.format(jaw) for jaw in jaws)
     quality = ", ".join(f'"{figure.key}": %.12g' for figure in figures)
@@ -83,18 +78,15 @@ def result_text(result: Result) -> Iterator[str]:
     lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
     yield "{" + "".join(lines) + '"fixtures": ['
     yield from fixture_lines(result.table, result.vise)
-    if len(result.twins):
-        yield '\n],\n"twins": ['
-        yield from fixture_lines(result.twins, result.vise)
     yield "\n]}\n"
 
 
-def fixture_lines(table: FixtureTable, vise: Vise) -> Iterator[str]:
+def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     figures = known_figures(table)
-    templates = {kind: fixture_template(TYPE_NAMES[kind], TYPE_JAWS[kind], figures) for kind in TYPE_NAMES}
-    for kind, numbers in fixture_rows(table, vise):
+    templates = [fixture_template(one.name, toolkit.carrier_names(one), figures) for one in toolkit.arrangements]
+    for kind, numbers in fixture_rows(table, toolkit):
         yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
 
@@ -119,8 +111,8 @@ def head(result: Result) -> dict[str, Any]:
         "tolerance": {"peg": result.tolerance.peg, "face": result.tolerance.face},
         "loads": [load_entry(load) for load in result.loads],
         "counts": result.counts,
-        "found": {kind: int(result.found[kind]) for kind in ("I", "II")},
-        "distinct": {kind: int(result.distinct[kind]) for kind in ("I", "II")},
+        "found": {kind: int(count) for kind, count in result.found.items()},
+        "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
         "notes": list(result.notes),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
@@ -164,7 +156,7 @@ def proof_entry(proof: Proof) -> dict[str, Any]:
         "undecided": [
             {
                 "type": item.type,
-                "segments": [int(face) for face in item.segments],
+                "segments": [int(face) for face in item.faces],
                 "columns": [int(column) for column in item.columns],
                 "rows": [int(row) for row in item.rows],
                 "theta_deg": rounded_degrees(item.theta_deg),
@@ -185,30 +177,30 @@ def known_figures(table: FixtureTable) -> list[Figure]:
     return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
 
 
-def fixture_rows(table: FixtureTable, vise: Vise) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
+def fixture_rows(table: FixtureTable, toolkit: Toolkit) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
     """Blocks of fixtures as plain numbers, rounded as they are written.
 
     Yields
     ------
-    The types (1 or 2), and for every fixture a tuple of 28 numbers: for each peg column, row, x, y, segment, force;
-    then theta in degrees, x and y of the pose, jaw separation; and after them the figures of :func:`known_figures`.
+    The indices of the arrangements, and for every fixture a tuple of 28 numbers: for each peg column, row, x, y, face,
+    force; then theta in degrees, x and y of the pose, jaw separation; and after them the figures of :func:`known_figures`.
     """
     known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         separation = rounded(block.jaw_separation, LENGTH_STEPS)
-        holes = hole_positions(vise, block.jaw, block.column, block.row, separation)
+        holes = toolkit.places(block.arrangement, block.column, block.row, separation)
         x, y = (rounded(places, LENGTH_STEPS) for places in holes)
         columns: list[list[Any]] = []
         for peg in range(4):
-            numbers = (block.column, block.row, x, y, block.segment, block.force)
+            numbers = (block.column, block.row, x, y, block.face, block.force)
             columns += [array[:, peg].tolist() for array in numbers]
         theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
         theta[theta >= 360.0] = 0.0
         position = rounded(block.position, LENGTH_STEPS)
         figures = [block.quality[:, number] for number in known]
         columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, *figures)]
-        yield block.type.tolist(), zip(*columns, strict=True)
+        yield block.arrangement.tolist(), zip(*columns, strict=True)
 
 
 def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:

@@ -234,7 +234,7 @@ function summary(job, busy) {
   if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
   if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; below is why."];
   if (job.found === 0) return ["None found so far", ["The search was not complete.", ...(job.notes ?? [])].join(" ")];
-  const types = job.counts ? `${countText(job.counts.I ?? 0)} of type I, ${countText(job.counts.II ?? 0)} of type II` : "";
+  const types = Object.entries(job.counts ?? {}).map(([type, count]) => `${countText(count)} of type ${type}`).join(", ");
   const seconds = typeof job.seconds === "number" ? `, found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s` : "";
   return [many, [`${types}${seconds}.`, ...(job.notes ?? [])].join(" ")];
 }
