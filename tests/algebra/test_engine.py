@@ -72,6 +72,24 @@ def test_nearly_equal_steps(miss: float) -> None:
     assert assert_engines_agree(rounded(20.0 + miss, 20.0, 6.0, 0.0), Vise(pitch=10.0, columns=1, peg_radius=2.0)) > 0
 
 
+def bumps(width: float, smaller: float, tilt: float) -> Workpiece:
+    """Two fillets of radius 6, their centres ``width`` apart, one ``smaller``; two lines ``tilt`` off being parallel."""
+    radius = 6.0 - smaller
+    loop = [[-6, 0, QUARTER], [0, -6, 0], [width - radius, 0, QUARTER], [width, -radius, 0], [38, 3, 0], [31, 27, 0]]
+    return Workpiece.from_loops("bumps", [[*loop, [-6, 27 + 37 * tilt, 0]]])
+
+
+@pytest.mark.parametrize(
+    ("misfit", "smaller"),
+    [(1e-12, 0.0), (0.0, 1e-10), (3e-9, 0.0), (-2e-8, 0.0), (0.0, 2e-8), (1e-7, 1e-7), (1e-6, 0.0)],
+)
+def test_pairs_that_nearly_slide(misfit: float, smaller: float) -> None:
+    """Between a pair that slides and one that clearly does not nothing is lost: not by what is divided out of a resultant,
+    nor by how far roots crowd together. The lines are out of parallel by as much as the arcs are out of step."""
+    part = bumps(20.0 + misfit, smaller, max(abs(misfit), smaller) / 10.0)
+    assert assert_engines_agree(part, Vise(pitch=10.0, columns=2, peg_radius=2.0)) > 0
+
+
 def test_three_equal_arcs_that_all_slide() -> None:
     """Three left pegs on three equal arcs, each pair of centres one step apart."""
     radius, half = 20.0 / sqrt(3.0), pi / 3

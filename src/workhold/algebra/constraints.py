@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
 
-# Lengths that agree to this many mm are equal where equality changes the algebra.
+# Lengths that agree to this part of the part's size are equal where equality changes the algebra.
 COINCIDENT = 1e-9
 
 
@@ -77,17 +77,23 @@ class Contacts:
         """The systems of an index array or mask."""
         return Contacts(self.rows[which], self.point[which])
 
+    def misfit(self, k: int, m: int) -> Array:
+        """How far arcs k and m are from sliding, (N,): by how much their radii differ, or their centres' distance differs
+        from that of their pegs; infinite where one of them is a line.
+        """
+        arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
+        apart = np.abs(self.middle[:, m] - self.middle[:, k])
+        step = np.abs(self.point[:, m] - self.point[:, k])
+        off = np.maximum(np.abs(self.radius[:, k] - self.radius[:, m]), np.abs(apart - step))
+        return np.where(arcs, off, np.inf)
+
     def sliding_pairs(self, k: int, m: int) -> BoolArray:
         """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
 
         There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
         that tells them apart then have the factor z - z0.
         """
-        arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
-        apart = np.abs(self.middle[:, m] - self.middle[:, k])
-        step = np.abs(self.point[:, m] - self.point[:, k])
-        equal = np.abs(self.radius[:, k] - self.radius[:, m]) <= COINCIDENT
-        return np.asarray(arcs & equal & (np.abs(apart - step) <= COINCIDENT))
+        return np.asarray(self.misfit(k, m) <= COINCIDENT)
 
     def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
         """z x + D of pegs k and m, as length (N, M) times direction: x the step from k to m, D from centre m to centre k.

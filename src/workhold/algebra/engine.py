@@ -73,13 +73,18 @@ class Solver:
         height = systems.row * self.vise.pitch[1] + right * self.vise.row_offset
         return np.asarray(systems.column * self.vise.pitch[0] + 1j * height)
 
-    def solve(self, systems: Systems, case: Case) -> Held:
-        """Simultaneous contacts of systems of one case (section 4): three or four pegs."""
+    @property
+    def scaled(self) -> Array:
+        """The features (F, 8) with lengths in parts of the diameter."""
         scaled = np.array(self.rows[:, :8])
         scaled[:, 1:3] /= self.diameter
         scaled[:, 6] /= self.diameter
         scaled[scaled[:, 0] == 0.0, 5] /= self.diameter
-        contacts = Contacts(scaled[systems.feature], self.offsets(systems) / self.diameter)
+        return scaled
+
+    def solve(self, systems: Systems, case: Case) -> Held:
+        """Simultaneous contacts of systems of one case (section 4): three or four pegs."""
+        contacts = Contacts(self.scaled[systems.feature], self.offsets(systems) / self.diameter)
         owner, psi = self.orientations(contacts, case, systems)
         poses = poses_at(contacts, case, owner, psi)
         self.counts["systems"] += len(systems)
@@ -161,7 +166,7 @@ def stages(solver: Solver, types: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
     rows, vise = solver.rows, solver.vise
     pairs = peg_pairs(rows[:, :8], vise, solver.diameter)
-    sliding_pairs = sliding_pairs_of(pairs, rows, vise)
+    sliding_pairs = sliding_pairs_of(pairs, solver.scaled, vise, solver.diameter)
     for name, systems, sliding in (
         ("I", type_one_systems, two_and_two_sliding_pairs),
         ("II", type_two_systems, three_and_one_sliding_pairs),

@@ -16,7 +16,7 @@ from workhold.algebra.constraints import Contacts
 
 __all__ = ["TOLERANCE", "Laurent", "exact_resultant", "exact_roots"]
 
-# Bits; roots are spread by a quarter of them.
+# Bits; roots are spread by half of them.
 PRECISIONS = (512, 1024)
 # Roots are isolated and then refined to this.
 TOLERANCE = 1e-12
@@ -220,13 +220,13 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
     when all may vanish.
 
     Symmetric parts have poses in pairs at one orientation: double roots, which no precision isolates. Coefficients changed
-    by a part 2^(-precision / 4) of the largest have single roots, and even eightfold ones move by no more than some 2^-16.
+    by a part 2^(-precision / 2) of the largest have single roots, and even eightfold ones move by no more than some 2^-32.
     """
     values = list(polynomial.coeffs())
     if not any(value.abs_lower() > 0 for value in values):
         return acb_poly([])
     sizes = [float(value.abs_upper()) for value in values]
-    change = max(sizes, default=0.0) * 2.0 ** (-precision / 4)
+    change = max(sizes, default=0.0) * 2.0 ** (-precision / 2)
     kept = [k for k, size in enumerate(sizes) if size > change]
     if not kept:
         return acb_poly([])

@@ -58,8 +58,8 @@ class Poses:
 
 def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
     """Peg centres (N, K) in the workpiece's frame."""
-    sliding_pairs = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
-    reach = contacts.point[poses.owner] + poses.sigma[:, None] * sliding_pairs
+    moving = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
+    reach = contacts.point[poses.owner] + poses.sigma[:, None] * moving
     return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
 
 
@@ -80,7 +80,7 @@ def residuals(contacts: Contacts, poses: Poses) -> Array:
 
 
 def refined(contacts: Contacts, poses: Poses) -> Poses:
-    """Newton's method on the contact equations; poses that do not settle, and double solutions, are dropped.
+    """Newton's method on the contact equations; poses that do not converge, and double solutions, are dropped.
 
     Lengths are in parts of the part's size.
     """

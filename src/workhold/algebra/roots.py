@@ -14,7 +14,7 @@ import numpy as np
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import Contacts
+from workhold.algebra.constraints import COINCIDENT, Contacts
 from workhold.algebra.exact import TOLERANCE, exact_roots
 from workhold.algebra.resultants import coefficients, have_no_sigma
 from workhold.algebra.wedges import CENTERS, HALF_SECTOR, sector_of
@@ -27,7 +27,7 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
 # A root this near to the unit circle may be real: coefficients are off by some 1e-14, which moves roots that are alone by
-# as little, and the fourfold ones of symmetric parts by up to 1e-3. Newton's method settles it.
+# as little, and the fourfold ones of symmetric parts by up to 1e-3. Newton's method decides.
 NEAR = 1e-2
 # Outermost coefficients below this part of the largest are taken for rounding, and trimmed: where features are parallel,
 # concentric or equal, degrees are lower. On the unit circle that changes the polynomial by no more than the rounding does.
@@ -39,6 +39,9 @@ ILL_CONDITIONED = 1e-6
 # Where a polynomial is below this part of its largest coefficient, or of its terms, roots are crowded.
 CROWDED = 1e-10
 NOISE = 1e-11
+# A pair of arcs that nearly slides crowds up to four roots within its misfit in diameters, two pairs up to eight. Rounding
+# by 1e-14 scatters four within some 3e-4, eight within 2e-2: misfits whose product is below this are looked at in balls.
+NEARLY_SLIDING = 1e-3
 # A polynomial smaller than this part of its terms vanishes identically.
 IDENTICALLY_ZERO = 1e-12
 PRECISIONS = (64, 128, 256, 512)
@@ -119,6 +122,15 @@ def hard_roots(contacts: Contacts, case: tuple[int, int], values: Complex) -> Co
     return exact_roots(contacts, case, case[1] == 2 and bool(have_no_sigma(contacts)[0]))
 
 
+def nearly_sliding(contacts: Contacts) -> BoolArray:
+    """Which systems have pairs of arcs on one jaw that nearly slide, but do not, so that roots are crowded."""
+    product = np.ones(len(contacts.rows))
+    for k, m in ((0, 1), (2, 3)) if contacts.rows.shape[1] == 4 else ((0, 1), (0, 2), (1, 2)):
+        misfit = contacts.misfit(k, m)
+        product *= np.where(misfit <= COINCIDENT, 1.0, np.minimum(misfit, 1.0))
+    return np.asarray(product <= NEARLY_SLIDING)
+
+
 def orientations(contacts: Contacts, case: tuple[int, int], sectors: BoolArray) -> tuple[IntArray, Array, IntArray]:
     """Candidates for the orientations of N systems of one case.
 
@@ -140,6 +152,7 @@ def orientations(contacts: Contacts, case: tuple[int, int], sectors: BoolArray) 
     outermost = np.abs(values[index, values.shape[1] - 1 - trimmed])
     flat = contacts.rows[index][..., 6].max(axis=1, initial=0.0) > NEARLY_STRAIGHT
     hard = (outermost <= ILL_CONDITIONED * largest[index]) | (sectors & crowded)[index].any(axis=1) | flat
+    hard |= nearly_sliding(contacts.take(index))
     owners, found = [], []
     for cut in np.unique(trimmed[~hard]):
         steady = index[~hard & (trimmed == cut)]

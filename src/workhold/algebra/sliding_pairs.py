@@ -2,8 +2,9 @@ r"""Peg pairs at which the resultant says nothing: the orientation is fixed and 
 
 Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs, fix the
 orientation by themselves; along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
-resultant such a pair is a factor that carries no information about the others. So the orientation is taken from the pair,
-and the rest of the pose from the other contacts at that orientation: two circles or lines met at a time.
+resultant such a pair is a factor that carries no information about the others, and is divided out. So the orientation is
+taken from the pair, and the rest of the pose from the other contacts at that orientation: two circles or lines met at a
+time. What is divided out and what is listed here is told by one measure, ``Contacts.misfit``.
 
 Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
 
@@ -14,15 +15,15 @@ in the two different places that an orientation allows, which are level at a few
 
 from __future__ import annotations
 
-from math import acos, atan2, ceil, floor
+from math import ceil, floor
 
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.conditions import Held, row_points
+from workhold.algebra.conditions import STEEPEST, Held, row_points
 from workhold.algebra.constraints import COINCIDENT, Complex, Contacts
-from workhold.algebra.quartets import PARALLEL
+from workhold.algebra.quartets import PARALLEL, are_parallel
 from workhold.algebra.wedges import PegPairs, sector_of
 from workhold.model.vise import Vise
 
@@ -39,8 +40,15 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Orientations of slides may be off by this, in radians: lines are parallel and steps equal to rounding only.
-REACH = 1e-9
+# Arcs are listed up to this many times the misfit at which they are divided out, so that the rounding of a misfit that
+# lies on that edge cannot lose a pair.
+SPARE = 2.0
+# Rounding of a misfit, in parts of the part's size.
+ROUNDING = 1e-14
+# Orientations may be off by this at least, and by this at most, in radians.
+LEAST_REACH, MOST_REACH = 1e-12, 1e-3
+# A step square to parallel lines, to within the rounding of this cosine, puts both contacts on one line of action.
+SQUARE = 4e-15
 
 
 @define(frozen=True)
@@ -51,27 +59,12 @@ class SlidingPair:
     ----------
     pair : its index.
     psi : the orientation in radians.
+    error : by how much in mm its two contacts may be off from sliding together.
     """
 
     pair: int
     psi: float
-
-
-def fixed_orientations(a: Array, b: Array, step: complex) -> list[float]:
-    """Orientations fixed by a peg pair, with the step between its pegs in mm, on features a and b; none for most."""
-    between = complex(b[1] - a[1], b[2] - a[2])
-    if a[0] == 0.0 and b[0] == 0.0:
-        if abs(a[3] * b[4] - a[4] * b[3]) > PARALLEL:
-            return []
-        cosine = (a[4] * between.real - a[3] * between.imag) / abs(step)
-        # A step square to the lines puts both contacts on one line of action: no closure.
-        if abs(cosine) >= 1.0 - 1e-12:
-            return []
-        middle = atan2(-a[3], a[4]) - atan2(step.imag, step.real)
-        return [middle + acos(cosine), middle - acos(cosine)]
-    if a[0] != 0.0 and b[0] != 0.0 and abs(a[6] - b[6]) <= COINCIDENT and abs(abs(between) - abs(step)) <= COINCIDENT:
-        return [atan2(between.imag, between.real) - atan2(step.imag, step.real)]
-    return []
+    error: float
 
 
 def step_of(pairs: PegPairs, k: int, vise: Vise) -> complex:
@@ -79,46 +72,87 @@ def step_of(pairs: PegPairs, k: int, vise: Vise) -> complex:
     return complex(pairs.column[k] * vise.pitch[0], pairs.row[k] * vise.pitch[1])
 
 
-def sliding_pairs_of(pairs: PegPairs, rows: Array, vise: Vise) -> list[SlidingPair]:
-    """All peg pairs that fix the orientation, once for each orientation."""
-    return [
-        SlidingPair(k, psi)
-        for k in range(len(pairs))
-        for psi in fixed_orientations(rows[pairs.tail[k]], rows[pairs.head[k]], step_of(pairs, k, vise))
-    ]
+def sliding_pairs_of(pairs: PegPairs, scaled: Array, vise: Vise, diameter: float) -> list[SlidingPair]:
+    """All peg pairs that fix the orientation, once for each orientation.
+
+    Parameters
+    ----------
+    scaled : (F, 8) feature rows with lengths in parts of the part's size.
+    diameter : that size in mm.
+    """
+    step = (pairs.column * vise.pitch[0] + 1j * pairs.row * vise.pitch[1]) / diameter
+    contacts = Contacts(scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1))
+    between, rows = contacts.middle[:, 1] - contacts.middle[:, 0], contacts.rows
+    misfit = contacts.misfit(0, 1)
+    arcs = np.flatnonzero(misfit <= SPARE * COINCIDENT)
+    cosine = (np.conj(contacts.normal[:, 0]) * between).real / np.abs(step)
+    lines = np.flatnonzero(are_parallel(scaled, pairs.tail, pairs.head) & (np.abs(cosine) < 1.0 - SQUARE))
+    turn = np.abs(rows[lines, 0, 3] * rows[lines, 1, 4] - rows[lines, 0, 4] * rows[lines, 1, 3])
+    apart = turn * (rows[lines, :, 5].sum(axis=1) + np.abs(step[lines]))
+    middle, spread = np.angle(contacts.normal[lines, 0] / step[lines]), np.arccos(cosine[lines])
+    pair = np.concatenate([arcs, lines, lines])
+    psi = np.concatenate([np.angle(between[arcs] / step[arcs]), middle + spread, middle - spread])
+    error = (np.concatenate([misfit[arcs], apart, apart]) + ROUNDING) * diameter
+    order = np.argsort(pair, kind="stable")
+    return [SlidingPair(int(pair[k]), float(psi[k]), float(error[k])) for k in order]
 
 
-def meets(a: Array, b: Array, shift: complex) -> list[complex]:
-    """Points of feature a's line or circle whose shifted image is on feature b's: none, one or two."""
+def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: complex, slope: Array) -> Array:
+    """How far in radians the orientation of a sliding pair may be off, (N,).
+
+    Contacts that miss by e turn the pegs by e over the distance between their two lines of action.
+
+    Parameters
+    ----------
+    row, point : feature of the first peg, and where on it the peg is.
+    step : from the first peg to the second, turned by the orientation, in mm.
+    slope : how much farther the contacts move than the pegs turn, see :func:`row_points`.
+    """
+    normal = row[4] - 1j * row[3] if row[0] == 0.0 else (point - row[1] - 1j * row[2]) / row[6]
+    arm = np.maximum(np.abs((np.conj(normal) * step).imag), abs(step) / STEEPEST)
+    return np.asarray(np.clip(2.0 * sliding_pair.error / arm * slope, LEAST_REACH, MOST_REACH))
+
+
+def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
+    """Points of feature a's line or circle whose shifted image is on feature b's, none, one or two, and how much each moves
+    when either does."""
     one, two = complex(a[1], a[2]), complex(b[1], b[2]) - shift
     if a[0] == 0.0 and b[0] == 0.0:
         turn = a[3] * b[4] - a[4] * b[3]
         if abs(turn) <= PARALLEL:
             return []
         off = two - one
-        return [one + (off.real * b[4] - off.imag * b[3]) / turn * complex(a[3], a[4])]
+        along = (off.real * b[4] - off.imag * b[3]) / turn
+        return [(one + along * complex(a[3], a[4]), steepness(1.0, abs(turn)))]
     if a[0] == 0.0:
         return line_meets_circle(one, complex(a[3], a[4]), two, b[6])
     if b[0] == 0.0:
         return line_meets_circle(two, complex(b[3], b[4]), one, a[6])
     gap = abs(two - one)
-    if gap <= COINCIDENT:
+    if gap <= COINCIDENT * (a[6] + b[6]):
         return []
     along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
     if abs(along) >= a[6]:
         return []
     half = ((a[6] - along) * (a[6] + along)) ** 0.5
     direction = (two - one) / gap
-    return [one + direction * complex(along, sign * half) for sign in (1.0, -1.0)]
+    slope = steepness(a[6] * b[6], half * gap)
+    return [(one + direction * complex(along, sign * half), slope) for sign in (1.0, -1.0)]
 
 
-def line_meets_circle(point: complex, tangent: complex, center: complex, radius: float) -> list[complex]:
+def steepness(size: float, across: float) -> float:
+    """A bound of how much a meeting point moves when what meets there does, at most ``STEEPEST``."""
+    return min(3.0 * size / max(across, size / STEEPEST), STEEPEST)
+
+
+def line_meets_circle(point: complex, tangent: complex, center: complex, radius: float) -> list[tuple[complex, float]]:
     """Where a line through a point meets a circle; a tangent one does not (a double contact carries no force)."""
     off = (point - center) * tangent.conjugate()
     if abs(off.imag) >= radius:
         return []
     half = ((radius - off.imag) * (radius + off.imag)) ** 0.5
-    return [center + tangent * complex(sign * half, off.imag) for sign in (1.0, -1.0)]
+    slope = steepness(radius, half)
+    return [(center + tangent * complex(sign * half, off.imag), slope) for sign in (1.0, -1.0)]
 
 
 def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, vise: Vise) -> list[Held]:
@@ -128,17 +162,18 @@ def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair],
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
         a, b = int(pairs.tail[i]), int(pairs.head[i])
+        own = z * step_of(pairs, i, vise)
         sector = int(sector_of(np.array(sliding_pair.psi)))
         near = sectors[:, sector] | sectors[:, sector - 1] | sectors[:, (sector + 1) % sectors.shape[1]]
         for j in np.flatnonzero(near):
             c, d = int(pairs.tail[j]), int(pairs.head[j])
             step = z * step_of(pairs, int(j), vise)
-            for point in meets(rows[c], rows[d], step):
-                line, tail = stopped(rows[a], sliding_pair.psi, (point / z).imag, vise)
+            for point, steep in meets(rows[c], rows[d], step):
+                line, tail, slope = stopped(rows[a], sliding_pair.psi, (point / z).imag, vise)
                 if len(line) == 0:
                     continue
                 zero = np.zeros(len(line), np.int64)
-                center = np.stack([tail, tail + z * step_of(pairs, i, vise), zero + point, zero + point + step], axis=1)
+                center = np.stack([tail, tail + own, zero + point, zero + point + step], axis=1)
                 found.append(
                     Held(
                         2,
@@ -146,15 +181,16 @@ def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair],
                         np.stack([zero, zero + pairs.column[i], zero, zero + pairs.column[j]], axis=1),
                         np.stack([zero, zero + pairs.row[i], line, line + pairs.row[j]], axis=1),
                         np.full(len(line), sliding_pair.psi),
-                        np.full(len(line), REACH),
+                        reach_of(sliding_pair, rows[a], tail, own, np.minimum(steep * slope, STEEPEST)),
                         center,
                     )
                 )
     return found
 
 
-def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray, Complex]:
-    """Rows of the first right peg, counted from the first left peg, and places of the latter on its feature.
+def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray, Complex, Array]:
+    """Rows of the first right peg, counted from the first left peg, places of the latter on its feature, and how much these
+    move when the height or the orientation does.
 
     ``height`` is that of the first right peg along the vise's y axis in mm.
     """
@@ -165,8 +201,8 @@ def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray
     first = ceil((height - vise.row_offset - middle - reach) / pitch - 1e-9)
     last = floor((height - vise.row_offset - middle + reach) / pitch + 1e-9)
     line = np.arange(first, last + 1)
-    index, point, _ = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
-    return line[index], point
+    index, point, slope = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
+    return line[index], point, slope
 
 
 def three_and_one_sliding_pairs(
@@ -177,13 +213,14 @@ def three_and_one_sliding_pairs(
     most = vise.columns - 1
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
-        a, b, step = int(pairs.tail[i]), int(pairs.head[i]), step_of(pairs, i, vise)
+        a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * step_of(pairs, i, vise)
         for c, column, row in third_pegs(pairs, a):
             spread = (0, int(pairs.column[i]), column)
             if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(spread) > most:
                 continue
             third = z * complex(column * vise.pitch[0], row * vise.pitch[1])
-            for point in meets(rows[a], rows[c], third):
+            for point, slope in meets(rows[a], rows[c], third):
+                places = np.array([[point, point + own, point + third]])
                 found.append(
                     Held(
                         3,
@@ -191,8 +228,8 @@ def three_and_one_sliding_pairs(
                         np.array([[0, pairs.column[i], column]]),
                         np.array([[0, pairs.row[i], row]]),
                         np.array([sliding_pair.psi]),
-                        np.array([REACH]),
-                        np.array([[point, point + z * step, point + third]]),
+                        reach_of(sliding_pair, rows[a], places[:, 0], own, np.array([slope])),
+                        places,
                     )
                 )
     return found
