@@ -18,7 +18,15 @@ from workhold.geometry.segment import Segment, segment_rows
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ContactFeature", "allowed_features", "contact_features", "end_slacks", "face_of_segment", "feature_rows"]
+__all__ = [
+    "ContactFeature",
+    "allowed_features",
+    "contact_features",
+    "end_distances",
+    "end_slacks",
+    "face_of_segment",
+    "feature_rows",
+]
 
 # A contact this near to the end of its feature, in mm, is at the end.
 ROUNDING = 1e-9
@@ -103,6 +111,25 @@ def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[Co
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
     """Kernel rows (N, 8) of contact features."""
     return segment_rows([feature.segment for feature in features])
+
+
+def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
+
+    Negative beyond an end, infinite on a whole circle, which has none; ``kernels.contact.ends`` is the same for one point
+    in compiled code.
+
+    Parameters
+    ----------
+    rows : (..., 8 or more) kernel rows of the features.
+    points : (..., 2) in mm.
+    """
+    dx, dy = points[..., 0] - rows[..., 1], points[..., 1] - rows[..., 2]
+    along, across = dx * rows[..., 3] + dy * rows[..., 4], rows[..., 3] * dy - rows[..., 4] * dx
+    is_arc = rows[..., 0] != 0.0
+    place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., 6], 1.0)
+    ends = np.stack([rows[..., 5] + place, rows[..., 5] - place], axis=-1) * unit[..., None]
+    return np.where((is_arc & (rows[..., 5] >= np.pi))[..., None], np.inf, ends)
 
 
 def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:

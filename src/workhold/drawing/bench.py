@@ -8,24 +8,16 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.jaws import JawView, draw_holes, draw_plate, hole_radius, jaw_views
-from workhold.drawing.part import (
-    contact_of,
-    extent,
-    face_of,
-    outline_path,
-    placed,
-    placed_loops,
-    sampled_loop,
-    segment_path,
-)
+from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
+from workhold.drawing.plates import draw_holes, draw_plate, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
+from workhold.model.shown import Shown, shown
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ARROW", "PART_FILL", "PEG_FILL", "TOUCHED", "Bench", "bench_of", "draw_bench", "force_arrow", "peg_radius"]
+__all__ = ["ARROW", "PART_FILL", "PEG_FILL", "TOUCHED", "Bench", "bench_of", "draw_bench", "force_arrow"]
 
 PART_FILL = "#fff7d1"
 PEG_FILL = "#b3122a"
@@ -45,39 +37,37 @@ class Bench:
     loops : the placed outline and holes of the part.
     faces : the placed faces the four pegs touch.
     contacts : contact point and outward normal of each peg.
-    part : the part's extent.
-    jaws : both jaws as far as they show.
-    extent : everything together.
+    shown : the carriers as far as they show.
     """
 
     fixture: Fixture
-    vise: Vise
+    toolkit: Toolkit
     loops: list[list[Segment]]
     faces: list[Segment]
     contacts: list[tuple[Point, Point]]
-    part: Box
-    jaws: tuple[JawView, JawView]
-    extent: Box
+    shown: Shown
+
+    @property
+    def extent(self) -> Box:
+        """Everything together."""
+        return self.shown.extent
 
     def outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
         """(N, 2) page points around each loop of the part, about ``step`` page units apart."""
         return [sampled_loop(loop, view, step) for loop in self.loops]
 
+    def radius(self, view: View) -> float:
+        """Radius of a peg on the page."""
+        return max(self.toolkit.carriers[0].peg_radius * view.scale, THINNEST_PEG)
 
-def bench_of(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> Bench:
+
+def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
     """Put everything in its place."""
-    loops = placed_loops(workpiece, fixture.pose)
-    part = extent(loops[0])
-    faces = [placed(face_of(workpiece, peg.face), fixture.pose) for peg in fixture.pegs]
-    contacts = [contact_of(peg, face) for peg, face in zip(fixture.pegs, faces, strict=True)]
-    jaws = jaw_views(fixture, vise, part)
-    whole = part.union(jaws[0].plate).union(jaws[1].plate)
-    return Bench(fixture, vise, loops, faces, contacts, part, jaws, whole)
-
-
-def peg_radius(vise: Vise, scale: float) -> float:
-    """Radius of a peg on the page."""
-    return max(vise.peg_radius * scale, THINNEST_PEG)
+    pose = fixture.pose
+    loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
+    faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
+    contacts = [contact_of((peg.x, peg.y), face) for peg, face in zip(fixture.pegs, faces, strict=True)]
+    return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece))
 
 
 def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
@@ -96,22 +86,25 @@ def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[P
 def draw_bench(
     scene: Scene, bench: Bench, view: View, weight: float = 1.0, longest: float = 62.0, axes: bool = True
 ) -> None:
-    """Draw jaws, holes, part, touched faces, forces and pegs.
+    """Draw plates, holes, part, touched faces, forces and pegs.
 
     Parameters
     ----------
     weight : factor on line widths.
     longest : length of the longest force arrow in page units.
-    axes : draw the axes of the two columns at the opening as well.
+    axes : draw the axes that the travel is measured between as well.
     """
     plates = scene.group("jaws")
-    for jaw in bench.jaws:
-        draw_plate(plates, jaw, view, 5.0 * weight)
+    for carrier in bench.shown.carriers:
+        draw_plate(plates, carrier, view, 5.0 * weight)
     holes = scene.group("holes")
-    for jaw in bench.jaws:
-        draw_holes(holes, jaw, view, bench.fixture, bench.vise)
+    for carrier in bench.shown.carriers:
+        draw_holes(holes, carrier, view, most_holes(view, bench.shown))
     if axes:
-        draw_axes(scene, bench, view, weight)
+        group = scene.group("axes")
+        for _, *between in bench.shown.travels:
+            for low, high in between:
+                group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
     draw_part(scene, bench, view, weight)
     arrows = scene.group("forces")
     for index in range(4):
@@ -120,18 +113,10 @@ def draw_bench(
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
             arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if peg_radius(bench.vise, view.scale) > 7.0 * weight:
+    if bench.radius(view) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
             contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
-
-
-def draw_axes(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draw the axes of the columns that the jaw separation is measured between."""
-    group = scene.group("axes")
-    for x, jaw in ((bench.jaws[0].x[-1], bench.jaws[0]), (bench.jaws[1].x[0], bench.jaws[1])):
-        ends = [view((x, jaw.plate.y1)), view((x, jaw.plate.y0))]
-        group.line(ends, GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
 
 
 def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
@@ -145,16 +130,17 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
 
 
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draw the four pegs with their centres marked."""
+    """Draw the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
-    radius = peg_radius(bench.vise, view.scale)
+    radius = bench.radius(view)
     cross = min(0.55 * radius, 6.0 * weight)
-    for peg in bench.fixture.pegs:
-        x, y = view((peg.x, peg.y))
-        hole = hole_radius(bench.vise, view.scale)
-        if bench.vise.peg_radius == 0 and hole > radius:
-            pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
-        pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
-        if cross > 2.0 * weight:
-            pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
-            pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)
+    for carrier in bench.shown.carriers:
+        hole = view.scale * carrier.hole_radius
+        for peg in carrier.pegs:
+            x, y = view((peg.x, peg.y))
+            if carrier.carrier.peg_radius == 0 and hole > radius:
+                pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
+            pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+            if cross > 2.0 * weight:
+                pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
+                pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)

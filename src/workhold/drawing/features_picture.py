@@ -11,7 +11,8 @@ from workhold.drawing.dimensions import dimension, scale_bar
 from workhold.drawing.fonts import shortened, text_width
 from workhold.drawing.labels import Label, LabelPlacer, around, joined, leader_end
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.part import extent, outline_path, sampled, sampled_loop, segment_path
+from workhold.drawing.panel import plural
+from workhold.drawing.part import outline_path, sampled, sampled_loop, segment_path
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.geometry.face import Face
 from workhold.geometry.segment import Arc, Segment
@@ -43,7 +44,7 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
     str
         SVG text; the group of class ``part`` carries the map from mm to the page, as in :func:`draw_fixture`.
     """
-    bounds = extent(workpiece.loop_segments[0])
+    bounds = Box(*workpiece.bounds)
     lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
     page = sheet(len(workpiece.faces), LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT)
     numbers = MORE_NUMBERS if len(workpiece.faces) > MANY_FACES else NUMBERS
@@ -74,22 +75,13 @@ def draw_header(scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: flo
     width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
     group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
     faces, holes = len(workpiece.faces), len(workpiece.loops) - 1
-    words = [counted(faces, "face"), counted(holes, "hole") if holes else "no holes"]
+    words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
     if peg_radius is not None:
         size = lengths.plain(2 * peg_radius)
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
     line = " · ".join(words)
     group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)
-
-
-def counted(count: int, noun: str) -> str:
-    """A count and its noun.
-
-    >>> counted(1, "face"), counted(2, "face")
-    ('1 face', '2 faces')
-    """
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:

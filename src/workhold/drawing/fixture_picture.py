@@ -7,14 +7,14 @@ from attrs import frozen
 from workhold.drawing.bench import Bench, bench_of
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.inset import draw_inset
-from workhold.drawing.jaws import CLOSEST_HOLES
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import Column, draw_legend, draw_peg_table, draw_settings, draw_title
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
+from workhold.drawing.plates import most_holes
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.model.fixture import Fixture
+from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_fixture"]
@@ -48,7 +48,7 @@ def layout_on(page: tuple[float, float]) -> Layout:
 
 
 def draw_fixture(
-    fixture: Fixture, workpiece: Workpiece, vise: Vise, *, title: str | None = None, unit: Unit = MILLIMETRE
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, *, title: str | None = None, unit: Unit = MILLIMETRE
 ) -> str:
     """Draw a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
@@ -65,37 +65,30 @@ def draw_fixture(
     str
         SVG text.
     """
-    lengths = LengthUnit.suiting(unit, min(vise.pitch))
-    bench = bench_of(fixture, workpiece, vise)
+    bench = bench_of(fixture, workpiece, toolkit)
+    lengths = LengthUnit.suiting(unit, bench.shown.pitch)
     landscape, portrait = layout_on(LANDSCAPE), layout_on(PORTRAIT)
     layout = portrait if portrait.view(bench).scale > 1.15 * landscape.view(bench).scale else landscape
     view = layout.view(bench)
     scene = Scene.page(layout.page, f"{workpiece.name}: {title or 'Fixture'}")
     draw_plan(scene, bench, view, workpiece, layout.drawing, lengths)
     scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale, lengths)
-    draw_panel(scene, layout.panel, view.scale, fixture, workpiece, vise, title, lengths)
+    draw_panel(scene, layout.panel, bench, view, workpiece, title, lengths)
     return scene.svg()
 
 
 def draw_panel(
-    scene: Scene,
-    panel: Box,
-    scale: float,
-    fixture: Fixture,
-    workpiece: Workpiece,
-    vise: Vise,
-    title: str | None,
-    lengths: LengthUnit,
+    scene: Scene, panel: Box, bench: Bench, view: View, workpiece: Workpiece, title: str | None, lengths: LengthUnit
 ) -> None:
-    """Write the panel, with the part as drawn at its foot; ``scale`` is that of the drawing beside it."""
-    group = scene.group("panel")
+    """Write the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
+    group, fixture = scene.group("panel"), bench.fixture
     group.line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
     column = Column(group, panel.x0, panel.y0, panel.width)
-    draw_title(column, fixture, workpiece, title)
-    draw_settings(column, fixture, vise, lengths)
+    draw_title(column, fixture, workpiece, bench.toolkit, title)
+    draw_settings(column, fixture, bench.toolkit, lengths)
     draw_peg_table(column, fixture, lengths)
     draw_legend(column)
-    if min(vise.pitch) * scale < CLOSEST_HOLES:
+    if not most_holes(view, bench.shown):
         column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)
     column.rule()
     room = Box(panel.x0, column.y, panel.x1, min(panel.y1, column.y + HIGHEST_INSET))

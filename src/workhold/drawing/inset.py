@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from workhold.drawing.bench import ARROW, PART_FILL, TOUCHED
-from workhold.drawing.part import contact_of, extent, face_of, outline_path, placed, placed_point, segment_path
+from workhold.drawing.part import contact_of, face_of, outline_path, segment_path
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
 from workhold.geometry.segment import Point
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_inset", "draw_zero"]
@@ -27,7 +27,7 @@ def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, z
     group = scene.group("part-as-drawn")
     group.text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
     room = Box(box.x0 + 40, box.y0 + 30, box.x1 - 10, box.y1 - 24)
-    bounds = extent(workpiece.loop_segments[0])
+    bounds = Box(*workpiece.bounds)
     view = View.fitting(bounds, room)
     d = outline_path(workpiece.loop_segments, view)
     group.path(d, fill=PART_FILL, fill_rule="evenodd")
@@ -56,11 +56,10 @@ def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
 
 
 def contacts(workpiece: Workpiece, fixture: Fixture) -> list[Point]:
-    """The four contact points in the workpiece's own frame, mm."""
-    pose = fixture.pose
-    back = Pose(-pose.theta_deg, 0.0, 0.0)
+    """The contact points in the workpiece's own frame, mm."""
+    back = fixture.pose.inverse
     points = []
     for peg in fixture.pegs:
-        (x, y), _ = contact_of(peg, placed(face_of(workpiece, peg.face), pose))
-        points.append(placed_point((x - pose.x, y - pose.y), back))
+        face = face_of(workpiece, peg.face)
+        points.append(contact_of(back.apply(peg.x, peg.y), face)[0])
     return points

@@ -9,14 +9,25 @@ from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.scene import BLACK, GREY, Scene
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["TYPE_WORDS", "Column", "closure_margin", "draw_legend", "draw_peg_table", "draw_settings", "draw_title"]
+__all__ = [
+    "NUMBERS",
+    "Column",
+    "arrangement_words",
+    "closure_margin",
+    "draw_legend",
+    "draw_peg_table",
+    "draw_settings",
+    "draw_title",
+    "offset_words",
+    "plural",
+]
 
 # Size of the name of a fact, and the least room between it and the value.
 FACT_NAME, FACT_GAP = 13.0, 8.0
-TYPE_WORDS = {"I": "Type I: two pegs on each jaw", "II": "Type II: three pegs left, one right"}
+NUMBERS = ("no", "one", "two", "three", "four")
 
 
 class Column:
@@ -78,29 +89,60 @@ def closure_margin(fixture: Fixture) -> str:
     return f"{margin:.4f}" if margin >= 0.001 else f"{margin:.2e}".replace("-", "−")
 
 
-def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, title: str | None) -> None:
+def arrangement_words(name: str, toolkit: Toolkit) -> str:
+    """A toolkit's arrangement of pegs in words.
+
+    >>> from workhold.model.vise import Vise
+    >>> [arrangement_words(name, Vise(pitch=10, columns=2, peg_radius=3)) for name in ("I", "II")]
+    ['Type I: two pegs on each jaw', 'Type II: three pegs left, one right']
+    """
+    counts, carriers = toolkit.arrangement(name).pegs, toolkit.carriers
+    if len(counts) > 1 and len(set(counts)) == 1:
+        return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
+    words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
+    words[0] = f"{plural(counts[0], 'peg', NUMBERS)} {carriers[0].name}"
+    return f"Type {name}: {', '.join(words)}"
+
+
+def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
+    """A count and its noun, the count in words if there are some for it.
+
+    >>> plural(1, "face"), plural(2, "face")
+    ('1 face', '2 faces')
+    """
+    word = numbers[count] if count < len(numbers) else count
+    return f"{word} {noun}" if count == 1 else f"{word} {noun}s"
+
+
+def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
+    """How far the rows of the carrier that slides lie above or below those of the first one; None where they are level."""
+    offset = toolkit.moving.offset[1] - toolkit.carriers[0].offset[1]
+    return f"{lengths.words(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
+
+
+def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None) -> None:
     """Write the part's name, the fixture's and its type."""
     fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
     column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
     column.words(title or "Fixture", 18, gap=0.5)
-    column.words(TYPE_WORDS[fixture.type], 14, fill=GREY)
+    column.words(arrangement_words(fixture.type, toolkit), 14, fill=GREY)
     column.rule(2.0)
 
 
-def draw_settings(column: Column, fixture: Fixture, vise: Vise, lengths: LengthUnit) -> None:
-    """Write what to set, with the jaw separation first."""
-    column.words("Jaw separation S", 13, fill=GREY, gap=0.8)
+def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
+    """Write what to set, with the travel first."""
+    first, moving = toolkit.carriers[0], toolkit.moving
+    column.words(f"{moving.noun.capitalize()} separation S", 13, fill=GREY, gap=0.8)
     column.words(lengths.words(fixture.jaw_separation), 32, bold=True, gap=0.4)
     column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()
-    count = f"{vise.columns} column{'s' if vise.columns > 1 else ''}"
-    column.fact("Each jaw", f"{count}, pitch {lengths.plain_number(vise.pitch[0])} × {lengths.plain(vise.pitch[1])}")
-    column.fact("Pegs", f"Ø {lengths.plain(2 * vise.peg_radius)}" if vise.peg_radius else "points, no diameter")
-    if vise.row_offset:
-        word = "above" if vise.row_offset > 0 else "below"
-        column.fact("R rows over L rows", f"{lengths.words(abs(vise.row_offset))} {word}")
+    pitch = f"pitch {lengths.plain_number(first.pitch[0])} × {lengths.plain(first.pitch[1])}"
+    column.fact(f"Each {first.noun}", f"{plural(first.columns, 'column')}, {pitch}")
+    column.fact("Pegs", f"Ø {lengths.plain(2 * first.peg_radius)}" if first.peg_radius else "points, no diameter")
+    if offset := offset_words(toolkit, lengths):
+        column.fact(f"{moving.letter} rows over {first.letter} rows", offset)
     column.rule()
 
 

@@ -1,27 +1,21 @@
-"""Outlines on the page: segments placed by a pose and written as SVG paths whose arcs are true arcs."""
+"""Outlines on the page: segments written as SVG paths whose arcs are true arcs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import ceil, cos, pi, radians, sin
+from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.drawing.scene import Box, View, number
-from workhold.geometry.intersect import bounding_box
+from workhold.drawing.scene import View, number
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.fixture import Peg, Pose
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "contact_of",
-    "extent",
     "face_of",
     "outline_path",
-    "placed",
-    "placed_loops",
-    "placed_point",
     "sampled",
     "sampled_loop",
     "segment_path",
@@ -30,37 +24,6 @@ __all__ = [
 # An SVG arc is told by its ends and radius. Beyond this sweep its centre suffers from the rounding of the ends, so
 # longer arcs are written in pieces.
 LONGEST_SWEEP = 2 * pi / 3
-
-
-def placed_point(point: Point, pose: Pose) -> Point:
-    """A workpiece point in the vise frame, mm."""
-    c, s = cos(radians(pose.theta_deg)), sin(radians(pose.theta_deg))
-    return c * point[0] - s * point[1] + pose.x, s * point[0] + c * point[1] + pose.y
-
-
-def placed(segment: Segment, pose: Pose) -> Segment:
-    """A segment of the workpiece in the vise frame."""
-    if isinstance(segment, Line):
-        return Line(placed_point(segment.start, pose), placed_point(segment.end, pose))
-    return Arc(
-        placed_point(segment.center, pose),
-        segment.radius,
-        segment.mid_angle + radians(pose.theta_deg),
-        segment.half_sweep,
-        segment.sign,
-    )
-
-
-def placed_loops(workpiece: Workpiece, pose: Pose) -> list[list[Segment]]:
-    """All loops of the workpiece in the vise frame."""
-    return [[placed(segment, pose) for segment in loop] for loop in workpiece.loop_segments]
-
-
-def extent(segments: Iterable[Segment]) -> Box:
-    """Smallest box around segments, in mm."""
-    boxes = np.array([bounding_box(segment) for segment in segments])
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    return Box(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 
 
 def segment_path(segment: Segment, view: View, moved: bool = True) -> str:
@@ -110,8 +73,8 @@ def face_of(workpiece: Workpiece, number: int) -> Segment:
     return next(face.segment for face in workpiece.faces if number in face.segments)
 
 
-def contact_of(peg: Peg, face: Segment) -> tuple[Point, Point]:
-    """Where a peg touches a placed face, and the outward unit normal there; vise frame, mm."""
+def contact_of(center: Point, face: Segment) -> tuple[Point, Point]:
+    """Where a peg about a centre touches a face, and the outward unit normal there, all in one frame, mm."""
     half = face.half_extent
-    parameter = max(-half, min(half, face.parameter((peg.x, peg.y))))
+    parameter = max(-half, min(half, face.parameter(center)))
     return face.at(parameter), face.normal(parameter)

@@ -1,4 +1,4 @@
-"""The plan of a fixture with its lettering: hole names, jaw separation, labels of pegs and faces, the part's turn."""
+"""The plan of a fixture with its lettering: hole names, travel, labels of pegs and faces, the part's turn."""
 
 from __future__ import annotations
 
@@ -7,22 +7,23 @@ from math import atan2, cos, hypot, pi, radians, sin
 
 import numpy as np
 
-from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow, peg_radius
+from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow
 from workhold.drawing.dimensions import angle_mark, dimension
 from workhold.drawing.fonts import text_width
 from workhold.drawing.inset import draw_zero
-from workhold.drawing.jaws import JawView, labelled
 from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.part import placed_point
+from workhold.drawing.plates import labelled
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Point
 from workhold.model.holes import column_letters
+from workhold.model.shown import ShownCarrier
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["BOTTOM", "LEFT", "RIGHT", "TOP", "draw_plan"]
 
-# Room around jaws and part for row numbers, column letters, the dimension and captions, page units.
+# Room around plates and part for row numbers, column letters, the dimension and captions, page units.
 LEFT, TOP, RIGHT, BOTTOM = 48.0, 84.0, 48.0, 82.0
 LONGEST_ARROW = 62.0
 
@@ -56,9 +57,9 @@ def draw_plan(
     frame = view.box(bench.extent)
     names = draw_hole_names(scene, bench, view, frame)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
-    draw_separation(scene, bench, view, frame, lengths)
+    draw_travel(scene, bench, view, frame, lengths)
     names += draw_captions(scene, bench, view, frame, bounds)
-    center = view(placed_point(workpiece.center, bench.fixture.pose))
+    center = view(bench.fixture.pose.apply(*workpiece.center))
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks if bench.extent.contains(Box(*point, *point))]
     angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
@@ -66,26 +67,28 @@ def draw_plan(
 
 
 def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
-    """Write column letters above and below the jaws and row numbers at their outer sides, as on the rim of a map.
+    """Write column letters above and below the plates and row numbers beside them, as on the rim of a map, but none
+    where another plate stands.
 
     Returns where they stand.
     """
     group, boxes = scene.group("hole-names"), []
-    for jaw in bench.jaws:
-        plate = view.box(jaw.plate)
-        pegs = [peg for peg in bench.fixture.pegs if peg.jaw == jaw.jaw]
-        rows = [(row, view((0.0, y))[1]) for row, y in zip(jaw.rows, jaw.y, strict=True)]
-        for row, y, used in labelled(rows, {peg.row for peg in pegs}, 15.0):
-            rim, inner, way = (frame.x0, plate.x0, -1) if jaw.jaw == "left" else (frame.x1, plate.x1, 1)
+    for shown in bench.shown.carriers:
+        plate = view.box(shown.plate)
+        rows = [(row, view((0.0, y))[1]) for row, y in zip(shown.rows, shown.y, strict=True)]
+        for row, y, used in labelled(rows, {peg.row for peg in shown.pegs}, 15.0):
+            rim, inner, way = (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
             ruling(group, (rim, y), (inner, y))
             anchor = "end" if way < 0 else "start"
             boxes.append(write_name(group, (rim + 10 * way, y), str(row + 1), used, anchor))
-        columns = [(column, view((x, 0.0))[0]) for column, x in zip(jaw.columns, jaw.x, strict=True)]
-        for column, x, used in labelled(columns, {peg.column for peg in pegs}, 17.0):
-            anchor = inner_anchor(jaw, column, bench.fixture.jaw_separation * view.scale)
-            for rim, inner, way in ((frame.y0, plate.y0, -1), (frame.y1, plate.y1, 1)):
-                ruling(group, (x, rim), (x, inner))
-                boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
+        columns = [(column, view((x, 0.0))[0]) for column, x in zip(shown.columns, shown.x, strict=True)]
+        rims = (("top", frame.y0, plate.y0, -1), ("bottom", frame.y1, plate.y1, 1))
+        for column, x, used in labelled(columns, {peg.column for peg in shown.pegs}, 17.0):
+            anchor = inner_anchor(shown, column, bench.fixture.jaw_separation * view.scale)
+            for side, rim, inner, way in rims:
+                if side not in shown.facing:
+                    ruling(group, (x, rim), (x, inner))
+                    boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
     return boxes + write_rim_words(group, frame, boxes)
 
 
@@ -101,13 +104,13 @@ def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
     return boxes
 
 
-def inner_anchor(jaw: JawView, column: int, gap: float) -> str:
-    """How the letter of a column stands: beside its column when the jaws all but meet, else on it."""
+def inner_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
+    """How the letter of a column stands: beside its column when the plates all but meet there, else on it."""
     if gap >= 20:
         return "middle"
-    if jaw.jaw == "left" and column == jaw.columns[-1]:
+    if "right" in shown.facing and column == shown.columns[-1]:
         return "end"
-    return "start" if jaw.jaw == "right" and column == 0 else "middle"
+    return "start" if "left" in shown.facing and column == shown.columns[0] else "middle"
 
 
 def ruling(scene: Scene, rim: Point, plate: Point) -> None:
@@ -125,41 +128,46 @@ def write_name(scene: Scene, at: Point, name: str, used: bool, anchor: str) -> B
     return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
 
 
-def draw_separation(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> None:
-    """Dimension the jaw separation from the left jaw's last column to the right jaw's first."""
+def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> None:
+    """Dimension how far each carrier has slid, above the plates or at their left."""
     group = scene.group("jaw-separation")
-    left, right = bench.jaws[0].x[-1], bench.jaws[1].x[0]
-    y = frame.y0 - 42
-    for x in (left, right):
-        page_x = view((x, 0.0))[0]
-        group.line([(page_x, frame.y0 - 23), (page_x, y - 3)], BLACK, 0.7)
-    text = f"S = {lengths.words(bench.fixture.jaw_separation)}"
-    dimension(group, (view((left, 0.0))[0], y), (view((right, 0.0))[0], y), text, 17, bold=True)
+    for shown, *axes in bench.shown.travels:
+        start, end = (
+            (frame.x0 - 42, y) if shown.upright else (x, frame.y0 - 42) for x, y in (view(high) for _, high in axes)
+        )
+        for x, y in (start, end):
+            group.line([(x + 19, y), (x - 3, y)] if shown.upright else [(x, y + 19), (x, y - 3)], BLACK, 0.7)
+        dimension(group, start, end, f"S = {lengths.words(shown.travelled)}", 17, bold=True)
 
 
 def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Name the jaws below them and show with an arrow which way the right one closes.
+    """Name the carriers below them and show with an arrow which way one slides to clamp.
 
     Returns the room this takes.
     """
-    group = scene.group("captions")
+    group, boxes = scene.group("captions"), []
     y = frame.y1 + 40
-    fixed, sliding, closing = "fixed jaw (L)", "sliding jaw (R)", "closing"
-    left, right = view.box(bench.jaws[0].plate).x1 - 6, view.box(bench.jaws[1].plate).x0 + 6
-    if right - left < 16:  # the jaws all but meet
-        left, right = (left + right) / 2 - 8, (left + right) / 2 + 8
-    left = max(left, bounds.x0 + text_width(fixed, 14))
-    right = min(right, bounds.x1 - text_width(sliding, 14))
-    group.text((left, y), fixed, 14, "end")
-    group.text((right, y), sliding, 14)
-    tip = min(right, bounds.x1 - 66 - text_width(closing, 13))
-    outline = [(0, 0), (18, -11), (18, -5), (58, -5), (58, 5), (18, 5), (18, 11)]
-    group.polygon([(tip + x, y + 24 + dy) for x, dy in outline], "#ffffff", BLACK, 1.4)
-    group.text((tip + 66, y + 24), closing, 13)
-    return [
-        Box(left - text_width(fixed, 14), y - 8, left, y + 8),
-        Box(min(right, tip), y - 8, max(right + text_width(sliding, 14), tip + 66 + text_width(closing, 13)), y + 38),
-    ]
+    verb = "closing" if bench.toolkit.clamping > 0 else "opening"
+    for shown in bench.shown.carriers:
+        plate, carrier = view.box(shown.plate), shown.carrier
+        caption = f"{'fixed' if shown.clamping is None else 'sliding'} {carrier.noun} ({carrier.letter})"
+        width, anchor = text_width(caption, 14), "start"
+        left = right = min(plate.x0 + 6, bounds.x1 - width)
+        if "right" in shown.facing:
+            right, anchor = max(plate.x1 - 6, bounds.x0 + width), "end"
+            left = right - width
+        group.text((right, y), caption, 14, anchor)
+        box = Box(left, y - 8, left + width, y + 8)
+        if shown.clamping is not None:
+            tip = min(left, bounds.x1 - 66 - text_width(verb, 13))
+            outline = [(-29, 0), (-11, -11), (-11, -5), (29, -5), (29, 5), (-11, 5), (-11, 11)]
+            turn = atan2(shown.clamping[1], -shown.clamping[0])
+            corners = [rotated(*corner, turn) for corner in outline]
+            group.polygon([(tip + 29 + dx, y + 24 + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4)
+            group.text((tip + 66, y + 24), verb, 13)
+            box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 38))
+        boxes.append(box)
+    return boxes
 
 
 def draw_labels(
@@ -174,7 +182,7 @@ def draw_labels(
 ) -> None:
     """Label pegs by their holes, touched faces by their numbers, the part's turn and marked page points, where the labels
     hide nothing."""
-    center = view(placed_point(workpiece.center, bench.fixture.pose))
+    center = view(bench.fixture.pose.apply(*workpiece.center))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
     avoid_drawing(placer, bench, view, center)
     for box in names:
@@ -193,7 +201,7 @@ def draw_labels(
         ]
     )
     group = scene.group("labels")
-    radius = peg_radius(bench.vise, view.scale)
+    radius = bench.radius(view)
     for peg, place in zip(pegs, places, strict=False):
         draw_flag(group, place, radius, peg.hole)
     for face, place in zip(numbers, places[4:], strict=False):
@@ -208,7 +216,7 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     for outline in bench.outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
-    radius = peg_radius(bench.vise, view.scale)
+    radius = bench.radius(view)
     for index, peg in enumerate(bench.fixture.pegs):
         x, y = view((peg.x, peg.y))
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
@@ -219,12 +227,12 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
     arc = np.linspace(0.0, turn, 24)
     placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
-    for jaw in bench.jaws:
-        # The columns between which the jaw separation is measured.
-        column = jaw.x[-1] if jaw.jaw == "left" else jaw.x[0]
-        placer.avoid_line(view((column, jaw.plate.y0)), view((column, jaw.plate.y1)), 0.5)
-        if len(jaw.x) * len(jaw.y) < MOST_HOLES_AVOIDED:
-            placer.avoid_ink([view((hole_x, hole_y)) for hole_x in jaw.x for hole_y in jaw.y], 2.0)
+    for _, *between in bench.shown.travels:
+        for low, high in between:
+            placer.avoid_line(view(low), view(high), 0.5)
+    for shown in bench.shown.carriers:
+        if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
+            placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
 
 
 def spread(count: int) -> list[float]:
@@ -238,8 +246,7 @@ def peg_label(bench: Bench, index: int, view: View) -> Label:
     peg = bench.fixture.pegs[index]
     nx, ny = bench.contacts[index][1]
     size = (text_width(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
-    radius = peg_radius(bench.vise, view.scale)
-    distances = [radius + gap for gap in (5, 14, 26, 42, 64, 90)]
+    distances = [bench.radius(view) + gap for gap in (5, 14, 26, 42, 64, 90)]
     return around(view((peg.x, peg.y)), atan2(-ny, nx), size, distances, spread(24))
 
 

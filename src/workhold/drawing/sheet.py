@@ -10,17 +10,17 @@ from workhold.drawing.bench import bench_of
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.fonts import shortened, text_width
 from workhold.drawing.inset import draw_inset
-from workhold.drawing.jaws import CLOSEST_HOLES
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import Column
 from workhold.drawing.plan import draw_plan
+from workhold.drawing.plates import most_holes
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, Scene, View
 from workhold.drawing.sheet_arrangement import FOOT, MARGIN, Arrangement, Filled, arranged, plan_room
 from workhold.drawing.sheet_blocks import Sheet, blocks_of, height_of
 from workhold.drawing.sheet_details import PAPERS, SheetDetails
 from workhold.drawing.sheet_facts import cautions_of, edge_distances
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_sheet"]
@@ -31,7 +31,7 @@ NARROWEST_NAME = 90.0
 LOWEST_INSET, HIGHEST_INSET, INSET_GAP = 170.0, 320.0, 16.0
 
 
-def draw_sheet(fixture: Fixture, workpiece: Workpiece, vise: Vise, details: SheetDetails) -> tuple[str, ...]:
+def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails) -> tuple[str, ...]:
     """Draw the setup sheet of a fixture on one page or two, lying or upright, whichever shows the part largest.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their attribute
@@ -42,22 +42,23 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, vise: Vise, details: Shee
     tuple of str
         SVG text of every page, each of the paper's size.
     """
-    lengths = LengthUnit.suiting(details.unit, min(vise.pitch))
-    cautions = cautions_of(fixture, edge_distances(fixture, workpiece, vise), details, lengths)
-    bench, zero = bench_of(fixture, workpiece, vise), (fixture.pose.x, fixture.pose.y)
-    shown = bench.extent.contains(Box(*zero, *zero))
-    sheet = Sheet(fixture, workpiece, vise, details, lengths, tuple(cautions), shown)
+    bench, zero = bench_of(fixture, workpiece, toolkit), (fixture.pose.x, fixture.pose.y)
+    lengths = LengthUnit.suiting(details.unit, bench.shown.pitch)
+    cautions = cautions_of(fixture, edge_distances(fixture, workpiece, toolkit), details, lengths)
+    zero_shown = bench.extent.contains(Box(*zero, *zero))
+    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), zero_shown)
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
     arrangement = arranged((width, height), bench.extent, *blocks_of(sheet))
     scene = new_page(arrangement, sheet)
     room = arrangement.plan
     view = View.fitting(bench.extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
     marks = [(zero, "part zero")]
-    if all(peg.hole != "L-A1" for peg in fixture.pegs):
-        marks.append(((0.0, 0.0), "L-A1 (0, 0)"))
+    origin = sheet.origin
+    if all(peg.hole != origin for peg in fixture.pegs):
+        marks.append(((0.0, 0.0), f"{origin} (0, 0)"))
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ")
     words = f", scale {arrangement.scale.name}"
-    if min(vise.pitch) * view.scale < CLOSEST_HOLES:
+    if not most_holes(view, bench.shown):
         words += "; only the holes near the pegs are drawn"
     scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     pages = [scene]

@@ -10,14 +10,14 @@ from attrs import frozen
 
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.panel import TYPE_WORDS, Column, draw_legend
+from workhold.drawing.panel import NUMBERS, Column, arrangement_words, draw_legend, offset_words
 from workhold.drawing.scene import BLACK, Scene
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution, caliper_check
 from workhold.model.fixture import Fixture
 from workhold.model.holes import column_letters, hole_name
 from workhold.model.quality import FIGURES
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Block", "Sheet", "blocks_of", "height_of"]
@@ -41,7 +41,7 @@ class Sheet:
 
     fixture: Fixture
     workpiece: Workpiece
-    vise: Vise
+    toolkit: Toolkit
     details: SheetDetails
     lengths: LengthUnit
     cautions: tuple[Caution, ...]
@@ -51,6 +51,11 @@ class Sheet:
     def name(self) -> str:
         """The part's name."""
         return self.details.part_name or self.workpiece.name
+
+    @property
+    def origin(self) -> str:
+        """The name of the hole that places are told from."""
+        return hole_name(self.toolkit.carriers[0].name, 0, 0)
 
 
 def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
@@ -93,7 +98,7 @@ def write_title(column: Column, sheet: Sheet) -> None:
         column.words(line, size, bold=True, gap=0.4)
     column.y += 4
     column.words(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
-    column.words(TYPE_WORDS[sheet.fixture.type], BODY, gap=0.3)
+    column.words(arrangement_words(sheet.fixture.type, sheet.toolkit), BODY, gap=0.3)
 
 
 def write_table(column: Column, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -121,7 +126,8 @@ def write_pegs(column: Column, sheet: Sheet) -> None:
     """Write the four pegs."""
     heading(column, f"Pegs{peg_size(sheet)}")
     force, unit = sheet.details.jaw_force, sheet.lengths.sign
-    header = ["Hole", "jaw", "face", f"x {unit}", f"y {unit}", "N per kN"]
+    first = sheet.toolkit.carriers[0]
+    header = ["Hole", first.noun, "face", f"x {unit}", f"y {unit}", "N per kN"]
     if force is not None:
         header.append(f"at {newtons(force)}")
     rows = []
@@ -130,31 +136,37 @@ def write_pegs(column: Column, sheet: Sheet) -> None:
         row = [peg.hole, peg.jaw, str(peg.face), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, newtons(force * peg.force)])
     write_table(column, header, rows)
-    column.paragraph("x, y: centre of the peg, from the centre of hole L-A1 of the fixed jaw.", NOTE)
-    column.paragraph("N per kN: force of the peg on the part for each kN of jaw force, without friction.", NOTE)
+    column.paragraph(
+        f"x, y: centre of the peg, from the centre of hole {sheet.origin} of the fixed {first.noun}.", NOTE
+    )
+    column.paragraph(
+        f"N per kN: force of the peg on the part for each kN of {first.noun} force, without friction.", NOTE
+    )
 
 
 def peg_size(sheet: Sheet) -> str:
     """The size of the pegs, behind a word."""
-    vise, lengths = sheet.vise, sheet.lengths
-    if not vise.peg_radius:
+    carrier, lengths = sheet.toolkit.carriers[0], sheet.lengths
+    if not carrier.peg_radius:
         return " (points, no diameter)"
-    body = f", body Ø {lengths.plain(2 * vise.body_radius)}" if vise.body_radius > vise.peg_radius else ""
-    return f" Ø {lengths.plain(2 * vise.peg_radius)}{body}"
+    body = f", body Ø {lengths.plain(2 * carrier.body_radius)}" if carrier.body_radius > carrier.peg_radius else ""
+    return f" Ø {lengths.plain(2 * carrier.peg_radius)}{body}"
 
 
 def write_opening(column: Column, sheet: Sheet) -> None:
     """Write the jaw opening and how to measure it."""
-    fixture, vise, lengths = sheet.fixture, sheet.vise, sheet.lengths
-    heading(column, "Jaw opening S")
+    fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
+    first, moving = toolkit.carriers[0], toolkit.moving
+    heading(column, f"{moving.noun.capitalize()} opening S")
     column.words(lengths.words(fixture.jaw_separation), 28, bold=True, gap=0.4)
-    last = column_letters(vise.columns - 1)
+    check = caliper_check(fixture, toolkit)
+    one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
     column.paragraph(
-        f"x from the centres of column {last} of the left jaw to those of column A of the right jaw.", NOTE
+        f"x from the centres of column {one} of the {first.title} to those of column {other} of the {moving.title}.",
+        NOTE,
     )
-    check = caliper_check(fixture, vise)
-    left, right = hole_name("left", *check.left), hole_name("right", *check.right)
-    diameter = 2 * vise.peg_radius
+    left, right = hole_name(first.name, *check.left), hole_name(moving.name, *check.right)
+    diameter = 2 * first.peg_radius
     spare = {2: "", 1: " (one of them a spare)", 0: " (both spare)"}[check.placed]
     column.y += 3
     column.paragraph(f"Calipers on pegs in {left} and {right}{spare}:", BODY)
@@ -170,8 +182,8 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     """Write where the part's zero point lies and how it is turned."""
     pose, lengths = sheet.fixture.pose, sheet.lengths
     heading(column, "Part zero and angle")
-    column.fact("x from hole L-A1", lengths.words(pose.x), bold=True)
-    column.fact("y from hole L-A1", lengths.words(pose.y), bold=True)
+    column.fact(f"x from hole {sheet.origin}", lengths.words(pose.x), bold=True)
+    column.fact(f"y from hole {sheet.origin}", lengths.words(pose.y), bold=True)
     column.fact("turned by θ, counter-clockwise", f"{pose.theta_deg:.4f}°", bold=True)
     place = "" if sheet.zero_shown else ", here outside the plan"
     column.paragraph(f"Part zero is (0, 0) of the part's drawing{place}. x runs to the right, y upward.", NOTE)
@@ -267,8 +279,13 @@ def write_steps(column: Column, sheet: Sheet) -> None:
 def steps(sheet: Sheet) -> list[str]:
     """What to do, one or two sentences each."""
     fixture, lengths = sheet.fixture, sheet.lengths
-    left = listed([peg.hole for peg in fixture.pegs if peg.jaw == "left"])
-    right = listed([peg.hole for peg in fixture.pegs if peg.jaw == "right"])
+    toolkit, moving = sheet.toolkit, sheet.toolkit.moving
+    there, more, back = ("Open", "wider", "Close") if toolkit.clamping > 0 else ("Close", "narrower", "Open")
+    put = [
+        f"{listed([peg.hole for peg in fixture.pegs if peg.jaw == carrier.name])} of the "
+        f"{'fixed' if carrier.travel is None else 'sliding'} {carrier.title}"
+        for carrier in toolkit.carriers
+    ]
     outer = len(sheet.workpiece.loops[0])
     inside = [peg.hole for peg in fixture.pegs if peg.face >= outer]
     around = (
@@ -278,12 +295,13 @@ def steps(sheet: Sheet) -> list[str]:
     touch = listed([f"face {peg.face} at {peg.hole}" for peg in fixture.pegs])
     force = "" if sheet.details.jaw_force is None else f" with {newtons(sheet.details.jaw_force)}"
     return [
-        f"Put pegs in {left} of the fixed left jaw and {right} of the sliding right jaw.",
-        f"Open the jaws a little wider than S = {lengths.words(fixture.jaw_separation)} and lay the part in as drawn, "
-        f"{turn}.{around}",
-        "Close the right jaw until all four pegs touch. The opening is then S; if not, the part lies another way.",
+        f"Put pegs in {listed(put)}.",
+        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and lay the part in "
+        f"as drawn, {turn}.{around}",
+        f"{back} the {moving.title} until all {NUMBERS[len(fixture.pegs)]} pegs touch. The opening is then S; if not, the "
+        "part lies another way.",
         f"Clamp{force}. The pegs touch: {touch}. A strip of paper at each must not pull out.",
-        "Set the machine's zero by L-A1 or by the part, as given under part zero and angle.",
+        f"Set the machine's zero by {sheet.origin} or by the part, as given under part zero and angle.",
     ]
 
 
@@ -298,27 +316,22 @@ def listed(words: Sequence[str]) -> str:
 
 def write_counting(column: Column, sheet: Sheet) -> None:
     """Write how holes are counted."""
-    vise, lengths = sheet.vise, sheet.lengths
+    lengths, first, moving = sheet.lengths, sheet.toolkit.carriers[0], sheet.toolkit.moving
     heading(column, "Counting holes")
-    pitch_x, pitch_y = (lengths.plain(pitch) for pitch in vise.pitch)
+    pitch_x, pitch_y = (lengths.plain(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
-    size = f"one column of holes, {pitch_y} apart"
-    if vise.columns > 1:
-        size = f"{vise.columns} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
-    example = f"{peg.hole} is the {peg.jaw} jaw's column {column_letters(peg.column)}, row {peg.row + 1}"
-    column.paragraph(f"{example}. Each jaw has {size}.", BODY)
-    where = "A on both jaws"
-    if vise.columns > 1:
-        where = f"A to {column_letters(vise.columns - 1)} from left to right, on each jaw"
-    rows = "Row 1 is the lowest; any row of the vise will do, the same for both jaws."
-    if vise.rows is not None:
-        rows = f"Row 1 is the lowest of {vise.rows}."
+    size, where = f"one column of holes, {pitch_y} apart", f"A on both {first.noun}s"
+    if first.columns > 1:
+        size = f"{first.columns} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
+        where = f"A to {column_letters(first.columns - 1)} from left to right, on each {first.noun}"
+    example = f"{peg.hole} is the {first.title}'s column {column_letters(peg.column)}, row {peg.row + 1}"
+    column.paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
+    rows = f"Row 1 is the lowest; any row of the vise will do, the same for both {first.noun}s."
+    if first.rows is not None:
+        rows = f"Row 1 is the lowest of {first.rows}."
     column.paragraph(f"Columns: {where}. {rows}", BODY)
-    if vise.row_offset:
-        word = "above" if vise.row_offset > 0 else "below"
-        column.paragraph(
-            f"Row 1 of the right jaw lies {lengths.words(abs(vise.row_offset))} {word} that of the left.", BODY
-        )
+    if offset := offset_words(sheet.toolkit, lengths):
+        column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
 
 
 def write_legend(column: Column, sheet: Sheet) -> None:

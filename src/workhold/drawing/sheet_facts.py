@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, cos, hypot, inf, radians, sin
+from math import ceil, dist, inf
 
+import numpy as np
 from attrs import frozen
 
-from workhold.contact.features import contact_features, end_slacks
+from workhold.contact.features import contact_features, end_distances, end_slacks, feature_rows
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet_details import SheetDetails
-from workhold.geometry.segment import Arc
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.result import LEFT, RIGHT, FixtureTable, hole_position
-from workhold.model.vise import Vise
+from workhold.model.fixture import Fixture
+from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -59,7 +59,7 @@ class CaliperCheck:
 
     Parameters
     ----------
-    left, right : (column, row) of the hole on each jaw.
+    left, right : (column, row) of the hole on the first carrier and on the other.
     distance : between their centres, in mm.
     placed : how many of the two hold a peg of the fixture.
     """
@@ -70,69 +70,46 @@ class CaliperCheck:
     placed: int
 
 
-def caliper_check(fixture: Fixture, vise: Vise) -> CaliperCheck:
-    """The pair of holes, one in either jaw's column at the opening, to measure the opening between.
+def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
+    """The pair of holes, one in either carrier's column at the opening, to measure the opening between.
 
-    They are as level as possible, so that calipers held square to the jaws span them; among those, with as many pegs of
-    the fixture as possible, then the lowest. Columns at the opening are the left jaw's last and the right one's first.
+    They are as level as possible, so that calipers held square to the plates span them; among those, with as many pegs of
+    the fixture as possible, then the lowest. Columns at the opening are the first carrier's last and the other one's first.
     """
-    used = {(peg.jaw, peg.column, peg.row) for peg in fixture.pegs}
+    first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
-    blocked = {(holes.jaw, holes.column, holes.row) for holes in vise.blocked}
-    shift = round(vise.row_offset / vise.pitch[1])
-    last = vise.columns - 1
+    used = {(peg.jaw, peg.column, peg.row) for peg in fixture.pegs}
+    last, travelled = first.columns - 1, fixture.jaw_separation
+    shift = round((second.offset[1] - first.offset[1]) / first.pitch[1])
     best: tuple[float, int, int, int] | None = None
     for low, high in {(row + a, row + a + b - shift) for row in [*rows, 0] for a in (-1, 0, 1) for b in (-1, 0, 1)}:
-        if min(low, high) < 0 or (vise.rows is not None and max(low, high) >= vise.rows):
+        if min(low, high) < 0 or (first.rows is not None and max(low, high) >= first.rows):
             continue
-        holes = (("left", last, low), ("right", 0, high))
-        if any(hole in blocked or (*hole[:2], None) in blocked for hole in holes):
+        if first.is_blocked(last, low) or second.is_blocked(0, high):
             continue
-        tilt = abs(high * vise.pitch[1] + vise.row_offset - low * vise.pitch[1])
-        key = (round(tilt, 9), -sum(hole in used for hole in holes), low, high)
+        tilt = abs(second.place(0, high)[1] - first.place(last, low)[1])
+        placed = ((first.name, last, low) in used) + ((second.name, 0, high) in used)
+        key = (round(tilt, 9), -placed, low, high)
         best = key if best is None else min(best, key)
-    if best is None:
-        best = (0.0, 0, rows[0], rows[0])
-    _, placed, low, high = best
-    left = hole_position(vise, LEFT, last, low, fixture.jaw_separation)
-    right = hole_position(vise, RIGHT, 0, high, fixture.jaw_separation)
-    return CaliperCheck((last, low), (0, high), hypot(right[0] - left[0], right[1] - left[1]), -placed)
+    _, placed, low, high = best or (0.0, 0, rows[0], rows[0])
+    distance = dist(first.place(last, low), second.place(0, high, travelled))
+    return CaliperCheck((last, low), (0, high), distance, -placed)
 
 
-def edge_distances(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> list[float]:
+def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
     """How far in mm each peg's centre is from the nearer end of its contact feature at which an edge or another face
     waits; infinite where the feature ends in no edge (a whole circle, tangent joints).
     """
-    features = contact_features(workpiece, vise.peg_radius)
-    smooth = end_slacks(features) > 0
-    distances = []
+    back, distances = fixture.pose.inverse, []
+    features = {carrier.name: contact_features(workpiece, carrier.peg_radius) for carrier in toolkit.carriers}
     for peg in fixture.pegs:
-        point = in_part(peg, fixture)
-        nearest = (inf, inf)
-        for feature, joined in zip(features, smooth, strict=True):
-            if feature.face != peg.face:
-                continue
-            segment = feature.segment
-            half, parameter = segment.half_extent, segment.parameter(point)
-            inside = max(-half, min(half, parameter))
-            foot = segment.at(inside)
-            unit = segment.radius if isinstance(segment, Arc) else 1.0
-            ends = [
-                inf if end else unit * max(half + way * inside, 0.0) for end, way in zip(joined, (1, -1), strict=True)
-            ]
-            if isinstance(segment, Arc) and segment.is_full:
-                ends = [inf, inf]
-            nearest = min(nearest, (hypot(foot[0] - point[0], foot[1] - point[1]), min(ends)))
-        distances.append(nearest[1])
+        known = features[peg.jaw]
+        smooth, rows, point = end_slacks(known) > 0, feature_rows(known), back.apply(peg.x, peg.y)
+        to_ends = end_distances(rows, np.array(point))
+        on_face = [k for k, feature in enumerate(known) if feature.face == peg.face]
+        nearest = min(on_face, key=lambda k: -to_ends[k].min())
+        distances.append(float(np.where(smooth[nearest], np.inf, np.maximum(to_ends[nearest], 0.0)).min()))
     return distances
-
-
-def in_part(peg: Peg, fixture: Fixture) -> tuple[float, float]:
-    """A peg's centre in the workpiece's frame, in mm."""
-    pose = fixture.pose
-    c, s = cos(radians(pose.theta_deg)), sin(radians(pose.theta_deg))
-    x, y = peg.x - pose.x, peg.y - pose.y
-    return c * x + s * y, c * y - s * x
 
 
 def same_holes(table: FixtureTable, index: int) -> int:

@@ -8,12 +8,12 @@ from workhold.drawing.bench import Bench, bench_of, draw_bench
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.fonts import shortened, text_width
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.panel import closure_margin
+from workhold.drawing.panel import closure_margin, plural
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
+from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["MOST_THUMBNAILS", "draw_thumbnails"]
@@ -29,7 +29,7 @@ GAP = 14.0
 def draw_thumbnails(
     fixtures: Sequence[Fixture],
     workpiece: Workpiece,
-    vise: Vise,
+    toolkit: Toolkit,
     titles: Sequence[str],
     *,
     unit: Unit = MILLIMETRE,
@@ -56,15 +56,14 @@ def draw_thumbnails(
         raise InputError(f"a sheet of thumbnails holds 1 to {MOST_THUMBNAILS} fixtures, not {count}: choose fewer.")
     if len(titles) != count:
         raise InputError(f"{count} fixtures have {len(titles)} titles: give one title for each.")
-    lengths = LengthUnit.suiting(unit, min(vise.pitch))
-    benches = [bench_of(fixture, workpiece, vise) for fixture in fixtures]
+    benches = [bench_of(fixture, workpiece, toolkit) for fixture in fixtures]
+    lengths = LengthUnit.suiting(unit, benches[0].shown.pitch)
     cells = grid(count)
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
     scale = min(View.fitting(bench.extent, room).scale for bench, room in zip(benches, rooms, strict=True))
     scene = Scene.page(LANDSCAPE, f"{workpiece.name}: fixtures")
     width, height = LANDSCAPE
-    plural = "s" if count > 1 else ""
-    words = f"{count} fixture{plural}, all to the same scale"
+    words = f"{plural(count, 'fixture')}, all to the same scale"
     name = shortened(workpiece.name, 24, width - 2 * EDGE - text_width(words, 14) - 20, bold=True)
     scene.text((EDGE, EDGE + 10), name, 24, bold=True)
     scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)

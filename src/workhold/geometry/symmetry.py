@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, pi, sin, tau
+from math import atan2, hypot, pi, tau
 
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = ["Rotation", "rotations_onto_itself"]
@@ -42,9 +43,8 @@ def centroid_of_joints(segments: Sequence[Segment]) -> Point:
 
 def turned(point: Point, about: Point, angle: float) -> Point:
     """A point turned about another."""
-    dx, dy = point[0] - about[0], point[1] - about[1]
-    c, s = cos(angle), sin(angle)
-    return about[0] + c * dx - s * dy, about[1] + s * dx + c * dy
+    x, y = rotated(point[0] - about[0], point[1] - about[1], angle)
+    return about[0] + x, about[1] + y
 
 
 def near(p: Point, q: Point) -> bool:

@@ -174,10 +174,10 @@ def whole_turn_degrees(theta: float) -> float:
 def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int) -> Fixture:
     """Make the :class:`Fixture` of one row of a table."""
     separation = float(table.jaw_separation[index])
-    arrangement = toolkit.arrangements[table.arrangement[index]]
+    arrangement, carriers = toolkit.arrangements[table.arrangement[index]], toolkit.carriers
     pegs = []
     for k, number in enumerate(arrangement.carriers):
-        carrier, column, row = toolkit.carriers[number], int(table.column[index, k]), int(table.row[index, k])
+        carrier, column, row = carriers[number], int(table.column[index, k]), int(table.row[index, k])
         x, y = carrier.place(column, row, separation)
         pegs.append(Peg(carrier.name, column, row, x, y, int(table.face[index, k]), float(table.force[index, k])))
     x, y = (float(v) for v in table.position[index])

@@ -40,6 +40,11 @@ class Travel:
     least: float
     most: float | None
 
+    @property
+    def unit(self) -> tuple[float, float]:
+        """The unit vector of the direction; exact along the axes."""
+        return round(cos(self.direction), 15), round(sin(self.direction), 15)
+
 
 @frozen
 class Carrier:
@@ -56,6 +61,7 @@ class Carrier:
     offset : place in mm of the hole in column 0 and row 0 without any travel.
     blocked : holes and columns that no peg can stand in.
     travel : how it slides; None when it stands still.
+    noun : what it is, such as "jaw".
     """
 
     name: str
@@ -67,6 +73,21 @@ class Carrier:
     offset: tuple[float, float] = (0.0, 0.0)
     blocked: tuple[Holes, ...] = ()
     travel: Travel | None = None
+    noun: str = "jaw"
+
+    @property
+    def title(self) -> str:
+        """What it is called, such as "left jaw"."""
+        return f"{self.name} {self.noun}"
+
+    @property
+    def letter(self) -> str:
+        """What the names of its holes begin with."""
+        return self.name[0].upper()
+
+    def is_blocked(self, column: int, row: int) -> bool:
+        """Whether no peg can stand in a hole."""
+        return not {Holes(self.name, column), Holes(self.name, column, row)}.isdisjoint(self.blocked)
 
     def place(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
         """Centre of a hole in mm, or of many: numbers or arrays of them.
@@ -86,7 +107,7 @@ class Carrier:
         x, y = self.offset[0] + column * self.pitch[0], self.offset[1] + row * self.pitch[1]
         if self.travel is None:
             return x, y
-        along, across = round(cos(self.travel.direction), 15), round(sin(self.travel.direction), 15)
+        along, across = self.travel.unit
         return x + travelled * along, y + travelled * across
 
 

@@ -25,6 +25,7 @@ from workhold.geometry.loop import (
     signed_area,
 )
 from workhold.geometry.segment import Point, Segment
+from workhold.model.fixture import Pose
 
 __all__ = ["Workpiece"]
 
@@ -121,6 +122,11 @@ class Workpiece:
         boxes = np.array([bounding_box(segment) for segment in self.loop_segments[0]])
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    def placed(self, pose: Pose) -> Workpiece:
+        """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
+        loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
+        return Workpiece(self.name, tuple(loops))
 
     @property
     def center(self) -> Point:

@@ -15,8 +15,10 @@ import numpy as np
 from attrs import define, evolve
 from numpy.typing import NDArray
 
+from workhold.contact.features import end_distances
 from workhold.contact.problem import TYPES, Problem
 from workhold.errors import InputError
+from workhold.geometry.rotation import rotated
 from workhold.kernels.contact import rules as record
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import arranged, placed
@@ -115,13 +117,13 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
     spans = size[:, 0] > record.LEAST_SPAN
     null = minors / np.where(spans[:, None], size, 1.0)
     null *= np.where(null.min(axis=1) >= -null.max(axis=1), 1.0, -1.0)[:, None]
-    along = normals[..., 0] * np.cos(c.theta)[:, None] - normals[..., 1] * np.sin(c.theta)[:, None]
+    along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
     return Contacts(
         evolve(c, force=null),
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
         clamping=-(null * along * is_left(c.kind)).sum(axis=1),
-        end_distance=end_distances(rows, c.point).min(axis=1, initial=np.inf),
+        end_distance=end_distances(rows, c.point).min(axis=(1, 2), initial=np.inf),
     )
 
 
@@ -131,21 +133,9 @@ def facing(c: Candidates) -> Candidates:
     Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
     lower one is taken for the right one.
     """
-    cosine, sine = np.cos(c.theta)[:, None], np.sin(c.theta)[:, None]
-    across = c.point[..., 0] * cosine - c.point[..., 1] * sine
-    upward = c.point[..., 0] * sine + c.point[..., 1] * cosine
+    across, upward = rotated(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
     return c.take((c.kind != 1) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
-
-
-def end_distances(rows: Array, points: Array) -> Array:
-    """Distances (N, 4) in mm along features, given by rows (N, 4, 10), from peg centres (N, 4, 2) to the nearer end."""
-    dx, dy = points[..., 0] - rows[..., 1], points[..., 1] - rows[..., 2]
-    along, across = dx * rows[..., 3] + dy * rows[..., 4], rows[..., 3] * dy - rows[..., 4] * dx
-    is_arc = rows[..., 0] != 0.0
-    place = np.where(is_arc, np.arctan2(across, along), along)
-    distance = (rows[..., 5] - np.abs(place)) * np.where(is_arc, rows[..., 6], 1.0)
-    return np.where(is_arc & (rows[..., 5] >= np.pi), np.inf, distance)
 
 
 def restriction_removals(

@@ -117,7 +117,7 @@ def load_cases(
     motions = None
     if friction is not None:
         contacts = contact_matrices.points[0] - vise.peg_radius * contact_matrices.normals[0]
-        closing = np.array([cos(pose[0, 0]), -sin(pose[0, 0])])
+        closing = np.array(fixture.pose.inverse.turn(1.0, 0.0))
         motions = possible_motions(contacts, contact_matrices.normals[0], right[0], closing, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
     needs = [needed(forces, load, center) for load in loads]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from itertools import count
 from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +12,15 @@ import numpy as np
 from attrs import evolve
 
 from workhold.files.result.writer import fixture_rows, load_entry, proof_entry, vise_entry
+from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
 from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable
+from workhold.model.result import FixtureTable, fixture_at
+from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -126,10 +129,13 @@ def figures_answer() -> list[dict[str, Any]]:
     ]
 
 
-def rows_answer(table: FixtureTable, toolkit: Toolkit, ranks: Iterable[int]) -> list[dict[str, Any]]:
+def rows_answer(
+    table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, ranks: Iterable[int]
+) -> list[dict[str, Any]]:
     """Fixtures as rows; ``ranks`` are those of the table's fixtures."""
     out: list[dict[str, Any]] = []
     quality, numbers = table.quality.tolist(), iter(ranks)
+    boxes = placed_boxes(workpiece, table.theta, *table.position.T).tolist()
     # Figures are told one by one below, so the rows are made without them.
     bare = evolve(table, quality=np.full_like(table.quality, np.nan))
     arrangements = [(one.name, toolkit.carrier_names(one)) for one in toolkit.arrangements]
@@ -150,13 +156,43 @@ def rows_answer(table: FixtureTable, toolkit: Toolkit, ranks: Iterable[int]) -> 
                     "jaw_separation": row[27],
                     "pegs": [[peg[2], peg[3]] for peg in pegs],
                     "forces": [peg[5] for peg in pegs],
+                    "carriers": carriers_answer(
+                        shown_beside(Box(*boxes[len(out)]), fixture_at(table, toolkit, len(out)), toolkit)
+                    ),
                     "quality": {figure.key: finite(value) for figure, value in figures if not np.isnan(value)},
                 }
             )
     return out
 
 
-def fixture_answer(fixture: Fixture) -> dict[str, Any]:
+def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
+    """What shows of each carrier.
+
+    ``origin`` is its hole in column 0 and row 0, ``pegs`` are the numbers of its pegs and ``used`` their holes;
+    ``measured`` are the upper or right ends of the axes that its travel is measured between.
+    """
+    measured = {each.carrier.name: [list(start[1]), list(end[1])] for each, start, end in seen.travels}
+    numbers = count()
+    return [
+        {
+            "letter": each.carrier.letter,
+            "origin": each.carrier.place(0, 0, each.travelled),
+            "pitch": each.carrier.pitch,
+            "columns": [each.columns[0], each.columns[-1]],
+            "rows": [each.rows[0], each.rows[-1]],
+            "plate": [each.plate.x0, each.plate.y0, each.plate.x1, each.plate.y1],
+            "hole_radius": each.hole_radius,
+            "names_at": each.names_at,
+            "pegs": [next(numbers) for _ in each.pegs],
+            "used": [[peg.column, peg.row] for peg in each.pegs],
+            "clamping": each.clamping,
+            "measured": measured.get(each.carrier.name),
+        }
+        for each in seen.carriers
+    ]
+
+
+def fixture_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
     """A fixture by itself, without a rank."""
     return {
         "type": fixture.type,
@@ -168,6 +204,7 @@ def fixture_answer(fixture: Fixture) -> dict[str, Any]:
         "jaw_separation": fixture.jaw_separation,
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
+        "carriers": carriers_answer(shown(fixture, vise, workpiece)),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
 
@@ -175,16 +212,11 @@ def fixture_answer(fixture: Fixture) -> dict[str, Any]:
 def contact_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
     """Outward normals and contacts of a fixture's pegs in the vise frame, and which pegs are on the right jaw."""
     segments = {face.number: face.segment for face in workpiece.faces}
-    pose = fixture.pose
-    c, s = np.cos(np.radians(pose.theta_deg)), np.sin(np.radians(pose.theta_deg))
     normals, contacts = [], []
     for peg in fixture.pegs:
-        dx, dy = peg.x - pose.x, peg.y - pose.y
-        center = (float(c * dx + s * dy), float(c * dy - s * dx))
         segment = segments[peg.face]
-        nx, ny = segment.normal(segment.parameter(center))
-        size = hypot(nx, ny)
-        x, y = float(c * nx - s * ny) / size, float(s * nx + c * ny) / size
+        nx, ny = segment.normal(segment.parameter(fixture.pose.inverse.apply(peg.x, peg.y)))
+        x, y = (float(v) / hypot(nx, ny) for v in fixture.pose.turn(nx, ny))
         normals.append([x, y])
         contacts.append([peg.x - vise.peg_radius * x, peg.y - vise.peg_radius * y])
     return {"normals": normals, "contacts": contacts, "right_jaw": [peg.jaw == "right" for peg in fixture.pegs]}
@@ -216,7 +248,7 @@ def worst_answer(worst: Worst) -> dict[str, Any]:
     return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
 
 
-def explanation_answer(explanation: Explanation) -> dict[str, Any]:
+def explanation_answer(explanation: Explanation, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
     """Why there is no fixture."""
     nearest = explanation.nearest
     return {
@@ -228,7 +260,7 @@ def explanation_answer(explanation: Explanation) -> dict[str, Any]:
         "last_rule": explanation.last_rule,
         "nearest": None
         if nearest is None
-        else {"row": {"rank": None, **fixture_answer(nearest.fixture)}, "words": nearest.words},
+        else {"row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, vise)}, "words": nearest.words},
         "helps": [
             {"change": help.change, "fixtures": help.fixtures, "complete": help.complete} for help in explanation.helps
         ],

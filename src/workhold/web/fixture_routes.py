@@ -44,7 +44,7 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
     """Its row, with contacts and outward normals in the vise frame."""
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
-    row = rows_answer(result.table.take(np.array([index])), result.vise, [rank])[0]
+    row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.vise, [rank])[0]
     return {**row, **contact_answer(result[index], result.workpiece, result.vise)}
 
 

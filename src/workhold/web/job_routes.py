@@ -173,7 +173,9 @@ async def fixtures(
         return {"total": 0, "revision": revision, "rows": []}
     indices = await asyncio.to_thread(job.chosen, selection)
     page = indices[offset : offset + limit]
-    rows = rows_answer(result.table.take(page), result.vise, (page + 1).tolist())
+    rows = await asyncio.to_thread(
+        rows_answer, result.table.take(page), result.workpiece, result.vise, (page + 1).tolist()
+    )
     return {"total": len(indices), "revision": revision, "rows": rows}
 
 
@@ -184,7 +186,7 @@ async def explanation(request: Request, name: str) -> dict[str, Any]:
     result = result_of_job(job, when_over=True)
     if len(result) or not result.complete:
         raise HTTPException(409, "There is nothing to explain: fixtures were found, or the search was not complete.")
-    return explanation_answer(await state_of(request).jobs.explain(job))
+    return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.vise)
 
 
 @router.post("/jobs/{name}/resist", summary="Which fixtures resist loads best")

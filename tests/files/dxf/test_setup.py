@@ -14,7 +14,7 @@ from drawing_examples import PART_AREA, diamond, example, hole_area
 from ezdxf import options
 from ezdxf.document import Drawing
 
-from workhold.files.dxf.setup import LAYERS, setup_dxf, write_setup_dxf
+from workhold.files.dxf.setup import LAYERS, layer_of, setup_dxf, write_setup_dxf
 from workhold.model.fixture import Fixture
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -67,13 +67,14 @@ def test_pegs_touch_the_part(size: float, rounded: bool) -> None:
 @pytest.mark.parametrize("made", [example, diamond])
 def test_audit_finds_nothing(made: Callable[[], Held]) -> None:
     """The file is clean, in millimetres, and every entity is on a layer that was made for it."""
-    document = reread(made())
+    held = made()
+    document = reread(held)
     auditor = document.audit()
     assert not auditor.has_errors and not auditor.has_fixes
     assert document.header["$INSUNITS"] == 4
     used = {entity.dxf.layer for entity in document.modelspace()}
-    assert used == set(LAYERS)
-    assert all(name in document.layers for name in LAYERS)
+    assert used == {*LAYERS, *map(layer_of, held[2].carriers)}
+    assert all(name in document.layers for name in used)
 
 
 def test_part_keeps_its_area_and_its_arcs() -> None:

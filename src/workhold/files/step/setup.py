@@ -1,4 +1,4 @@
-"""A set-up as a STEP assembly: the part in its pose, four pegs and two plates with their holes.
+"""A set-up as a STEP assembly: the part in its pose, the pegs and the plates with their holes.
 
 The frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1. z is 0 on top of the plates;
 the part lies there, and the pegs stand through the plates up to the part's upper side.
@@ -14,11 +14,11 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.setup_plates import Plate, plate_of, posed_workpiece
 from workhold.files.step.library import load_step_library
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.fixture import Fixture, Jaw
-from workhold.model.vise import Vise
+from workhold.model.fixture import Fixture
+from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["setup_step", "write_setup_step"]
@@ -30,7 +30,7 @@ TIME_STAMP = "1970-01-01T00:00:00"
 def write_setup_step(
     fixture: Fixture,
     workpiece: Workpiece,
-    vise: Vise,
+    toolkit: Toolkit,
     path: str | Path,
     *,
     thickness: float = 10.0,
@@ -40,10 +40,10 @@ def write_setup_step(
 
     Parameters
     ----------
-    fixture, workpiece, vise : the set-up.
+    fixture, workpiece, toolkit : the set-up.
     path : the file.
     thickness : height of the part in mm.
-    plate_thickness : of both plates, in mm; their holes go through.
+    plate_thickness : of all plates, in mm; their holes go through.
 
     Raises
     ------
@@ -51,11 +51,11 @@ def write_setup_step(
         For pegs without a radius, a thickness that is not positive, a file that cannot be written, and when the extra
         ``step`` is not installed.
     """
-    write_bytes(path, setup_step(fixture, workpiece, vise, thickness=thickness, plate_thickness=plate_thickness))
+    write_bytes(path, setup_step(fixture, workpiece, toolkit, thickness=thickness, plate_thickness=plate_thickness))
 
 
 def setup_step(
-    fixture: Fixture, workpiece: Workpiece, vise: Vise, *, thickness: float = 10.0, plate_thickness: float = 10.0
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, *, thickness: float = 10.0, plate_thickness: float = 10.0
 ) -> bytes:
     """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
 
@@ -64,20 +64,19 @@ def setup_step(
     InputError
         As :func:`write_setup_step`.
     """
-    if vise.peg_radius <= 0:
+    if min(carrier.peg_radius for carrier in toolkit.carriers) <= 0:
         raise InputError("pegs of radius 0 have no body to write to a STEP file: give the vise a peg radius.")
     for name, value in (("thickness", thickness), ("plate thickness", plate_thickness)):
         if not (isfinite(value) and value > 0):
             raise InputError(f"{name} {value} is not a positive length: give it in mm.")
     load_step_library()
-    part = posed_workpiece(workpiece, fixture.pose)
-    named = [(workpiece.name, part_body(part, thickness))]
-    for peg in fixture.pegs:
-        named.append((f"peg {peg.hole}", peg_body((peg.x, peg.y), vise.peg_radius, -plate_thickness, thickness)))
-    jaws: tuple[Jaw, Jaw] = ("left", "right")
-    for jaw in jaws:
-        plate = plate_of(jaw, fixture, part, vise)
-        named.append((f"{jaw} jaw", plate_body(plate, vise.peg_radius, plate_thickness)))
+    named = [(workpiece.name, part_body(workpiece.placed(fixture.pose), thickness))]
+    seen = shown(fixture, toolkit, workpiece).carriers
+    for each in seen:
+        for peg in each.pegs:
+            body = peg_body((peg.x, peg.y), each.carrier.peg_radius, -plate_thickness, thickness)
+            named.append((f"peg {peg.hole}", body))
+    named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen]
     return assembly(f"{workpiece.name} set-up", named)
 
 
@@ -95,21 +94,22 @@ def peg_body(center: Point, radius: float, low: float, high: float) -> Any:
     return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(*center, low), gp_Dir(0.0, 0.0, 1.0)), radius, high - low).Solid()
 
 
-def plate_body(plate: Plate, radius: float, thickness: float) -> Any:
+def plate_body(shown: ShownCarrier, thickness: float) -> Any:
     """A plate with its holes, its upper side at z = 0."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 
-    (x0, y0), (x1, y1) = plate.low, plate.high
+    radius, plate = shown.carrier.peg_radius, shown.plate
+    x0, y0, x1, y1 = plate.x0, plate.y0, plate.x1, plate.y1
     corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
     border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
 
     def whole(hole: Point) -> bool:
         return x0 < hole[0] - radius and hole[0] + radius < x1 and y0 < hole[1] - radius and hole[1] + radius < y1
 
-    centers = [center for _, center in plate.holes]
+    centers = [hole.center for hole in shown.holes(MOST_HOLES)]
     holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in centers if whole(hole)]
     body = extruded(border, holes, -thickness, 0.0)
-    # Jaws that nearly close leave no material around the holes of their last columns.
+    # Plates that nearly meet leave no material around the holes of their last columns.
     for hole in centers:
         if not whole(hole):
             body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()

@@ -1,12 +1,12 @@
 /**
- * The drawing of one fixture: jaws with their holes, the part in its pose, pegs, and what lies in mm.
+ * The drawing of one fixture: plates with their holes, the part in its pose, pegs, and what lies in mm.
  *
  * Lettering and arrows are in fixture-lettering.js; they keep their size when the drawing is zoomed.
  */
 import { draw } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
-import { contactsOf, intoVise, jawViews, partSegments, poseMatrix } from "./pose.js";
+import { contactsOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
 import { Viewport } from "./viewport.js";
 
 /** Room around the drawing for lettering, in pixels: top, right, bottom, left. */
@@ -47,14 +47,13 @@ export class FixtureDrawing {
     this.vise = vise;
     this.row = row;
     this.toVise = toVise;
-    this.jaws = jawViews(vise, row, box);
     this.contacts = contactsOf(part, row).map(({ contact, normal }) => {
       const [x, y] = toVise(normal);
       return { at: toVise(contact), normal: [x - row.x, y - row.y] };
     });
     this.build();
     const whole = [...box];
-    for (const { plate } of this.jaws) {
+    for (const { plate } of row.carriers) {
       whole[0] = Math.min(whole[0], plate[0]);
       whole[1] = Math.min(whole[1], plate[1]);
       whole[2] = Math.max(whole[2], plate[2]);
@@ -84,7 +83,6 @@ export class FixtureDrawing {
 
   /** Make everything that lies in mm. */
   build() {
-    const [left, right] = this.jaws;
     const { part, row } = this;
     const outline = outlinePath(part.loops);
     const touched = new Set(row.faces);
@@ -93,31 +91,24 @@ export class FixtureDrawing {
       if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
     }
     shape.append(draw("path.outline", { d: outline }));
-    this.rightJaw = draw("g.right-jaw");
-    this.rightPegs = draw("g.right-jaw");
-    this.rightJaw.append(...this.jaw(right));
-    const pegs = draw("g.pegs");
     this.underPegs = draw("g.under-pegs");
-    row.pegs.forEach((center, k) => {
-      const peg = this.peg(center, k);
-      (row.holes[k].startsWith("R") ? this.rightPegs : pegs).append(peg);
-    });
-    this.view.world.replaceChildren(draw("g.left-jaw", {}, ...this.jaw(left)), this.rightJaw, shape, pegs, this.rightPegs);
+    const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
+    this.plates = groups((each) => this.plate(each));
+    this.pegs = groups((each) => each.pegs.map((k) => this.peg(row.pegs[k], k)));
+    this.view.world.replaceChildren(...this.plates, shape, ...this.pegs);
     this.slide(this.open);
   }
 
-  /** The plate of a jaw and its holes. */
-  jaw(jaw) {
-    const [x0, y0, x1, y1] = jaw.plate;
-    const { pitch, peg_radius: radius } = this.vise;
-    const size = radius > 0.05 * Math.min(...pitch) ? Math.min(radius, 0.42 * Math.min(...pitch)) : Math.min(...pitch) / 7;
-    const plate = draw(`rect.plate.${jaw.right ? "right" : "left"}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
-    const [columns, rows] = [jaw.columns, jaw.rows];
+  /** The plate of a carrier and its holes. */
+  plate(carrier) {
+    const { columns, rows, hole_radius: size, clamping } = carrier;
+    const [x0, y0, x1, y1] = carrier.plate;
+    const plate = draw(`rect.plate.${clamping ? "slides" : "stands"}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
     let holes = "";
     if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) <= MOST_HOLES) {
       for (let column = columns[0]; column <= columns[1]; column += 1) {
         for (let row = rows[0]; row <= rows[1]; row += 1) {
-          const [x, y] = [jaw.x0 + column * pitch[0], jaw.y0 + row * pitch[1]];
+          const [x, y] = place(carrier, column, row);
           holes += `M${x - size} ${y}a${size} ${size} 0 1 0 ${2 * size} 0a${size} ${size} 0 1 0 ${-2 * size} 0Z`;
         }
       }
@@ -168,14 +159,21 @@ export class FixtureDrawing {
     this.letter();
   }
 
-  /** Put the right jaw `open` mm from where it clamps. */
+  /** How far from its place in the drawing a carrier is shown, in mm. */
+  shift({ clamping }) {
+    return clamping && this.open ? [-clamping[0] * this.open, -clamping[1] * this.open] : [0, 0];
+  }
+
+  /** Put what slides `open` mm from where it clamps. */
   slide(open) {
     this.open = open;
-    const move = open ? `translate(${open} 0)` : null;
-    for (const group of [this.rightJaw, this.rightPegs]) {
-      if (move) group.setAttribute("transform", move);
-      else group.removeAttribute("transform");
-    }
+    this.row.carriers.forEach((carrier, k) => {
+      const [x, y] = this.shift(carrier);
+      for (const group of [this.plates[k], this.pegs[k]]) {
+        if (x || y) group.setAttribute("transform", `translate(${x} ${y})`);
+        else group.removeAttribute("transform");
+      }
+    });
     this.letter();
   }
 
@@ -187,7 +185,7 @@ export class FixtureDrawing {
       this.slide(0);
       return;
     }
-    const far = Math.max(1.5 * this.vise.pitch[0], (this.whole[2] - this.whole[0]) * 0.16);
+    const far = Math.max(1.5 * this.row.carriers[0].pitch[0], (this.whole[2] - this.whole[0]) * 0.16);
     const begun = performance.now();
     const step = (now) => {
       const share = Math.min(1, (now - begun) / 650);

@@ -1,8 +1,8 @@
 /**
- * What keeps its size on the drawing of a fixture: names of holes and faces, the jaw separation, arrows of forces.
+ * What keeps its size on the drawing of a fixture: names of holes and faces, the travel, arrows of forces.
  */
 import { draw } from "./dom.js";
-import { columnLetters, holeOf } from "./pose.js";
+import { columnLetters, place } from "./pose.js";
 import { length, number } from "./units.js";
 
 const LONGEST = 62;
@@ -15,7 +15,7 @@ const SHORTEST = 20;
 export function drawLettering(drawing) {
   const { overlay } = drawing.view;
   const closed = drawing.open === 0;
-  const parts = [...columnNames(drawing), ...rowNames(drawing), ...separation(drawing)];
+  const parts = [...columnNames(drawing), ...rowNames(drawing), ...travels(drawing)];
   if (closed) {
     parts.push(...forceArrows(drawing), ...faceNames(drawing));
     if (drawing.load) parts.push(...loadArrow(drawing));
@@ -51,17 +51,16 @@ function word(text, [x, y], kind, anchor = "middle") {
 }
 
 /** Letters above the columns, as many as there is room for; those with pegs always. */
-function columnNames({ jaws, view, row, vise, open }) {
-  const used = row.holes.map(holeOf);
-  return jaws.flatMap((jaw) => {
+function columnNames(drawing) {
+  const { view, row } = drawing;
+  return row.carriers.flatMap((carrier) => {
     const names = [];
-    const room = vise.pitch[0] * view.k;
-    const step = Math.max(1, Math.ceil(22 / room));
-    for (let column = jaw.columns[0]; column <= jaw.columns[1]; column += 1) {
-      const peg = used.some((hole) => hole.right === jaw.right && hole.column === column);
+    const [dx, dy] = drawing.shift(carrier);
+    const step = Math.max(1, Math.ceil(22 / (carrier.pitch[0] * view.k)));
+    for (let column = carrier.columns[0]; column <= carrier.columns[1]; column += 1) {
+      const peg = carrier.used.some((hole) => hole[0] === column);
       if (!peg && column % step) continue;
-      const x = jaw.x0 + column * vise.pitch[0] + (jaw.right ? open : 0);
-      const [px, py] = view.page([x, jaw.plate[3]]);
+      const [px, py] = view.page([place(carrier, column, 0)[0] + dx, carrier.plate[3] + dy]);
       names.push(word(columnLetters(column), [px, py - 11], peg ? "hole-axis used" : "hole-axis"));
     }
     return names;
@@ -69,41 +68,47 @@ function columnNames({ jaws, view, row, vise, open }) {
 }
 
 /** Numbers beside the rows. */
-function rowNames({ jaws, view, row, vise, open }) {
-  const used = row.holes.map(holeOf);
-  return jaws.flatMap((jaw) => {
+function rowNames(drawing) {
+  const { view, row } = drawing;
+  return row.carriers.flatMap((carrier) => {
     const names = [];
-    const step = Math.max(1, Math.ceil(17 / (vise.pitch[1] * view.k)));
-    for (let index = jaw.rows[0]; index <= jaw.rows[1]; index += 1) {
-      const peg = used.some((hole) => hole.right === jaw.right && hole.row === index);
+    const [dx, dy] = drawing.shift(carrier);
+    const right = carrier.names_at === "right";
+    const step = Math.max(1, Math.ceil(17 / (carrier.pitch[1] * view.k)));
+    for (let index = carrier.rows[0]; index <= carrier.rows[1]; index += 1) {
+      const peg = carrier.used.some((hole) => hole[1] === index);
       if (!peg && (index + 1) % step) continue;
-      const x = jaw.right ? jaw.plate[2] + open : jaw.plate[0];
-      const [px, py] = view.page([x, jaw.y0 + index * vise.pitch[1]]);
+      const [px, py] = view.page([carrier.plate[right ? 2 : 0] + dx, place(carrier, 0, index)[1] + dy]);
       const kind = peg ? "hole-axis used" : "hole-axis";
-      names.push(word(String(index + 1), [px + (jaw.right ? 9 : -9), py], kind, jaw.right ? "start" : "end"));
+      names.push(word(String(index + 1), [px + (right ? 9 : -9), py], kind, right ? "start" : "end"));
     }
     return names;
   });
 }
 
-/** The jaw separation as a dimension above the jaws. */
-function separation({ jaws, view, vise, row, open }) {
-  const [left, right] = jaws;
-  const last = (vise.columns - 1) * vise.pitch[0];
-  const top = Math.max(left.plate[3], right.plate[3]);
-  const [a, b] = [view.page([last, top]), view.page([right.x0 + open, top])];
-  const y = a[1] - 30;
-  const text = `S = ${length(row.jaw_separation + open)}`;
-  const middle = (a[0] + b[0]) / 2;
-  const wide = 8.2 * text.length + 10;
-  const extension = [a, b].map(([x]) => draw("line.dimension", { x1: x, y1: y - 5, x2: x, y2: y + 12 }));
-  const rule = draw("line.dimension", { x1: a[0], y1: y, x2: b[0], y2: y });
-  const heads = [[a[0], 1], [b[0], -1]].map(([x, way]) =>
-    draw("path.dimension-head", { d: `M${x} ${y}l${way * 9} -3.2v6.4Z` }),
-  );
-  const above = b[0] - a[0] < wide + 24;
-  const back = draw("rect.label-back", { x: middle - wide / 2, y: y - 9 - (above ? 13 : 0), width: wide, height: 18 });
-  return [...extension, rule, ...heads, above ? "" : back, word(text, [middle, y - (above ? 13 : 0)], "dimension-text")].filter(Boolean);
+/** How far a carrier has slid, as a dimension above the plates, or at their left when it slides upward. */
+function travels(drawing) {
+  const { view, row } = drawing;
+  const plates = row.carriers.map(({ plate }) => plate);
+  const [left, top] = view.page([Math.min(...plates.map((plate) => plate[0])), Math.max(...plates.map((plate) => plate[3]))]);
+  return row.carriers.flatMap((carrier) => {
+    if (!carrier.measured || !carrier.clamping) return [];
+    const upright = Math.abs(carrier.clamping[1]) > Math.abs(carrier.clamping[0]);
+    const [dx, dy] = drawing.shift(carrier);
+    const [start, end] = carrier.measured;
+    const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
+    const rim = upright ? left - 30 : top - 30;
+    const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
+    const text = `S = ${length((b - a) / view.k)}`;
+    const wide = 8.2 * text.length + 10;
+    const above = upright || b - a < wide + 24;
+    const [x, y] = upright ? [rim, (a + b) / 2 - 13] : [(a + b) / 2, rim - (above ? 13 : 0)];
+    const heads = [[a, 1], [b, -1]].map(([at, way]) =>
+      draw("path.dimension-head", { d: upright ? `M${rim} ${at}l-3.2 ${way * 9}h6.4Z` : `M${at} ${rim}l${way * 9} -3.2v6.4Z` }),
+    );
+    const back = above ? [] : [draw("rect.label-back", { x: x - wide / 2, y: y - 9, width: wide, height: 18 })];
+    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, word(text, [x, y], "dimension-text")];
+  });
 }
 
 /** Places for labels of some size near anchors, pushed apart until none lies on another or on a peg. */
@@ -127,9 +132,10 @@ function apart(labels, pegs) {
 
 /** The name of each peg's hole, on the side away from the part. */
 function holeNames(drawing) {
-  const { row, view, contacts, vise, open } = drawing;
+  const { row, view, contacts, vise } = drawing;
+  const shifts = new Map(row.carriers.flatMap((each) => each.pegs.map((k) => [k, drawing.shift(each)])));
   const radius = Math.max(vise.peg_radius * view.k, 4);
-  const centers = row.pegs.map(([x, y], k) => view.page([x + (row.holes[k].startsWith("R") ? open : 0), y]));
+  const centers = row.pegs.map(([x, y], k) => view.page([x + shifts.get(k)[0], y + shifts.get(k)[1]]));
   const labels = centers.map(([x, y], k) => {
     const [nx, ny] = contacts[k].normal;
     const w = 8.4 * row.holes[k].length + 12;

@@ -2,9 +2,9 @@
  * Peg forces under a load, solved in the page so that they follow the mouse.
  *
  * With c the centre of the part, a peg at q with outward unit normal n presses on the part with a force f along -n. For a
- * load with force g and moment m about c, and a force F on the right jaw along the closing direction,
+ * load with force g and moment m about c, and a force F on the carrier that slides, along the direction d in which it clamps,
  *
- *   sum f n = g,   sum f (q - c) x n = m,   sum over the right jaw of f n . x = F.
+ *   sum f n = g,   sum f (q - c) x n = m,   sum over that carrier of f n . (-d) = F.
  *
  * Four equations for four forces, so f = f0 + F h; contacts are without friction (docs/quality.md).
  */
@@ -22,12 +22,14 @@ export function coefficients(part, row) {
   const contacts = contactsOf(part, row);
   const size = Math.hypot(part.bounds[2] - part.bounds[0], part.bounds[3] - part.bounds[1]) / 2;
   const matrix = [0, 1, 2, 3].map((equation) =>
-    contacts.map(({ contact, normal, right }) => {
+    contacts.map(({ contact, normal }, k) => {
       if (equation < 2) return normal[equation];
       if (equation === 2) {
         return ((contact[0] - center[0]) * normal[1] - (contact[1] - center[1]) * normal[0]) / size;
       }
-      return right ? normal[0] * c - normal[1] * s : 0;
+      const { clamping } = row.carriers.find(({ pegs }) => pegs.includes(k)) ?? {};
+      // The force is told as positive: against the way in which the carrier pushes.
+      return clamping ? -clamping[0] * (normal[0] * c - normal[1] * s) - clamping[1] * (normal[0] * s + normal[1] * c) : 0;
     }),
   );
   const inverse = inverted(matrix);

@@ -5,7 +5,13 @@
  */
 import { nearest, normalAt, pointAt, segmentsOf } from "./geometry.js";
 
-/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], pegs: number[][], forces: number[], jaw_separation: number}} Row */
+/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[]}} Row */
+
+/**
+ * What shows of a carrier of holes, as the server tells it: the hole in column 0 and row 0, first and last column and row,
+ * corners of its plate, numbers of its pegs and their columns and rows, the direction in which it slides to clamp or null.
+ * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], used: number[][], clamping: number[]|null, measured: number[][]|null}} Carrier
+ */
 
 /**
  * A function that carries points of the part into the vise.
@@ -63,10 +69,10 @@ export function partSegments(part) {
 }
 
 /**
- * Where the pegs of a fixture touch the part, in part coordinates: contact, outward unit normal, whether on the right jaw.
+ * Where the pegs of a fixture touch the part, in part coordinates: contact and outward unit normal.
  * @param {any} part
  * @param {Row} row
- * @returns {{peg: number[], contact: number[], normal: number[], right: boolean}[]}
+ * @returns {{peg: number[], contact: number[], normal: number[]}[]}
  */
 export function contactsOf(part, row) {
   const back = intoPart(row);
@@ -79,25 +85,18 @@ export function contactsOf(part, row) {
       if (!best || found.distance < best.distance) best = { ...found, segment };
     }
     if (!best) throw new Error(`face ${row.faces[k]} is not one of the part`);
-    return {
-      peg,
-      contact: pointAt(best.segment, best.share),
-      normal: normalAt(best.segment, best.share),
-      right: row.holes[k].startsWith("R"),
-    };
+    return { peg, contact: pointAt(best.segment, best.share), normal: normalAt(best.segment, best.share) };
   });
 }
 
 /**
- * Column and row of a hole's name, both from 0.
- * @param {string} name such as "L-B3"
+ * Where a hole is.
+ * @param {Carrier} carrier
+ * @param {number} column
+ * @param {number} row
  */
-export function holeOf(name) {
-  const match = /^([LR])-([A-Z]+)(\d+)$/.exec(name);
-  if (!match) throw new Error(`${name} names no hole`);
-  let column = 0;
-  for (const letter of match[2]) column = 26 * column + letter.charCodeAt(0) - 64;
-  return { right: match[1] === "R", column: column - 1, row: Number(match[3]) - 1 };
+export function place({ origin, pitch }, column, row) {
+  return [origin[0] + column * pitch[0], origin[1] + row * pitch[1]];
 }
 
 /**
@@ -110,48 +109,4 @@ export function columnLetters(column) {
     letters = String.fromCharCode(65 + ((rest - 1) % 26)) + letters;
   }
   return letters;
-}
-
-/**
- * The jaws as far as they show: plate, columns and rows in reach of part and pegs.
- * @param {any} vise fields
- * @param {Row} row
- * @param {number[]} reach box of the part in the vise frame
- */
-export function jawViews(vise, row, reach) {
-  const [pitchX, pitchY] = vise.pitch;
-  const box = [...reach];
-  for (const [x, y] of row.pegs) {
-    box[0] = Math.min(box[0], x);
-    box[1] = Math.min(box[1], y);
-    box[2] = Math.max(box[2], x);
-    box[3] = Math.max(box[3], y);
-  }
-  const more = Math.max(box[2] - box[0], box[3] - box[1]) / 14;
-  const [moreX, moreY] = [Math.max(more, pitchX), Math.max(more, pitchY)];
-  return [false, true].map((right) => {
-    const x0 = right ? (vise.columns - 1) * pitchX + row.jaw_separation : 0;
-    const y0 = right ? vise.row_offset ?? 0 : 0;
-    let columns = inReach(box[0] - moreX - x0, box[2] + moreX - x0, pitchX, vise.columns);
-    // The columns next to the opening always show: the jaw separation is measured from there.
-    columns = right ? [0, columns[1]] : [columns[0], vise.columns - 1];
-    const rows = inReach(box[1] - moreY - y0, box[3] + moreY - y0, pitchY, vise.rows ?? null);
-    const inner = Math.min(pitchX / 2, Math.max(1.25 * vise.peg_radius, 0.48 * row.jaw_separation));
-    const [left, after] = right ? [inner, pitchX / 2] : [pitchX / 2, inner];
-    return {
-      right, x0, y0, columns, rows,
-      plate: [
-        x0 + columns[0] * pitchX - left, y0 + (rows[0] - 0.5) * pitchY,
-        x0 + columns[1] * pitchX + after, y0 + (rows[1] + 0.5) * pitchY,
-      ],
-    };
-  });
-}
-
-/** First and last of the columns or rows between two distances from the first one; at least one. */
-function inReach(low, high, pitch, count) {
-  let last = Math.floor(high / pitch + 1e-6);
-  let first = Math.ceil(low / pitch - 1e-6);
-  if (count !== null) [last, first] = [Math.min(last, count - 1), Math.min(first, count - 1)];
-  return [Math.max(first, 0), Math.max(last, first, 0)];
 }

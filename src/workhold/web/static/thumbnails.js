@@ -18,7 +18,7 @@ function inks() {
   if (!colours) {
     const style = getComputedStyle(document.documentElement);
     const ink = (name) => style.getPropertyValue(name).trim();
-    colours = { part: ink("--part-fill"), line: ink("--drawing-ink"), peg: ink("--peg"), touched: ink("--touched"), jaw: ink("--jaw-line") };
+    colours = { part: ink("--part-fill"), line: ink("--drawing-ink"), peg: ink("--peg"), touched: ink("--touched") };
   }
   return colours;
 }

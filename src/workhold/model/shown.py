@@ -1,0 +1,297 @@
+"""What shows of a toolkit that holds a part: of every carrier its plate, its holes, its pegs, and where it slides.
+
+Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
+
+Glossary
+--------
+reach : the extent of part and pegs, one pitch or a fourteenth of the extent more, and as far along the travel as carriers
+    slide; the holes within it show.
+plate : the rectangle around the holes that show, half a pitch beyond them.
+broken side : a side of a plate where the carrier goes on beyond what shows.
+facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from math import ceil, floor, inf
+from typing import Literal
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.geometry.box import Box
+from workhold.geometry.rotation import rotated
+from workhold.geometry.segment import Arc, Point
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["MOST_HOLES", "Axis", "Hole", "Shown", "ShownCarrier", "Side", "placed_boxes", "shown", "shown_beside"]
+
+Side = Literal["left", "right", "bottom", "top"]
+Axis = tuple[Point, Point]
+
+# With more holes than this, what cannot leave out holes by their size shows only those near the pegs.
+MOST_HOLES = 2_000
+
+# Of the gap between the holes of two carriers, how much a plate may cover from either side: the two do not touch.
+SHARE_OF_GAP = 0.48
+# Holes so many columns and rows from a peg are near it.
+NEAR = 3
+# Relative to the pitch: a hole this little beyond reach is in it.
+ROUNDING = 1e-6
+
+
+@frozen
+class Hole:
+    """A hole that shows; ``center`` in mm, ``used`` by a peg, ``blocked`` for all pegs."""
+
+    column: int
+    row: int
+    center: Point
+    used: bool
+    blocked: bool
+
+
+@frozen
+class ShownCarrier:
+    """What shows of a carrier; lengths in mm.
+
+    Parameters
+    ----------
+    carrier : the whole of it.
+    travelled : how far it has slid.
+    columns, rows : of the holes in reach.
+    plate : as far as it shows.
+    broken, facing : sides of the plate, see the glossary.
+    pegs : of the fixture, those that stand on it.
+    clamping : unit vector along which it slides and pushes when it clamps; None when it stands still.
+    """
+
+    carrier: Carrier
+    travelled: float
+    columns: range
+    rows: range
+    plate: Box
+    broken: frozenset[Side]
+    facing: frozenset[Side]
+    pegs: tuple[Peg, ...]
+    clamping: Point | None
+
+    @property
+    def x(self) -> tuple[float, ...]:
+        """x of every column that shows."""
+        return tuple(self.carrier.place(column, 0, self.travelled)[0] for column in self.columns)
+
+    @property
+    def y(self) -> tuple[float, ...]:
+        """y of every row that shows."""
+        return tuple(self.carrier.place(0, row, self.travelled)[1] for row in self.rows)
+
+    @property
+    def slid(self) -> tuple[Point, Point] | None:
+        """Where its hole in column 0 and row 0 would be without travel, and where it is; None when it stands still."""
+        return None if self.clamping is None else (self.carrier.place(0, 0), self.carrier.place(0, 0, self.travelled))
+
+    @property
+    def upright(self) -> bool:
+        """Whether it slides more along y than along x."""
+        return self.clamping is not None and abs(self.clamping[1]) > abs(self.clamping[0])
+
+    @property
+    def names_at(self) -> Side:
+        """The side at which its rows are named: the left one, unless another carrier stands there."""
+        return "right" if "left" in self.facing else "left"
+
+    @property
+    def hole_radius(self) -> float:
+        """Radius of its holes in a picture: that of the pegs, or a seventh of the pitch for pegs (almost) without a size."""
+        pitch, radius = min(self.carrier.pitch), self.carrier.peg_radius
+        return min(radius, 0.42 * pitch) if radius > 0.05 * pitch else pitch / 7
+
+    def holes(self, most: float = inf) -> list[Hole]:
+        """The holes that show, row by row; when they are more than ``most``, those near a peg only."""
+        cells = [(column, row) for row in self.rows for column in self.columns]
+        if len(cells) > most:
+            near = range(-NEAR, NEAR + 1)
+            wanted = {(peg.column + i, peg.row + j) for peg in self.pegs for i in near for j in near}
+            cells = [cell for cell in cells if cell in wanted]
+        used = {(peg.column, peg.row) for peg in self.pegs}
+        return [
+            Hole(*cell, self.carrier.place(*cell, self.travelled), cell in used, self.carrier.is_blocked(*cell))
+            for cell in cells
+        ]
+
+
+@frozen
+class Shown:
+    """What shows of a toolkit and a part: every carrier, those that stand still first, and the part's extent in mm."""
+
+    carriers: tuple[ShownCarrier, ...]
+    part: Box
+
+    @property
+    def extent(self) -> Box:
+        """Everything together."""
+        whole = self.part
+        for carrier in self.carriers:
+            whole = whole.union(carrier.plate)
+        return whole
+
+    @property
+    def pitch(self) -> float:
+        """The smallest distance between neighbouring holes, in mm."""
+        return min(min(shown.carrier.pitch) for shown in self.carriers)
+
+    @property
+    def travels(self) -> list[tuple[ShownCarrier, Axis, Axis]]:
+        """Every carrier that slides, with the axes square to its travel that it is measured from and to.
+
+        The first lies across the plates that stand still, the second across its own; each from left to right or upward.
+        """
+        still = [shown.plate for shown in self.carriers if shown.clamping is None]
+
+        def axis(at: Point, upright: bool, plates: list[Box]) -> Axis:
+            if upright:
+                return (min(plate.x0 for plate in plates), at[1]), (max(plate.x1 for plate in plates), at[1])
+            return (at[0], min(plate.y0 for plate in plates)), (at[0], max(plate.y1 for plate in plates))
+
+        return [
+            (shown, axis(shown.slid[0], shown.upright, still), axis(shown.slid[1], shown.upright, [shown.plate]))
+            for shown in self.carriers
+            if shown.slid is not None
+        ]
+
+
+def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
+    """What shows of a toolkit whose pegs hold a workpiece."""
+    pose = fixture.pose
+    (box,) = placed_boxes(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
+    return shown_beside(Box(*map(float, box)), fixture, toolkit)
+
+
+def placed_boxes(
+    workpiece: Workpiece, theta: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Extents (N, 4) of a workpiece in N poses: smallest x and y, largest x and y in mm; theta (N,) in radians.
+
+    The farthest point in a direction is the end of a segment or the point of an arc that faces that way.
+    """
+    outer = workpiece.loop_segments[0]
+    corners = np.array([segment.start for segment in outer])
+    arcs = [segment for segment in outer if isinstance(segment, Arc)]
+    round_ones = np.array([(*a.center, a.radius, a.mid_angle, a.half_sweep) for a in arcs]).reshape(-1, 5)
+    center_x, center_y, radius, middle, half = round_ones.T
+
+    def farthest(direction: float) -> NDArray[np.float64]:
+        turned = direction - theta[:, None]
+        reach = rotated(corners[:, 0], corners[:, 1], -turned)[0].max(axis=1)
+        faces = np.abs((turned - middle + np.pi) % (2 * np.pi) - np.pi) <= half
+        bulges = np.where(faces, rotated(center_x, center_y, -turned)[0] + radius, -np.inf)
+        return np.asarray(np.maximum(reach, bulges.max(axis=1, initial=-np.inf)))
+
+    left, bottom, right, top = (farthest(angle) for angle in (np.pi, -np.pi / 2, 0.0, np.pi / 2))
+    return np.stack([x - left, y - bottom, x + right, y + top], axis=1)
+
+
+def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
+    """What shows of a toolkit beside a part of an extent."""
+    travelled = fixture.jaw_separation
+    carriers = toolkit.carriers
+    reach = reach_of(part, fixture, carriers)
+    ranges = [cells_in_reach(carrier, travelled, reach) for carrier in carriers]
+    spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
+    gaps = facing_gaps(spans)
+    out = []
+    for carrier, (columns, rows), holes, facing in zip(carriers, ranges, spans, gaps, strict=True):
+        half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
+        left, right = (min(half_x, SHARE_OF_GAP * facing.get(side, inf)) for side in ("left", "right"))
+        bottom, top = (min(half_y, SHARE_OF_GAP * facing.get(side, inf)) for side in ("bottom", "top"))
+        ends: dict[Side, bool] = {
+            "left": columns.start > 0,
+            "right": columns.stop < carrier.columns,
+            "bottom": rows.start > 0,
+            "top": carrier.rows is None or rows.stop < carrier.rows,
+        }
+        out.append(
+            ShownCarrier(
+                carrier=carrier,
+                travelled=travelled,
+                columns=columns,
+                rows=rows,
+                plate=Box(holes.x0 - left, holes.y0 - bottom, holes.x1 + right, holes.y1 + top),
+                broken=frozenset(side for side, goes_on in ends.items() if goes_on),
+                facing=frozenset(facing),
+                pegs=tuple(peg for peg in fixture.pegs if peg.jaw == carrier.name),
+                clamping=clamping_direction(carrier, toolkit),
+            )
+        )
+    return Shown(tuple(out), part)
+
+
+def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
+    """Along which a carrier slides when it clamps, a unit vector; None when it stands still."""
+    if carrier.travel is None:
+        return None
+    x, y = carrier.travel.unit
+    return (0.0 - toolkit.clamping * x, 0.0 - toolkit.clamping * y)
+
+
+def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
+    """The reach, in mm; see the glossary."""
+    reach = part
+    for peg in fixture.pegs:
+        reach = reach.union(Box(peg.x, peg.y, peg.x, peg.y))
+    more = max(reach.width, reach.height) / 14
+    more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
+    reach = Box(reach.x0 - more_x, reach.y0 - more_y, reach.x1 + more_x, reach.y1 + more_y)
+    for carrier in carriers:
+        if carrier.travel is not None:
+            along_x, along_y = carrier.travel.unit
+            for x, y in (carrier.place(0, 0), carrier.place(0, 0, fixture.jaw_separation)):
+                x, y = x if along_x else reach.x0, y if along_y else reach.y0
+                reach = reach.union(Box(x, y, x, y))
+    return reach
+
+
+def cells_in_reach(carrier: Carrier, travelled: float, reach: Box) -> tuple[range, range]:
+    """Columns and rows of a carrier in reach; at least one of each."""
+    x, y = carrier.place(0, 0, travelled)
+    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns)
+    return columns, in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows)
+
+
+def in_reach(low: float, high: float, pitch: float, count: int | None) -> range:
+    """Columns or rows between two distances in mm from the first one; at least one."""
+    last, first = floor(high / pitch + ROUNDING), ceil(low / pitch - ROUNDING)
+    if count is not None:
+        last, first = min(last, count - 1), min(first, count - 1)
+    return range(max(first, 0), max(last, first, 0) + 1)
+
+
+def span(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box:
+    """The box of the centres of the holes in some columns and rows."""
+    first, last = (carrier.place(columns[end], rows[end], travelled) for end in (0, -1))
+    return Box(*first, *last)
+
+
+def facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
+    """For each of some boxes its sides that face another one, with the smallest gap there in mm."""
+    gaps: list[dict[Side, float]] = [{} for _ in spans]
+
+    def face(one: int, side: Side, gap: float) -> None:
+        gaps[one][side] = min(gap, gaps[one].get(side, inf))
+
+    for i, k in combinations(range(len(spans)), 2):
+        for low, high in ((i, k), (k, i)):
+            across, upward = spans[high].x0 - spans[low].x1, spans[high].y0 - spans[low].y1
+            if across > 0:
+                face(low, "right", across)
+                face(high, "left", across)
+            elif upward > 0 and spans[low].x0 <= spans[high].x1 and spans[high].x0 <= spans[low].x1:
+                face(low, "top", upward)
+                face(high, "bottom", upward)
+    return gaps
