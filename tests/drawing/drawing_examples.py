@@ -7,7 +7,6 @@ from math import sqrt, tan
 import numpy as np
 
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.result import hole_position
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -38,7 +37,7 @@ def example(size: float = 1.0, name: str = "notched plate") -> tuple[Fixture, Wo
     holes = [("left", 1, 0, 5), ("left", 1, 4, 3), ("right", 0, 1, 0), ("right", 0, 3, 0)]
     pegs = []
     for jaw, column, row, segment in holes:
-        x, y = hole_position(vise, int(jaw == "right"), column, row, separation)
+        x, y = vise.carriers[int(jaw == "right")].place(column, row, separation)
         pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, segment, 0.5))
     pose = Pose(90.0, 43.0 * size, -5.0 * size)
     quality = {"closure_margin": 0.125}
@@ -63,7 +62,7 @@ def diamond(size: float = 1.0, rounded: bool = False, name: str = "diamond") -> 
     separation = 2 * center * size
     pegs = []
     for jaw, row, segment in [(0, 0, 4 if rounded else 3), (0, 2, 2), (1, 0, 0), (1, 2, 1)]:
-        x, y = hole_position(vise, jaw, 0, row, separation)
+        x, y = vise.carriers[jaw].place(0, row, separation)
         pegs.append(Peg("right" if jaw else "left", 0, row, x, y, segment, 1 / sqrt(2)))
     pose = Pose(45.0, center * size, (10 - 20 * sqrt(2)) * size)
     return (

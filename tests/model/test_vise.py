@@ -12,7 +12,6 @@ from strategies import vises
 from workhold.errors import InputError
 from workhold.model.fixture import Peg
 from workhold.model.holes import column_letters
-from workhold.model.result import hole_position
 from workhold.model.vise import Vise
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
@@ -70,14 +69,14 @@ def test_pegs_that_just_fit_are_accepted():
 @given(vises(), st.integers(0, 5), st.integers(0, 9), st.floats(0, 100))
 def test_holes_follow_the_lattice(vise, column, row, separation):
     """Left (i, j) is at (i lx, j ly); right (0, 0) is S to the right of the left jaw's last column, row_offset up."""
-    assert hole_position(vise, 0, 0, 0, separation) == (0, 0)
-    left = hole_position(vise, 0, column, row, separation)
+    assert vise.carriers[0].place(0, 0, separation) == (0, 0)
+    left = vise.carriers[0].place(column, row, separation)
     assert left == pytest.approx((column * vise.pitch[0], row * vise.pitch[1]))
-    last = hole_position(vise, 0, vise.columns - 1, row, separation)
-    first = hole_position(vise, 1, 0, row, separation)
+    last = vise.carriers[0].place(vise.columns - 1, row, separation)
+    first = vise.carriers[1].place(0, row, separation)
     assert first[0] - last[0] == pytest.approx(separation)
     assert first[1] - last[1] == pytest.approx(vise.row_offset)
-    right = hole_position(vise, 1, column, row, separation)
+    right = vise.carriers[1].place(column, row, separation)
     assert right[0] - first[0] == pytest.approx(left[0]) and right[1] == pytest.approx(left[1] + vise.row_offset)
 
 

@@ -16,7 +16,6 @@ from closing_forces import clamping_force, null_vectors
 from fixture_sets import Judge, listed, near_an_end
 from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
 from workhold.geometry.segment import Line
-from workhold.model.result import hole_position
 from workhold.verification import verify_fixture
 
 Array = NDArray[np.float64]
@@ -29,7 +28,7 @@ def contact(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) -> tu
     turn = np.array([[cos(z[0]), sin(z[0])], [-sin(z[0]), cos(z[0])]])
     gaps, points, normals = [], [], []
     for jaw, column, row, face in holes:
-        point = turn @ (np.array(hole_position(vise, int(jaw == "right"), column, row, z[3])) - z[1:3])
+        point = turn @ (np.array(vise.carriers[int(jaw == "right")].place(column, row, z[3])) - z[1:3])
         segment = segments[face]
         if isinstance(segment, Line):
             normal = np.array(segment.normal())
@@ -72,7 +71,7 @@ def fixture_of(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) ->
         force = np.nan_to_num(null / clamping_force(null, normals[None], z[:1], left[None]))
     pegs = []
     for (jaw, column, row, face), push in zip(holes, force[0], strict=True):
-        x, y = hole_position(vise, int(jaw == "right"), column, row, z[3])
+        x, y = vise.carriers[int(jaw == "right")].place(column, row, z[3])
         pegs.append(Peg(jaw, column, row, float(x), float(y), face, float(push)))  # type: ignore[arg-type]
     pose = Pose(float(np.degrees(z[0])), float(z[1]), float(z[2]))
     quality = {"closure_margin": float(null.min())}

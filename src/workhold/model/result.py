@@ -19,9 +19,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "hole_position", "unknown_quality"]
-
-LEFT, RIGHT = 0, 1
+__all__ = ["FixtureTable", "Result", "fixture_at", "unknown_quality"]
 
 
 @define(frozen=True, eq=False)
@@ -154,15 +152,6 @@ class Result:
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         return fixture_at(self.table, self.vise, index)
-
-
-def hole_position(vise: Vise, jaw: int, column: int, row: int, jaw_separation: float) -> tuple[float, float]:
-    """Centre in mm of a hole in the vise frame (MODEL: the left jaw's hole (0, 0) is the origin)."""
-    x, y = column * vise.pitch[0], row * vise.pitch[1]
-    if jaw == RIGHT:
-        x += (vise.columns - 1) * vise.pitch[0] + jaw_separation
-        y += vise.row_offset
-    return x, y
 
 
 def whole_turn_degrees(theta: float) -> float:

@@ -21,7 +21,6 @@ from workhold.errors import InputError
 from workhold.files.step.setup import setup_step, write_setup_step
 from workhold.files.step.solids import Solid, read_solids
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.result import LEFT, RIGHT, hole_position
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -48,7 +47,7 @@ def fixture(pose: Pose, jaw_separation: float = 50.0) -> Fixture:
     holes = [("left", 0, 0), ("left", 0, 2), ("right", 1, 0), ("right", 1, 2)]
     pegs = []
     for jaw, column, row in holes:
-        x, y = hole_position(VISE, RIGHT if jaw == "right" else LEFT, column, row, jaw_separation)
+        x, y = VISE.carriers[jaw == "right"].place(column, row, jaw_separation)
         pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, 0, 0.5))
     return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, jaw_separation, {})
 
