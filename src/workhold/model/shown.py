@@ -103,8 +103,9 @@ class ShownCarrier:
 
     @property
     def names_at(self) -> Side:
-        """The side at which its rows are named: the left one, unless another carrier stands there."""
-        return "right" if "left" in self.facing else "left"
+        """The side at which its rows are named: the left one, unless another carrier stands there or it slides rightward."""
+        slides_right = self.carrier.travel is not None and self.carrier.travel.unit[0] > 0
+        return "right" if "left" in self.facing or slides_right else "left"
 
     @property
     def hole_radius(self) -> float:
