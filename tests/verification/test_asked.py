@@ -7,9 +7,11 @@ from math import cos, radians, sin
 from typing import Any
 
 import attrs
+import numpy as np
 import pytest
 
 from workhold import Result, Vise, design, load
+from workhold.listing.ranking import ranking_keys
 from workhold.model.holes import holes_named
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
@@ -60,7 +62,7 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
 def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""
     quality = limited.table.quality.copy()
-    quality[4, number] += 1e-4 * max(1.0, quality[4, number])
+    quality[4, number] *= 1 + 1e-6
     outcome = verify(attrs.evolve(limited, table=attrs.evolve(limited.table, quality=quality)))
     assert [item.index for item in outcome.unproven] == [4]
     assert FIGURES[number].words in outcome.unproven[0].reason
@@ -87,3 +89,24 @@ def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, 
     outcome = verify(attrs.evolve(limited, restrictions=Restrictions(zones=(zone,))))
     told = any(item.index == 0 and "peg 1 stands over a keep-out zone" in item.reason for item in outcome.unproven)
     assert told == stands_over
+
+
+@pytest.mark.parametrize("place", range(9))
+def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
+    """It is a fault, unless they count as equal by all that they are ranked by."""
+    order = np.arange(len(limited))
+    order[[place, place + 1]] = place + 1, place
+    equal = np.array_equal(
+        *np.round(np.array(ranking_keys(limited.table.quality, limited.ranking)).T[order[place:][:2]], 9)
+    )
+    outcome = verify(attrs.evolve(limited, table=limited.table.take(order)))
+    assert (outcome.faults == ()) == equal
+    assert outcome.proven == len(limited)
+
+
+def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
+    """What is first by one figure is not by another."""
+    for ranking in (("closure_margin",), ("end_distance", "location_error"), tuple(reversed(limited.ranking))):
+        outcome = verify(attrs.evolve(limited, ranking=ranking))
+        assert len(outcome.faults) == 1, ranking
+        assert ", ".join(ranking) in outcome.faults[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from itertools import combinations
 from math import cos, sin
 from random import Random
 
@@ -13,7 +15,8 @@ from hypothesis import given
 
 from closing_forces import null_vectors
 from strategies import seeds
-from workhold.verification.closure import closure_findings, minors
+from workhold.verification.balls import Point
+from workhold.verification.closure import Balance, closure_findings, minors, span
 from workhold.verification.contacts import Pose
 
 # The part as it is drawn.
@@ -96,5 +99,48 @@ def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_p
             FixedContact((offset * x, offset * y), (arb(n), arb(m)), int(k > 1))
             for k, ((x, y), (n, m)) in enumerate(ways)
         ]
-        words = [found.reason for found in closure_findings(None, contacts, UPRIGHT, length)]  # type: ignore[arg-type]
+        balance = Balance.of(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
+        words = [found.reason for found in closure_findings(balance, length, 1)]
         assert any("their wrenches span only" in reason for reason in words) == (not spans)
+
+
+# Unit vectors with rational components, from Pythagorean triples.
+DIRECTIONS = [
+    (Fraction(a * sign, c), Fraction(b * other, c))
+    for a, b, c in ((3, 4, 5), (4, 3, 5), (5, 12, 13), (15, 8, 17), (1, 0, 1), (0, 1, 1))
+    for sign in (1, -1)
+    for other in (1, -1)
+]
+
+
+def determinant(rows: list[tuple[Fraction, Fraction, Fraction]]) -> Fraction:
+    """Determinant of a 3 x 3 matrix, along its first row."""
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+@given(seeds)
+def test_minors_and_span_are_the_exact_ones(seed: int) -> None:
+    """The span is the sum of sizes of the minors of the wrenches (n, q x n / L), moments over L: for rational contacts the
+    balls hold the rational numbers, and are no wider than rounding."""
+    random = Random(seed)
+    normals = [random.choice(DIRECTIONS) for _ in range(4)]
+    places = [(Fraction(random.randint(-400, 400), 8), Fraction(random.randint(-400, 400), 8)) for _ in range(4)]
+    length = random.choice([0.125, 3.0, 40.0, 1024.0])
+    wrenches = [(*n, (q[0] * n[1] - q[1] * n[0]) / Fraction(length)) for q, n in zip(places, normals, strict=True)]
+    exact = [determinant(list(three)) for three in reversed(list(combinations(wrenches, 3)))]
+    vector = minors([balls(q) for q in places], [balls(n) for n in normals])
+    for number, (entry, minor) in enumerate(zip(vector, exact, strict=True)):
+        assert agree(entry / length, minor * (-1) ** number)
+    assert agree(span(vector, length), sum((abs(minor) for minor in exact), Fraction(0)))
+
+
+def balls(pair: tuple[Fraction, Fraction]) -> Point:
+    """A pair of rational numbers as balls."""
+    x, y = (arb(entry.numerator) / entry.denominator for entry in pair)
+    return x, y
+
+
+def agree(ball: arb, exact: Fraction) -> bool:
+    """Whether a narrow ball holds a rational number."""
+    return bool((ball * exact.denominator).contains(exact.numerator) and ball.rad() < 1e-9)

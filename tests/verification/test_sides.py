@@ -106,4 +106,4 @@ def test_lines_that_continue_each_other_are_one_face() -> None:
     outline = Outline.of(workpiece)
     slacks = outline.faces[0].slacks(exact_point(20, -3), arb(3))
     assert [slack.contains(far) for slack, far in zip(slacks, (20, 40), strict=True)] == [True, True]
-    assert {index for index, _ in outline.others(0)} == {2, 3, 4}
+    assert {index for index, _ in outline.others[0]} == {2, 3, 4}

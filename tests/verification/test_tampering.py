@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from workhold.model.quality import FIGURES
 from workhold.verification import Verification
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
@@ -55,6 +56,19 @@ def test_every_real_number_of_a_fixture(verified: Verify, place: str, change: fl
     outcome = verified(edit)
     assert outcome.refuted == 12
     assert not outcome.holds
+
+
+@pytest.mark.parametrize("change", [1e-6, -1e-6])
+@pytest.mark.parametrize("key", ["force", *(figure.key for figure in FIGURES if figure.key != "load_reaction")])
+def test_a_millionth_of_a_force_or_a_figure(verified: Verify, key: str, change: float) -> None:
+    """Each is derived again to more digits than that."""
+
+    def edit(data: dict[str, Any]) -> None:
+        for number, fixture in enumerate(data["fixtures"]):
+            numbers = fixture["pegs"][number % 4] if key == "force" else fixture["quality"]
+            numbers[key] *= 1.0 + change
+
+    assert verified(edit).refuted == 12
 
 
 @pytest.mark.parametrize("change", [1, -1, 7])

@@ -1,36 +1,33 @@
-"""What the user asked for beyond a fixture: restrictions, figures of quality, their order.
+"""What the user asked for beyond a fixture: restrictions, and what figures of quality are for.
 
-These are no claims of existence, so plain numbers are enough: a rule is broken when it is missed by more than
-``findings.AGREEMENT``.
+Restrictions are no claims of existence, so the pose as it is written is enough: one is broken when it is missed by more than
+``rules.AGREEMENT``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from itertools import combinations
-from math import cos, hypot, radians, sin
+from math import hypot
 from typing import Any
 
-import numpy as np
 from attrs import field, frozen
+from flint import arb
 
 from workhold.errors import InputError
-from workhold.geometry.intersect import distance_to_segment
-from workhold.geometry.segment import Point, segment_rows
-from workhold.kernels.base.distance import is_inside
-from workhold.listing.ranking import ranking_keys
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.load import Load
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figure_number
-from workhold.model.restrictions import Restrictions, Zone, zone_of
-from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.quality import figure_number
+from workhold.model.restrictions import Restrictions, zone_of
+from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
-from workhold.statics.quality import quality_of
-from workhold.verification.findings import AGREEMENT
+from workhold.verification.balls import Point, exact_point, turned
+from workhold.verification.rules import AGREEMENT
+from workhold.verification.zones import zone_distance
 
-__all__ = ["Asked", "asked_in", "asked_of", "broken_restriction", "order_faults", "wrong_figures"]
+__all__ = ["Asked", "asked_in", "asked_of", "broken_restriction"]
 
 
 @frozen
@@ -110,69 +107,5 @@ def broken_restriction(fixture: Fixture, workpiece: Workpiece, vise: Vise, restr
 
 def in_part(fixture: Fixture, peg: Peg) -> Point:
     """A peg's centre in the part's frame."""
-    angle, dx, dy = radians(fixture.pose.theta_deg), peg.x - fixture.pose.x, peg.y - fixture.pose.y
-    return cos(angle) * dx + sin(angle) * dy, cos(angle) * dy - sin(angle) * dx
-
-
-def zone_distance(zone: Zone, point: Point) -> float:
-    """Distance in mm from a point to a zone, 0 inside."""
-    if is_inside(*point, segment_rows(zone.segments)):
-        return 0.0
-    return min(distance_to_segment(point, segment) for segment in zone.segments)
-
-
-def wrong_figures(fixtures: Sequence[Fixture], workpiece: Workpiece, vise: Vise, asked: Asked) -> dict[int, str]:
-    """For each fixture, by its place, with a figure of quality that is not what it comes to: the first of them in words."""
-    if not fixtures:
-        return {}
-    table = table_of(fixtures, vise)
-    derived = quality_of(table, workpiece, vise, asked.tolerance, asked.loads)
-    out: dict[int, str] = {}
-    for number, figure in enumerate(FIGURES):
-        written = np.array([fixture.quality.get(figure.key, np.nan) for fixture in fixtures])
-        # The closure margin is proven with the forces; without loads there is no load reaction to compare with.
-        if number == CLOSURE_MARGIN or (number == LOAD_REACTION and not asked.loads):
-            continue
-        wrong = np.abs(written - derived[:, number]) > AGREEMENT * np.maximum(1.0, np.abs(derived[:, number]))
-        for place in np.flatnonzero(wrong):
-            words = f"its {figure.words} is {written[place]:.9g} in the file and comes to {derived[place, number]:.9g}"
-            out.setdefault(int(place), words)
-    return out
-
-
-def table_of(fixtures: Sequence[Fixture], vise: Vise) -> FixtureTable:
-    """Fixtures as a table; pegs in the order of their arrangements."""
-    names = [arrangement.name for arrangement in vise.arrangements]
-    ordered = [sorted(fixture.pegs, key=lambda peg: peg.jaw == "right") for fixture in fixtures]
-
-    def integers(name: str, kind: Any = np.int32) -> Any:
-        return np.array([[getattr(peg, name) for peg in pegs] for pegs in ordered], kind)
-
-    force = np.array([[peg.force for peg in pegs] for pegs in ordered])
-    null = force / force.sum(axis=1, keepdims=True)
-    return FixtureTable(
-        arrangement=np.array([names.index(fixture.type) for fixture in fixtures], np.int8),
-        column=integers("column"),
-        row=integers("row"),
-        face=integers("face"),
-        theta=np.radians([fixture.pose.theta_deg for fixture in fixtures]),
-        position=np.array([[fixture.pose.x, fixture.pose.y] for fixture in fixtures]),
-        jaw_separation=np.array([fixture.jaw_separation for fixture in fixtures]),
-        null_vector=null,
-        force=force,
-        quality=unknown_quality(null),
-    )
-
-
-def order_faults(fixtures: Sequence[Fixture], ranking: Sequence[str]) -> Iterator[str]:
-    """A fault when fixtures are not in the order of their figures, equal ones apart."""
-    if not ranking or any(key not in fixture.quality for fixture in fixtures for key in ranking):
-        return
-    quality = np.array([[fixture.quality.get(figure.key, np.nan) for figure in FIGURES] for fixture in fixtures])
-    keys = np.array(ranking_keys(quality.reshape(-1, len(FIGURES)), ranking)).T
-    for place in range(1, len(keys)):
-        before, after = keys[place - 1], keys[place]
-        differ = np.flatnonzero(np.abs(after - before) > AGREEMENT * np.maximum(1.0, np.abs(before)))
-        if len(differ) and after[differ[0]] < before[differ[0]]:
-            yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
-            return
+    sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
+    return turned(exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)

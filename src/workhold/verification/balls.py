@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from flint import arb
 
-__all__ = ["PRECISIONS", "Point", "cross", "dot", "exact_point", "norm", "turned"]
+__all__ = ["PRECISIONS", "Point", "cross", "dot", "exact_point", "norm", "root", "turned"]
 
 Point = tuple[arb, arb]
 
@@ -42,10 +42,14 @@ def cross(a: Point, b: Point) -> arb:
     return a[0] * b[1] - a[1] * b[0]
 
 
+def root(square: arb) -> arb:
+    """Square root of a number that is not negative, though its ball may reach below 0."""
+    return square.sqrt() if square > 0 else arb(0).union(square.abs_upper().sqrt())
+
+
 def norm(a: Point) -> arb:
     """Length of a vector, also where the ball holds the null vector."""
-    square = dot(a, a)
-    return square.sqrt() if square > 0 else arb(0).union(square.abs_upper().sqrt())
+    return root(dot(a, a))
 
 
 def turned(a: Point, cosine: arb, sine: arb) -> Point:

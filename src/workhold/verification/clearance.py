@@ -17,8 +17,7 @@ from flint import arb
 
 from workhold.verification.balls import Point, dot, norm, turned
 from workhold.verification.contacts import Contact
-from workhold.verification.findings import HAIR
-from workhold.verification.outline import TANGENT
+from workhold.verification.rules import HAIR, TANGENT
 from workhold.verification.sides import LineSide, Side
 
 __all__ = ["clear_within"]

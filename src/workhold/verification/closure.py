@@ -8,27 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from attrs import frozen
 from flint import arb
 
-from workhold.model.fixture import Fixture
 from workhold.verification.balls import Point, cross, dot
 from workhold.verification.contacts import Contact, Pose
-from workhold.verification.findings import AGREEMENT, Finding, number, rule
+from workhold.verification.findings import Finding, number, rule
+from workhold.verification.rules import LEAST_CLAMPING, LEAST_SHARE, LEAST_SPAN
 
-__all__ = ["closure_findings", "minors"]
-
-# The least share of a peg in the closure, and the least clamping force, the shares scaled to sum 1 (model: conditions 4, 5).
-# The natural coincidences are 0: three normals through one point, and a double solution of the contact equations, where the
-# rounding of a drawing alone leaves a clamping force of up to 1e-7 or so. The edges stand off them.
-LEAST_SHARE = 1e-9
-LEAST_CLAMPING = 1e-6
-# The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one point or are
-# parallel up to the rounding of the drawing, and four such contacts close nothing.
-LEAST_SPAN = 1e-7
+__all__ = ["Balance", "closure_findings", "minors", "span"]
 
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i."""
+    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i, in mm."""
     moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
     vector = []
     for i in range(4):
@@ -42,55 +34,71 @@ def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
     return vector
 
 
-def closure_findings(
-    fixture: Fixture, contacts: Sequence[Contact], pose: Pose, wrench_length: float
-) -> Iterator[Finding]:
-    """Whether the four contacts close, whether closing the vise clamps, and whether the file tells the right forces.
+def span(vector: Sequence[arb], wrench_length: float) -> arb:
+    """Sizes of the minors summed, moments in parts of L in mm: how far the wrenches are from lying in one plane."""
+    return sum((abs(entry) for entry in vector), arb(0)) / wrench_length
+
+
+@frozen(eq=False)
+class Balance:
+    """How four contacts press on the workpiece when nothing else does.
+
+    Parameters
+    ----------
+    points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
+    vector : the null vector of the wrenches, not scaled, see :func:`minors`.
+    shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
+    clamp : the force that the moving jaw passes on in the direction in which it clamps, for these shares.
+    """
+
+    points: tuple[Point, ...]
+    normals: tuple[Point, ...]
+    vector: tuple[arb, ...]
+    shares: tuple[arb, ...]
+    clamp: arb
+
+    @classmethod
+    def of(cls, contacts: Sequence[Contact], pose: Pose, clamping: int) -> Balance:
+        """The balance of four contacts; ``clamping`` is 1 where closing the vise clamps, -1 where opening it does."""
+        points = tuple(contact.in_part(pose) for contact in contacts)
+        normals = tuple(contact.side.outward(point) for contact, point in zip(contacts, points, strict=True))
+        vector = tuple(minors(points, normals))
+        total = sum(vector, arb(0))
+        shares = tuple(entry / total for entry in vector)
+        # The push of a left peg along the vise's x axis is -n turned into the vise frame.
+        across = pose.cosine, -pose.sine
+        lefts = [k for k, contact in enumerate(contacts) if not contact.right]
+        push = -sum((shares[k] * dot(across, normals[k]) for k in lefts), arb(0))
+        return cls(points, normals, vector, shares, clamping * push)
+
+    @property
+    def forces(self) -> list[arb]:
+        """Force of each peg per unit of clamping force."""
+        return [share / self.clamp for share in self.shares]
+
+
+def closure_findings(balance: Balance, wrench_length: float, clamping: int) -> Iterator[Finding]:
+    """Whether four contacts close, and whether closing the vise clamps (opening it, where ``clamping`` is -1).
 
     ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm.
     """
-    points = [contact.in_part(pose) for contact in contacts]
-    normals = [contact.side.outward(point) for contact, point in zip(contacts, points, strict=True)]
-    vector = minors(points, normals)
+    vector, spanned = balance.vector, span(balance.vector, wrench_length)
+    words = f"the contacts do not hold the part: their wrenches span only {number(spanned)}"
+    yield from rule(spanned - LEAST_SPAN, words, words)
     total = sum(vector, arb(0))
-    span = sum((abs(entry) for entry in vector), arb(0)) / wrench_length
-    words = f"the contacts do not hold the part: their wrenches span only {number(span)}"
-    yield from rule(span - LEAST_SPAN, words, words)
     if not (total > 0 or total < 0):
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
         yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
         return
-    null = [entry / total for entry in vector]
-    for position, entry in enumerate(null, 1):
+    for position, share in enumerate(balance.shares, 1):
         yield from rule(
-            entry - LEAST_SHARE,
-            f"the contacts do not hold the part: the share of peg {position} in the closure is {number(entry)}",
+            share - LEAST_SHARE,
+            f"the contacts do not hold the part: the share of peg {position} in the closure is {number(share)}",
             f"the share of peg {position} in the closure is exactly at its limit",
         )
-    # The push of a left peg along the vise's x axis is -n turned into the vise frame.
-    across = pose.cosine, -pose.sine
-    lefts = [k for k, contact in enumerate(contacts) if not contact.right]
-    clamp = -sum((null[k] * dot(across, normals[k]) for k in lefts), arb(0))
-    loose = list(
-        rule(
-            clamp - LEAST_CLAMPING,
-            f"closing the vise does not clamp: the clamping force is {number(clamp)}",
-            "the clamping force is exactly at its limit",
-        )
+    move = "closing" if clamping > 0 else "opening"
+    yield from rule(
+        balance.clamp - LEAST_CLAMPING,
+        f"{move} the vise does not clamp: the clamping force is {number(balance.clamp)}",
+        "the clamping force is exactly at its limit",
     )
-    yield from loose
-    if not loose:
-        yield from written_numbers(fixture, null, clamp)
-
-
-def written_numbers(fixture: Fixture, null: Sequence[arb], clamp: arb) -> Iterator[Finding]:
-    """Whether the forces and the closure margin of the file are the derived ones."""
-    for position, (peg, entry) in enumerate(zip(fixture.pegs, null, strict=True), 1):
-        force = entry / clamp
-        words = f"the force of peg {position} is {peg.force:.12g} in the file and {float(force.mid()):.12g} by proof"
-        yield from rule(AGREEMENT * force.max(arb(1)) - abs(force - peg.force), words, words)
-    if "closure_margin" in fixture.quality:
-        written = fixture.quality["closure_margin"]
-        least = null[0].min(null[1]).min(null[2]).min(null[3])
-        words = f"the closure margin is {written:.12g} in the file and {float(least.mid()):.12g} by proof"
-        yield from rule(AGREEMENT - abs(least - written), words, words)

@@ -3,7 +3,7 @@
 Glossary
 --------
 slack : a number that a rule wants to be positive.
-hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coincidence.
+hair : see ``verification.rules``.
 
 Drawings are made with round numbers, so that two faces are often exactly as far apart as two holes, or a contact is
 exactly at the joint of two faces; and the coordinates of a drawing are rounded, which spoils such a coincidence by some
@@ -26,12 +26,7 @@ from collections.abc import Iterator
 from attrs import frozen
 from flint import arb
 
-__all__ = ["AGREEMENT", "HAIR", "Finding", "number", "rule"]
-
-# Lengths in mm; the double nearest to 1e-9, taken as the rational number it is.
-HAIR = 1e-9
-# Numbers written in a file agree with the derived ones to this: mm, degrees, or a part of the force.
-AGREEMENT = 1e-6
+__all__ = ["Finding", "number", "rule"]
 
 
 @frozen

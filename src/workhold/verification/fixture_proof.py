@@ -14,13 +14,16 @@ from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
+from workhold.verification.asked import Asked
 from workhold.verification.balls import PRECISIONS
-from workhold.verification.closure import closure_findings
+from workhold.verification.closure import Balance, closure_findings
 from workhold.verification.contacts import Contact, Pose, contact_system
-from workhold.verification.findings import AGREEMENT, Finding, number, rule
+from workhold.verification.figures import Measure, written_numbers
+from workhold.verification.findings import Finding, number, rule
 from workhold.verification.holes import hole_findings, hole_place, jaw_findings
 from workhold.verification.krawczyk import certified_zero
 from workhold.verification.outline import Outline
+from workhold.verification.rules import AGREEMENT
 from workhold.verification.sides import ArcSide
 from workhold.verification.touching import touching_findings
 
@@ -58,12 +61,17 @@ def verify_fixture(fixture: Fixture, workpiece: Workpiece, vise: Vise, contact_m
 
 @frozen(eq=False)
 class Judge:
-    """Proves or refutes fixtures of one workpiece in one vise; see :func:`verify_fixture`."""
+    """Proves or refutes fixtures of one workpiece in one vise; see :func:`verify_fixture`.
+
+    ``asked`` tells for which tolerance and loads the figures of quality are; without it the location error is taken to be
+    that of the default tolerance.
+    """
 
     workpiece: Workpiece
     vise: Vise
     contact_margin: float = 0.0
-    outlines: dict[int, Outline] = field(factory=dict, init=False)
+    asked: Asked = field(factory=Asked)
+    measures: dict[int, Measure] = field(factory=dict, init=False)
     wrench_length: float = field(init=False)
 
     @wrench_length.default
@@ -83,29 +91,30 @@ class Judge:
 
     def ruling_at(self, bits: int, fixture: Fixture) -> Ruling:
         """The ruling at the precision in force."""
-        if bits not in self.outlines:
-            self.outlines[bits] = Outline.of(self.workpiece)
+        if bits not in self.measures:
+            outline, outer = Outline.of(self.workpiece), len(self.workpiece.loops[0])
+            self.measures[bits] = Measure.of(outline, outer, self.vise.peg_radius, self.wrench_length, self.asked)
         doubt = ""
-        for finding in self.findings(fixture, self.outlines[bits]):
+        for finding in self.findings(fixture, self.measures[bits]):
             if finding.definite:
                 return Ruling("refuted", finding.reason, bits)
             doubt = doubt or finding.reason
         return Ruling("undecided", doubt, bits) if doubt else Ruling("proven", "", bits)
 
-    def findings(self, fixture: Fixture, outline: Outline) -> Iterator[Finding]:
+    def findings(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
         """Everything that speaks against a fixture, cheap rules first; nobody asks on after a definite finding."""
+        outline, clamping = measure.outline, self.vise.clamping
         yield from hole_findings(fixture, self.vise)
         for position, peg in enumerate(fixture.pegs, 1):
             if peg.face not in outline.faces:
                 yield Finding(True, f"peg {position} is on segment {peg.face}, which does not name a face")
-        radius = arb(self.vise.peg_radius)
         contacts = [
-            Contact(hole_place(peg, self.vise), int(peg.jaw == "right"), outline.faces[peg.face], radius)
+            Contact(hole_place(peg, self.vise), int(peg.jaw == "right"), outline.faces[peg.face], measure.radius)
             for peg in fixture.pegs
         ]
         faces = [peg.face for peg in fixture.pegs]
         for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
-            if isinstance(contact.side, ArcSide) and not contact.side.reach(radius) > 0:
+            if isinstance(contact.side, ArcSide) and not contact.side.reach(measure.radius) > 0:
                 yield Finding(True, f"peg {position} does not fit into the concave face {face}")
         yield from pose_findings(fixture, contacts, faces)
         solution, doubts = proven_pose(fixture, contacts)
@@ -115,7 +124,11 @@ class Judge:
         yield from jaw_findings(fixture, self.vise, solution.separation)
         for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
             yield from touching_findings(f"peg {position}", contact, face, solution, outline, self.contact_margin)
-        yield from closure_findings(fixture, contacts, solution, self.wrench_length)
+        balance = Balance.of(contacts, solution, clamping)
+        loose = list(closure_findings(balance, self.wrench_length, clamping))
+        yield from loose
+        if not loose:
+            yield from written_numbers(fixture, balance, measure.figures(contacts, faces, solution, balance))
 
 
 def degree() -> arb:
@@ -157,6 +170,7 @@ def proven_pose(fixture: Fixture, contacts: list[Contact]) -> tuple[Pose | None,
     )
     for name, unit, derived, value in comparisons:
         off = abs(derived - value)
-        words = f"the {name} in the file is {number(off)} {unit} from the one that touches all four faces"
-        findings += rule(AGREEMENT - off, words, words)
+        if not off < AGREEMENT:
+            words = f"the {name} in the file is {number(off)} {unit} from the one that touches all four faces"
+            findings += rule(AGREEMENT - off, words, words)
     return Pose.of(theta, x, y, separation), findings

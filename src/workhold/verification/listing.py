@@ -20,7 +20,7 @@ from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.holes import holes_named
 from workhold.model.quality import FIGURES
 from workhold.model.result import Result
-from workhold.model.vise import Vise
+from workhold.model.vise import OpeningVise, Vise
 from workhold.model.workpiece import Workpiece
 from workhold.verification.asked import Asked, asked_in, asked_of
 
@@ -28,6 +28,7 @@ __all__ = ["Listing", "listing_of", "read_listing"]
 
 FORMAT = "workhold-result/1"
 KINDS = ("I", "II")
+TOOLKITS: Mapping[Any, type[Vise]] = {toolkit.kind: toolkit for toolkit in (Vise, OpeningVise)}
 
 
 @frozen(eq=False)
@@ -208,12 +209,12 @@ def checked(data: Any) -> Listing:
     """
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise UnusableError(f"it is not a result file of the form {FORMAT}")
-    part, jaws = part_of(data, "workpiece", dict), part_of(data, "vise", dict)
+    part = part_of(data, "workpiece", dict)
     loops = part_of(part, "loops", list)
     if part.get("units") != "mm":
         raise UnusableError("the workpiece's units are not mm")
     workpiece = Workpiece.from_loops(str(part.get("name", "workpiece")), loops)
-    vise = vise_from(jaws)
+    vise = vise_from(part_of(data, "toolkit" if "toolkit" in data else "vise", dict))
     margin = optional(real, data, "contact_margin") or 0.0
     if margin < 0:
         raise UnusableError("contact_margin is negative")
@@ -241,18 +242,21 @@ def turned_loops(loops: Sequence[Any], workpiece: Workpiece) -> tuple[str, ...]:
 
 
 def vise_from(jaws: Mapping[str, Any]) -> Vise:
-    """The vise from its JSON object.
+    """The vise from its JSON object, that of a closing one where it names no kind.
 
     Raises
     ------
     UnusableError, InputError
         When a number is missing or cannot be used.
     """
+    kind = jaws.get("kind", Vise.kind)
+    if not isinstance(kind, str) or kind not in TOOLKITS:
+        raise UnusableError(f"the toolkit's kind is {kind!r}, which cannot be verified")
     pitch = part_of(jaws, "pitch", list)
     if len(pitch) != 2:
         raise UnusableError("the vise's pitch is not a pair of lengths")
     pitch_x, pitch_y = (real({"pitch": value}, "pitch") for value in pitch)
-    return Vise(
+    return TOOLKITS[kind](
         pitch=(pitch_x, pitch_y),
         columns=whole(jaws, "columns"),
         peg_radius=real(jaws, "peg_radius"),

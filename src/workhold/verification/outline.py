@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from attrs import frozen
 
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import Point
+from workhold.verification.rules import TANGENT
 from workhold.verification.sides import Side, vertex_side, whole_face
 
 __all__ = ["Outline"]
-
-# Faces whose normals at their joint agree to this in both components meet tangentially: the angle, in radians, by which the
-# rounded coordinates and bulges of a drawing may turn them.
-TANGENT = 1e-5
 
 
 @frozen(eq=False)
@@ -25,13 +22,13 @@ class Outline:
     ----------
     segments : by number.
     faces : whole faces by their numbers.
-    members : the numbers of the segments of each face, by its number.
+    others : for each face, by its number, the numbers and sides of all segments that are not of it.
     smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
     """
 
     segments: tuple[Side, ...]
     faces: Mapping[int, Side]
-    members: Mapping[int, frozenset[int]]
+    others: Mapping[int, tuple[tuple[int, Side], ...]]
     smooth: Mapping[int, tuple[bool, bool]]
 
     @classmethod
@@ -46,7 +43,10 @@ class Outline:
             before += [first + (k - 1) % count for k in range(count)]
         after = {neighbour: k for k, neighbour in enumerate(before)}
         faces = {f.number: whole_face([segments[k] for k in f.segments]) for f in workpiece.faces}
-        members = {f.number: frozenset(f.segments) for f in workpiece.faces}
+        others = {
+            f.number: tuple((k, side) for k, side in enumerate(segments) if k not in f.segments)
+            for f in workpiece.faces
+        }
         smooth = {
             f.number: (
                 is_smooth(segments[before[f.segments[0]]], faces[f.number], faces[f.number].start),
@@ -54,12 +54,7 @@ class Outline:
             )
             for f in workpiece.faces
         }
-        return cls(tuple(segments), faces, members, smooth)
-
-    def others(self, face: int) -> Iterator[tuple[int, Side]]:
-        """Number and side of every segment that is not of a face."""
-        own = self.members[face]
-        return ((k, side) for k, side in enumerate(self.segments) if k not in own)
+        return cls(tuple(segments), faces, others, smooth)
 
 
 def is_smooth(one: Side, two: Side, joint: Point) -> bool:

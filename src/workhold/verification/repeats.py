@@ -13,11 +13,9 @@ from typing import Any
 from attrs import field, frozen
 
 from workhold.model.fixture import Fixture
+from workhold.verification.rules import SAME
 
 __all__ = ["Seen"]
-
-# Orientations in radians and places in mm nearer than this are the same.
-SAME = 1e-6
 
 Key = tuple[Any, ...]
 Place = tuple[float, float, float, float]

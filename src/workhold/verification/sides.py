@@ -18,15 +18,11 @@ from attrs import frozen
 from flint import arb
 
 from workhold.verification.balls import Point, cross, dot, exact_point, norm, turned
+from workhold.verification.rules import STRAIGHT, WHOLE
 
 __all__ = ["ArcSide", "LineSide", "Side", "arc_side", "line_side", "whole_face"]
 
 Vertex = tuple[float, float, float]
-
-# A bulge below this is a line, and a face whose arcs lack less than this, in radians of half a sweep, is a whole circle:
-# the conventions of the geometry package.
-STRAIGHT = 1e-12
-WHOLE = 1e-9
 
 
 @frozen(eq=False)

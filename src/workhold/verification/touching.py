@@ -19,8 +19,9 @@ from collections.abc import Iterator
 
 from workhold.verification.clearance import clear_within
 from workhold.verification.contacts import Contact, Pose
-from workhold.verification.findings import HAIR, Finding, number, rule
+from workhold.verification.findings import Finding, number, rule
 from workhold.verification.outline import Outline
+from workhold.verification.rules import HAIR
 
 __all__ = ["touching_findings"]
 
@@ -33,13 +34,16 @@ def touching_findings(
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
     for slack, smooth in zip(contact.side.slacks(center, contact.radius), outline.smooth[face], strict=False):
+        inside = slack - margin + (HAIR if smooth else -HAIR)
+        if inside > 0:
+            continue
         past = f"{name} lies {number(-slack)} mm past the end of face {face}"
         at = f"{name} touches face {face} exactly at its end"
         broken = past if slack < -HAIR else at if slack < HAIR else close
-        yield from rule(slack - margin + (HAIR if smooth else -HAIR), broken, edge if margin else at)
+        yield from rule(inside, broken, edge if margin else at)
     reach = margin + HAIR
     near = []
-    for index, side in outline.others(face):
+    for index, side in outline.others[face]:
         clearance = side.distance(center) - contact.radius
         if clearance > reach:
             continue

@@ -8,10 +8,11 @@ from pathlib import Path
 from attrs import frozen
 
 from workhold.model.result import Result
-from workhold.verification.asked import broken_restriction, order_faults, wrong_figures
+from workhold.verification.asked import broken_restriction
 from workhold.verification.balls import PRECISIONS
 from workhold.verification.fixture_proof import Judge, Verdict
 from workhold.verification.listing import KINDS, Listing, listing_of, read_listing
+from workhold.verification.order import order_faults
 from workhold.verification.repeats import Seen
 
 __all__ = ["Unproven", "Verification", "verify", "verify_file", "verify_listing"]
@@ -98,7 +99,7 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
     """Verify what a result claims."""
-    judge = Judge(listing.workpiece, listing.vise, listing.contact_margin)
+    judge = Judge(listing.workpiece, listing.vise, listing.contact_margin, listing.asked)
     everything = listing.fixtures
     seen = Seen()
     rulings: list[tuple[Verdict, str]] = []
@@ -116,11 +117,6 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
         progress((place + 1) / len(everything), doubtful)
-    # Figures of quality are derived of what may be a fixture only: anything else may name faces that do not exist.
-    sound = [place for place, (verdict, _) in enumerate(rulings) if verdict != "refuted"]
-    wrong = wrong_figures([everything[place] for place in sound], listing.workpiece, listing.vise, listing.asked)
-    for number, words in wrong.items():
-        rulings[sound[number]] = ("refuted", words)
     unproven = [
         Unproven(place, verdict, reason) for place, (verdict, reason) in enumerate(rulings) if verdict != "proven"
     ]

@@ -1,0 +1,56 @@
+"""The numbers that decide in a verification.
+
+They are a copy of those of ``workhold.conventions``, on purpose: a verification shares no rule with what it judges, not even
+by a common constant, so that a number changed by mistake on one side is seen from the other. Both are held to the table of
+docs/belief.md, "Conventions that are part of the claim".
+
+Glossary
+--------
+hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coincidence; the double nearest to it, taken as
+    the rational number it is.
+"""
+
+from __future__ import annotations
+
+__all__ = [
+    "AGREEMENT",
+    "FIGURE_AGREEMENT",
+    "HAIR",
+    "LEAST_CLAMPING",
+    "LEAST_SHARE",
+    "LEAST_SPAN",
+    "ROUNDING",
+    "SAME",
+    "STRAIGHT",
+    "TANGENT",
+    "WHOLE",
+]
+
+# mm. A gap or an opening is met when it is missed by at most this; a contact may lie so far past a tangent joint, and lies
+# more than this inside any other end.
+HAIR = 1e-9
+# No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in radians by
+# which the rounded coordinates and bulges of a drawing may turn them.
+TANGENT = 1e-5
+# No unit. The least share of a peg in the closure, the shares scaled to sum 1: 0 when three normals meet in one point.
+LEAST_SHARE = 1e-9
+# No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact equations, where the
+# rounding of a drawing alone leaves up to 1e-7 or so.
+LEAST_CLAMPING = 1e-6
+# No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one
+# point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
+LEAST_SPAN = 1e-7
+# Radians and mm. Fixtures in the same holes with orientations and places nearer than this are the same.
+SAME = 1e-6
+
+# No unit. A bulge below this in size is a line: a convention of the file's form.
+STRAIGHT = 1e-12
+# Radians. Arcs of one face that lack less than this of half a turn of half sweep are a whole circle.
+WHOLE = 1e-9
+
+# mm or degrees. Places and angles written in a file agree with the derived ones to this.
+AGREEMENT = 1e-6
+# No unit, and for each square of the clamp amplification. Forces and figures of quality written in a file agree with the
+# derived ones to these parts of themselves, and a hair of their unit. They are written with twelve digits; see ``figures``.
+FIGURE_AGREEMENT = 1e-7
+ROUNDING = 1e-13
