@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.algebra.conditions import wrench_minors
 from workhold.kernels.contact.rules import LEAST_SPAN
-from workhold.statics.wrenches import wrench_minors
 
 Array = NDArray[np.float64]
 

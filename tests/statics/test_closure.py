@@ -63,7 +63,7 @@ def test_the_null_vector_is_null_and_sums_to_one():
 
 
 def test_compiled_and_array_forms_agree():
-    """kernels.contact.closure.minors and statics.wrenches.wrench_minors, both scaled, are one function."""
+    """kernels.contact.closure.minors and algebra.conditions.wrench_minors, both scaled, are one function."""
     random = Random(2)
     many = [contacts(random) for _ in range(300)]
     points, normals = (np.array(column) for column in zip(*many, strict=True))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from workhold.algebra.constraints import Complex
 from workhold.kernels.contact import rules as record
 from workhold.model.vise import Vise
-from workhold.statics.wrenches import outward_normals, wrench_minors
+from workhold.statics.wrenches import outward_normals
 
 __all__ = ["Held", "fourth_pegs", "joined", "records_of", "row_points"]
 
@@ -61,6 +61,8 @@ HELD_FIELDS = ("feature", "column", "row", "psi", "reach", "center")
 
 def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
     """Whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
+
+    Not ``contact.features.end_distances``: the algebra is a second opinion and asks the rules by itself.
 
     Parameters
     ----------
@@ -129,6 +131,33 @@ def may_close(held: Held, held_rows: Array, normals: Array, points: Array, lengt
         & (size + 4.0 * band > record.LEAST_SPAN)
         & (clamp + 4.0 * band + size * (swing + held.reach) > record.LEAST_CLAMPING * (size - 4.0 * band))
     )
+
+
+def wrench_minors(points: Array, normals: Array, length: float) -> Array:
+    """Null vectors of four contacts' wrenches (n, (q - c) x n / L), not scaled: their signed 3x3 minors (Cramer's rule).
+
+    Not ``kernels.contact.closure.minors``: the algebra is a second opinion and asks for closure by itself.
+
+    Parameters
+    ----------
+    points : (N, 4, 2) peg centres about c in mm.
+    normals : (N, 4, 2) outward unit normals.
+    length : L in mm.
+
+    Returns
+    -------
+    (N, 4) array
+    """
+    moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
+    out = np.empty(moments.shape)
+    for k in range(4):
+        a, b, c = (i for i in range(4) if i != k)
+        minor = sum(
+            sign * moments[:, i] * (normals[:, j, 0] * normals[:, m, 1] - normals[:, j, 1] * normals[:, m, 0])
+            for sign, i, j, m in ((1.0, a, b, c), (-1.0, b, a, c), (1.0, c, a, b))
+        )
+        out[:, k] = (-1) ** k * np.asarray(minor)
+    return out
 
 
 def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:

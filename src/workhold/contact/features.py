@@ -116,8 +116,8 @@ def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
 def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
-    Negative beyond an end, infinite on a whole circle, which has none; ``kernels.contact.ends`` is the same for one point
-    in compiled code.
+    Negative beyond an end, infinite on a whole circle, which has none. ``kernels.statics.contact_matrix.end_distance`` is
+    its compiled form for one point; verification, the algebra and the proof in balls have their own on purpose.
 
     Parameters
     ----------

@@ -142,7 +142,7 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
 
 
 def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
-    """How far in mm a contact is from breaking the rule of ends, at both ends of its feature."""
+    """How far in mm a contact is from breaking the rule of ends, at both ends of its feature; in balls, as no kernel is."""
     dx, dy = center[0] - row[1], center[1] - row[2]
     along, across = dx * row[3] + dy * row[4], dy * row[3] - dx * row[4]
     if row[0] == 0.0:
@@ -154,7 +154,7 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
 
 
 def wrench_minors(here: Places, length: float) -> list[arb]:
-    """Signed 3 x 3 minors of the wrenches (n, q x n / L)."""
+    """Signed 3 x 3 minors of the wrenches (n, q x n / L); in balls, as no kernel is."""
     n = here.normals
     # The minors do not depend on the point that moments are taken about; from the first peg the others are known best.
     t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.arms, n, strict=True)]

@@ -32,7 +32,7 @@ from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.design import design
 from workhold.search.toolkit_search import ViseSearch
-from workhold.statics.wrenches import outward_normals, wrench_minors
+from workhold.statics.wrenches import outward_normals
 
 __all__ = ["explain"]
 
@@ -112,10 +112,9 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
     c = listed_once(facing(canonical_form(candidates_of(together, problem))))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
-    minors = wrench_minors(c.point, normals, problem.wrench_length)
-    size = np.abs(minors).sum(axis=1, keepdims=True)
-    spans = size[:, 0] > record.LEAST_SPAN
-    null = minors / np.where(spans[:, None], size, 1.0)
+    # Null vectors come scaled to sum 1, all -1 where the wrenches do not span the space.
+    spans = c.null.sum(axis=1) > 0.0
+    null = c.null / np.abs(c.null).sum(axis=1, keepdims=True)
     null *= np.where(null.min(axis=1) >= -null.max(axis=1), 1.0, -1.0)[:, None]
     along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
     return Contacts(

@@ -106,6 +106,6 @@ def broken_restriction(fixture: Fixture, workpiece: Workpiece, vise: Vise, restr
 
 
 def in_part(fixture: Fixture, peg: Peg) -> Point:
-    """A peg's centre in the part's frame."""
+    """A peg's centre in the part's frame; in balls, and not by ``Pose``, which is what is checked."""
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     return turned(exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)

@@ -32,7 +32,7 @@ def patterns(fixture: Fixture) -> Iterator[tuple[Key, Place]]:
 
 
 def pattern(fixture: Fixture, sign: int) -> tuple[Key, Place]:
-    """The pattern of holes as it is (sign 1) or after a half turn of the vise (-1)."""
+    """The pattern of holes as it is (sign 1) or after a half turn of the vise (-1); by motions of its own, not ``Pose``."""
     near = "left" if sign > 0 else "right"
     lowest = min(sign * peg.row for peg in fixture.pegs)
     key, anchors = [], []
