@@ -20,7 +20,7 @@ __all__ = ["Balance", "closure_findings", "minors", "span"]
 
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i, in mm; in balls, as no kernel is."""
+    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i, in mm; in balls."""
     moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
     vector = []
     for i in range(4):
