@@ -23,14 +23,13 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.conventions import COINCIDENT
+
 __all__ = ["Contacts", "Ring", "circle_constraint", "circle_difference", "line_constraint", "pair_constraint"]
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
-
-# Lengths that agree to this part of the part's size are equal where equality changes the algebra.
-COINCIDENT = 1e-9
 
 
 @define(frozen=True, eq=False)

@@ -25,6 +25,7 @@ from workhold.algebra.sliding_pairs import (
 from workhold.algebra.undecided import undecided_notes
 from workhold.algebra.wedges import peg_pairs
 from workhold.contact.problem import TYPES, Problem, Progress, check_options
+from workhold.conventions import SAME_CENTER
 from workhold.listing.listed import Work, listed_result
 from workhold.listing.ranking import preference_of
 from workhold.model.load import Load
@@ -127,7 +128,7 @@ def three_meet_in_a_point(systems: Systems, rows: Array) -> NDArray[np.bool_]:
     """Which systems have three concentric arcs: their normals meet, and never close."""
     center = rows[systems.feature, 1] + 1j * rows[systems.feature, 2]
     arc = rows[systems.feature, 0] != 0.0
-    same = (np.abs(center[:, :, None] - center[:, None, :]) <= 1e-9) & arc[:, :, None] & arc[:, None, :]
+    same = (np.abs(center[:, :, None] - center[:, None, :]) <= SAME_CENTER) & arc[:, :, None] & arc[:, None, :]
     return np.asarray((same.sum(axis=2) >= 3).any(axis=1))
 
 

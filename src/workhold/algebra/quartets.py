@@ -14,6 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.wedges import HALF_SECTOR, SECTORS, SLACK, PegPairs, facing
+from workhold.conventions import PARALLEL
 from workhold.model.vise import Vise
 
 __all__ = ["Facings", "Systems", "type_one_systems", "type_two_systems"]
@@ -21,8 +22,6 @@ __all__ = ["Facings", "Systems", "type_one_systems", "type_two_systems"]
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
-
-PARALLEL = 1e-9
 
 
 @define(frozen=True, eq=False)

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import (
-    COINCIDENT,
     Complex,
     Contacts,
     Ring,
@@ -28,6 +27,7 @@ from workhold.algebra.constraints import (
     line_constraint,
     pair_constraint,
 )
+from workhold.conventions import COINCIDENT
 
 __all__ = ["PAPER_DEGREES", "TRUE_DEGREES", "coefficients", "degree_bound", "have_no_sigma", "resultant"]
 

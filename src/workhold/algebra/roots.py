@@ -14,10 +14,11 @@ import numpy as np
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import COINCIDENT, Contacts
+from workhold.algebra.constraints import Contacts
 from workhold.algebra.exact import TOLERANCE, exact_roots
 from workhold.algebra.resultants import coefficients, have_no_sigma
 from workhold.algebra.wedges import CENTERS, HALF_SECTOR, sector_of
+from workhold.conventions import COINCIDENT
 
 __all__ = ["ball_roots", "near_circle", "orientations", "sectors_with_roots"]
 

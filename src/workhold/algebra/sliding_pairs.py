@@ -22,9 +22,10 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.conditions import STEEPEST, Held, row_points
-from workhold.algebra.constraints import COINCIDENT, Complex, Contacts
-from workhold.algebra.quartets import PARALLEL, are_parallel
+from workhold.algebra.constraints import Complex, Contacts
+from workhold.algebra.quartets import are_parallel
 from workhold.algebra.wedges import PegPairs, sector_of
+from workhold.conventions import COINCIDENT, PARALLEL, SQUARE
 from workhold.model.vise import Vise
 
 __all__ = [
@@ -47,8 +48,6 @@ SPARE = 2.0
 ROUNDING = 1e-14
 # Orientations may be off by this at least, and by this at most, in radians.
 LEAST_REACH, MOST_REACH = 1e-12, 1e-3
-# A step square to parallel lines, to within the rounding of this cosine, puts both contacts on one line of action.
-SQUARE = 4e-15
 
 
 @define(frozen=True)

@@ -9,15 +9,12 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.conventions import LOOSE
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.columns import END_STRETCH, FIRST_STRETCH
 from workhold.kernels.curves.table import tail_curves
 
 __all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "loosened"]
-
-# Ends of features are moved out by this much, in mm, for the search, far more than rounding: what is found past an end is
-# discarded when the contacts are examined.
-LOOSE = 1e-6
 
 
 @define(frozen=True, eq=False)

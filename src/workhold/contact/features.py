@@ -12,6 +12,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
@@ -27,12 +28,6 @@ __all__ = [
     "face_of_segment",
     "feature_rows",
 ]
-
-# A contact this near to the end of its feature, in mm, is at the end.
-ROUNDING = 1e-9
-# Ends this near, in mm, with normals this near, are a tangent joint.
-JOINT = 1e-6
-TANGENT = 1e-5
 
 
 @frozen
@@ -144,10 +139,10 @@ def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:
     )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     owner = np.repeat(np.arange(len(features)), 2)
-    slack = np.full(len(points), -ROUNDING)
+    slack = np.full(len(points), -END_SLACK)
     for k in range(len(points)):
         near = np.abs(points - points[k]).max(axis=1) <= JOINT
         smooth = np.abs(directions - directions[k]).max(axis=1) <= TANGENT
         if (near & smooth & (owner != owner[k])).any():
-            slack[k] = ROUNDING
+            slack[k] = END_SLACK
     return slack.reshape(-1, 2)

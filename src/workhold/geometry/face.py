@@ -7,6 +7,7 @@ from math import atan2, pi
 
 from attrs import frozen
 
+from workhold.conventions import WHOLE
 from workhold.geometry.loop import same_carrier
 from workhold.geometry.segment import Arc, Line, Segment
 
@@ -40,7 +41,7 @@ def merged(run: Sequence[Segment]) -> Segment:
     if isinstance(first, Line):
         return Line(first.start, run[-1].end)
     half_sweep = sum(s.half_sweep for s in run if isinstance(s, Arc))
-    if half_sweep > pi - 1e-9:
+    if half_sweep > pi - WHOLE:
         return Arc(first.center, first.radius, SEAM_ANGLE - pi, pi, first.sign)
     start = atan2(first.start[1] - first.center[1], first.start[0] - first.center[0])
     return Arc(first.center, first.radius, start + first.sign * half_sweep, half_sweep, first.sign)

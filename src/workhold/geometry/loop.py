@@ -17,6 +17,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import ArrayLike, NDArray
 
+from workhold.conventions import MEETS_AGAIN, SAME_CARRIER, SAME_DIRECTION, SHORTEST, TOUCHING
 from workhold.errors import InputError
 from workhold.geometry.intersect import bounding_box, common_points
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
@@ -36,11 +37,6 @@ __all__ = [
 ]
 
 Place = Callable[[int], str]
-
-# Segments shorter than this, in mm, have no direction worth the name.
-SHORTEST = 1e-7
-# Points nearer than this, in mm, touch.
-TOUCHING = 1e-7
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -189,7 +185,7 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
     segments, box = shape.segments, shape.boxes
     count = len(segments)
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
-    backward_error = max(1e-5 * float(np.ptp(box[:, [0, 2]])), 1e-5 * float(np.ptp(box[:, [1, 3]])), TOUCHING)
+    backward_error = max(*(MEETS_AGAIN * float(np.ptp(box[:, ends])) for ends in ([0, 2], [1, 3])), TOUCHING)
     for i, j in near_pairs(box, box):
         if j <= i:
             continue
@@ -228,15 +224,12 @@ def encloses(around: LoopShape, inner: LoopShape) -> bool:
 
 
 def same_carrier(a: Segment, b: Segment) -> bool:
-    """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense.
-
-    Directions agree within 1e-9 (sum of the components' differences), places and radii within 1e-7 mm.
-    """
+    """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense."""
     if isinstance(a, Line) and isinstance(b, Line):
         (tx, ty), (ux, uy) = a.tangent, b.tangent
         dx, dy = b.start[0] - a.start[0], b.start[1] - a.start[1]
-        return abs(tx - ux) + abs(ty - uy) < 1e-9 and abs(dx * ty - dy * tx) < 1e-7
+        return abs(tx - ux) + abs(ty - uy) < SAME_DIRECTION and abs(dx * ty - dy * tx) < SAME_CARRIER
     if isinstance(a, Arc) and isinstance(b, Arc):
         apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
-        return apart < 1e-7 and abs(a.radius - b.radius) < 1e-7 and a.sign == b.sign
+        return apart < SAME_CARRIER and abs(a.radius - b.radius) < SAME_CARRIER and a.sign == b.sign
     return False

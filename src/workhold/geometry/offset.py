@@ -18,14 +18,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import CLEARANCE
 from workhold.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
-
-# A piece may come nearer to the outline than the radius by this much, in mm, and pieces shorter than this are dropped.
-CLEARANCE = 1e-9
 
 
 def raw_offset(segment: Segment, radius: float) -> Segment | None:

@@ -18,6 +18,8 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import STRAIGHT
+
 __all__ = ["LINE", "ARC", "ROW_LENGTH", "Arc", "Line", "Point", "Segment", "segment_from_bulge", "segment_rows"]
 
 Point = tuple[float, float]
@@ -159,10 +161,10 @@ Segment = Line | Arc
 def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
     """Build the segment from ``start`` to ``end`` with a DXF bulge (tan of a quarter of the sweep, 0 for a line).
 
-    The points differ; a bulge below 1e-12 in size is a line. Formula: chord c, sweep 4 atan(bulge), radius
+    The points differ; a bulge that is nearly 0 is a line. Formula: chord c, sweep 4 atan(bulge), radius
     c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).
     """
-    if abs(bulge) < 1e-12:
+    if abs(bulge) < STRAIGHT:
         return Line(start, end)
     half_sweep = 2 * atan(abs(bulge))
     sign = 1.0 if bulge > 0 else -1.0

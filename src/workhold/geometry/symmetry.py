@@ -9,13 +9,11 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.conventions import SAME_AFTER_TURN
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = ["Rotation", "rotations_onto_itself"]
-
-# Points and radii that agree to this many mm are the same.
-SAME = 1e-6
 
 
 @define(frozen=True, eq=False)
@@ -49,7 +47,7 @@ def turned(point: Point, about: Point, angle: float) -> Point:
 
 def near(p: Point, q: Point) -> bool:
     """Whether two points agree."""
-    return hypot(p[0] - q[0], p[1] - q[1]) <= SAME
+    return hypot(p[0] - q[0], p[1] - q[1]) <= SAME_AFTER_TURN
 
 
 def carries(a: Segment, b: Segment, about: Point, angle: float) -> bool:
@@ -57,7 +55,7 @@ def carries(a: Segment, b: Segment, about: Point, angle: float) -> bool:
     if isinstance(a, Line) and isinstance(b, Line):
         return near(turned(a.start, about, angle), b.start) and near(turned(a.end, about, angle), b.end)
     if isinstance(a, Arc) and isinstance(b, Arc):
-        if abs(a.radius - b.radius) > SAME or a.sign != b.sign or a.is_full != b.is_full:
+        if abs(a.radius - b.radius) > SAME_AFTER_TURN or a.sign != b.sign or a.is_full != b.is_full:
             return False
         if not near(turned(a.center, about, angle), b.center):
             return False

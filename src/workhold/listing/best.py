@@ -9,6 +9,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
+from workhold.conventions import MARGIN_SLACK
 from workhold.listing.canonical_form import Candidates, joined, listed_once
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
@@ -18,8 +19,6 @@ from workhold.proof.deciding import Account
 
 __all__ = ["BestFixtures"]
 
-# A fixture may fall short of the margin to reach by this much and still be examined: margins are compared to 9 digits.
-SLACK = 2e-9
 # Records are decided when so many are waiting, or as many as are to be kept if that is more.
 WAITING = 64
 
@@ -69,7 +68,7 @@ class BestFixtures:
         chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)
         self.has_dropped |= not chosen.all()
         if self.preference.by_margin_alone:
-            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - SLACK, 0.0)
+            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
 
     def finished(self) -> tuple[Candidates, Account]:

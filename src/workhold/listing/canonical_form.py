@@ -9,12 +9,12 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
+from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.kernels.contact import rules as record
 from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
 from workhold.proof.deciding import peg_integers, setting_of
 
 __all__ = [
-    "SAME_POSE",
     "Candidates",
     "candidates_of",
     "changes",
@@ -27,10 +27,6 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Orientations nearer than this, in radians, are one pose.
-SAME_POSE = 1e-6
-# Places nearer than this, in mm, are one.
-SAME_PLACE = 1e-6
 # Bits of a packed number.
 WORD = 63
 

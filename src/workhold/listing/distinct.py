@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
+from workhold.conventions import SAME_POSE
 from workhold.geometry.symmetry import Rotation, rotations_onto_itself
 from workhold.kernels.contact.canonical_form import to_canonical_form
-from workhold.listing.canonical_form import SAME_POSE, Candidates, changes, packed
+from workhold.listing.canonical_form import Candidates, changes, packed
 
 __all__ = ["count_distinct"]
 

@@ -14,6 +14,7 @@ from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
+from workhold.conventions import ANGLE_SLACK
 from workhold.kernels.contact.rules import GAP_SLACK
 from workhold.listing.canonical_form import Candidates
 from workhold.model.result import FixtureTable, unknown_quality
@@ -25,9 +26,6 @@ __all__ = ["Arranged", "arranged", "placed"]
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
-
-# The end of a range of angles counts, to within this many degrees.
-ANGLE_SLACK = 1e-7
 
 
 @define(frozen=True, eq=False)

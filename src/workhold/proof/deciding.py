@@ -21,6 +21,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
+from workhold.conventions import PARALLEL
 from workhold.kernels.contact import rules as record
 from workhold.kernels.contact.equations import BACKWARD_ERROR
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
@@ -38,8 +39,6 @@ IntArray = NDArray[np.int64]
 
 # The precision of balls is one for the whole process, so one thread at a time works with them.
 BALLS = Lock()
-# Lines are parallel within this angle in radians (model).
-PARALLEL = 1e-9
 # Records looked at between two looks at the flag that stops the work.
 OPEN_BLOCK = 64
 GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"

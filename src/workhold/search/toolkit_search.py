@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
 from workhold.contact.problem import Problem
+from workhold.conventions import ANGLE_HAIR
 from workhold.kernels.contact.rules import GAP_SLACK, LEAST_MARGIN
 from workhold.kernels.crossing.sliding_pairs import ORIENTATION, sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.crossing.three_and_one import three_and_one_cells
@@ -37,8 +38,6 @@ FEWEST_CELLS, MOST_CELLS = 96, 1024
 # Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
 PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 16
-# Cells this near to a range of angles, in degrees, are searched too.
-ANGLE_HAIR = 1e-5
 
 
 def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:

@@ -18,12 +18,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import FLAT, OUTSIDE
+
 __all__ = ["cone_edges", "possible_motions"]
 
 Array = NDArray[np.float64]
-# Planes with a determinant below this have no common corner, and a corner may be outside by this much (no unit).
-FLAT = 1e-12
-OUTSIDE = 1e-9
 
 
 def cone_edges(

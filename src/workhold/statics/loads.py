@@ -14,6 +14,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
@@ -26,8 +27,6 @@ __all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
 
 Array = NDArray[np.float64]
 FourForces = tuple[float, float, float, float]
-# A force this small beside the largest is none.
-ROUNDING = 1e-9
 
 
 @frozen
@@ -77,7 +76,7 @@ class LoadCase:
     @property
     def keeps_contact(self) -> bool:
         """Whether every peg presses on the part at this jaw force, or just touches it within rounding."""
-        return min(self.smallest) >= -ROUNDING * max(self.largest)
+        return min(self.smallest) >= -NO_FORCE * max(self.largest)
 
 
 def load_cases(

@@ -16,6 +16,7 @@ from typing import Any
 
 from attrs import frozen
 
+from workhold.conventions import TILT
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 
@@ -39,9 +40,6 @@ REFUSED = {
     "REVOLVEDSURFACE": "a 3D surface",
     "SWEPTSURFACE": "a 3D surface",
 }
-
-# Components of a unit vector below this are rounding.
-TILT = 1e-9
 
 
 @frozen

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from attrs import evolve, frozen
 
+from workhold.conventions import LEVEL
 from workhold.errors import InputError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, counted, listed
@@ -26,8 +27,6 @@ T = TypeVar("T")
 # More entities than this, blocks written out, is no drawing of a part (or a file made to exhaust the machine).
 MOST_ENTITIES = 500_000
 DEEPEST_NEST = 50
-# Heights (z) may differ by rounding only, in mm.
-LEVEL = 1e-6
 
 
 @frozen

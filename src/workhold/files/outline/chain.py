@@ -17,14 +17,12 @@ from math import copysign, hypot, isfinite, pi, sqrt, tan
 
 from attrs import frozen
 
+from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
-from workhold.geometry.loop import SHORTEST
 from workhold.geometry.segment import Point
 
 __all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
 
-# Ends nearer than this, in mm, are the same point: the rounding of computed arc ends and of placed blocks.
-SAME_POINT = 1e-9
 # Coordinates beyond this, in mm, leave no digits for a fixture; the unit is wrong, or the file.
 LARGEST = 1e9
 # How many places a remark names before it only counts.

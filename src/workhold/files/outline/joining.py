@@ -22,10 +22,10 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
-from workhold.files.outline.chain import SAME_POINT, Chain, at, counted, listed, rebulged, without_segment
+from workhold.files.outline.chain import Chain, at, counted, listed, rebulged, without_segment
 from workhold.files.outline.near import close_pairs, groups
-from workhold.geometry.loop import SHORTEST
 from workhold.geometry.segment import Point
 
 __all__ = ["Joined", "Loop", "Stray", "join"]

@@ -7,12 +7,10 @@ from math import hypot
 
 from attrs import frozen
 
+from workhold.conventions import CIRCULAR
 from workhold.geometry.segment import Point
 
 __all__ = ["Placement"]
-
-# Relative: axes whose scales or right angle differ by less keep circles circular.
-CIRCULAR = 1e-7
 
 
 @frozen

@@ -17,6 +17,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.forms import Head, ProofPart
 from workhold.model.load import Load
@@ -31,8 +32,6 @@ from workhold.model.workpiece import Workpiece
 __all__ = ["read_result"]
 
 BLOCK = 4096
-# A peg's centre and its hole may differ by this much, in mm, before the file contradicts itself.
-AGREEMENT = 1e-6
 LARGEST_NUMBER = 2**31 - 1
 
 

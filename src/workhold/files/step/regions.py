@@ -13,10 +13,10 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, arc_bulges, at, rebulged
 from workhold.files.step.solids import bounding_box, sub_shapes
-from workhold.geometry.loop import SHORTEST
 from workhold.geometry.segment import Point
 
 __all__ = ["Borders", "area_of", "borders", "level_region", "section", "union"]

@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 from attrs import frozen
 
+from workhold.conventions import CIRCULAR
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.outline.placement import Placement
@@ -22,8 +23,6 @@ LENGTH = re.compile(rf"\s*({NUMBER})\s*(\w*|%)\s*$")
 TRANSFORM = re.compile(r"\s*,?\s*(\w+)\s*\(([^)]*)\)")
 # CSS Values 4: 96 px to the inch.
 PIXELS = {"": 1.0, "px": 1.0, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4, "pt": 96 / 72, "pc": 16.0}
-# Radii of an ellipse that differ by less, relatively, are those of a circle.
-ROUND = 1e-7
 # A chord this near the diameter, relatively, is a half circle: its sweep cannot be told from the chord.
 HALF = 1e-14
 
@@ -157,7 +156,7 @@ def ellipse(element: Element, label: str) -> Iterator[Shape]:
         When they are not.
     """
     x, y, rx, ry = (length(element, a, label) for a in ("cx", "cy", "rx", "ry"))
-    if abs(rx - ry) > ROUND * max(rx, ry):
+    if abs(rx - ry) > CIRCULAR * max(rx, ry):
         raise refused(label, "is an ellipse", (x, y))
     if rx > 0:
         yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))
@@ -181,7 +180,7 @@ def rect(element: Element, label: str) -> Iterator[Shape]:
         corners = ((x, y), (x + w, y), (x + w, y + h), (x, y + h), (x, y))
         yield Shape(corners, (0.0,) * 4, segment_labels(label, 4))
         return
-    if abs(rx - ry) > ROUND * max(rx, ry):
+    if abs(rx - ry) > CIRCULAR * max(rx, ry):
         raise refused(label, "has elliptical corners", (x, y))
     quarter = tan(pi / 8)
     stations = [
@@ -290,7 +289,7 @@ def path_segment(segment: Any, kind: str, label: str) -> list[tuple[Point, float
         raise refused(label, "is a Bézier curve", start)
     end = xy(segment.end, label)
     radius, other = float(segment.rx), float(segment.ry)
-    if not abs(radius - other) <= ROUND * max(radius, other):
+    if not abs(radius - other) <= CIRCULAR * max(radius, other):
         raise refused(label, "is an elliptical arc", start)
     sweep = arc_sweep(start, end, radius, float(segment.sweep))
     bulges = arc_bulges(sweep)

@@ -8,14 +8,12 @@ from importlib.resources import files
 
 from attrs import frozen
 
+from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.model.dowel import DowelSize
 from workhold.model.units import Unit, unit_named
 
 __all__ = ["DowelSeries", "dowel_series", "dowel_size"]
-
-# Diameters this close, in mm, are the same size.
-SAME = 1e-6
 
 
 @frozen
@@ -74,7 +72,7 @@ def dowel_size(standard: str, diameter: float) -> DowelSize:
     for series in dowel_series():
         if series.name.lower() == " ".join(standard.lower().split()):
             for size in series.sizes:
-                if abs(size.nominal - diameter) < SAME:
+                if abs(size.nominal - diameter) < SAME_SIZE:
                     return size
             sizes = ", ".join(series.unit.figure(size.nominal) for size in series.sizes)
             raise InputError(
