@@ -72,10 +72,10 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     return cell_pieces(low, high, members, features, table.integers, table.reals, table.stretches, pitch, 0.0, mode)
 
 
-def cross(first, second, features, table, mode, offset, period, flat=0.0) -> Array:
-    """Roots (N, 3) of two pieces: orientation, radius and multiple of the period."""
+def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=crossings) -> Array:
+    """Roots (N, 3) of two pieces, found by a form of the kernel: orientation, radius and multiple of the period."""
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    number = crossings(first, second, features, table.integers, table.reals, mode, offset, period, flat, stack, roots)
+    number = kernel(first, second, features, table.integers, table.reals, mode, offset, period, flat, stack, roots)
     assert number >= 0
     return roots[:number].copy()
 

@@ -14,6 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex
+from workhold.kernels.contact import closure
 from workhold.kernels.contact import rules as record
 from workhold.model.vise import Vise
 from workhold.statics.wrenches import outward_normals
@@ -113,14 +114,14 @@ def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float
 def may_close(held: Held, held_rows: Array, normals: Array, points: Array, length: float) -> BoolArray:
     """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
-    Normals on arcs of radius R are off by at most radius / R, and every minor by a few times that.
+    Normals on arcs of radius R are off by at most radius / R, and every minor as ``closure.minor_band`` tells.
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(
         held_rows[..., 0] == 0.0, 0.0, 1.0 / np.where(held_rows[..., 6] == 0.0, 1.0, held_rows[..., 6])
     )
     swing = radius * curvature.max(axis=1, initial=0.0)
-    band = 20.0 * swing + 4.0 * radius / length + record.ROUNDING
+    band = 20.0 * swing + 4.0 * radius / length + closure.ROUNDING
     minors = wrench_minors(points, normals, length)
     minors = minors * np.where(minors.max(axis=1) >= -minors.min(axis=1), 1.0, -1.0)[:, None]
     size = np.abs(minors).sum(axis=1)

@@ -12,11 +12,12 @@ from flint import arb
 from chord_examples import arc_row, line_row
 from curve_examples import HEIGHT, POSITION, cross, lattice, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
+from sharpness import changed
 from strategies import random_row
 from workhold.contact.curves import curve_table
 from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.chord.discs import value_disc
-from workhold.kernels.crossing.roots import MULTIPLE, PSI, RADIUS
+from workhold.kernels.crossing.roots import MULTIPLE, PSI, RADIUS, crossings, value_at
 from workhold.kernels.curves.columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
 from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
 
@@ -351,3 +352,30 @@ def test_planted_double_roots_are_told(rest):
     for psi in (pi / 4 - away, pi / 4 + away):
         assert (np.abs(roots[:, PSI] - psi) <= roots[:, RADIUS] + 1e-15).any()
     assert (np.abs(roots[:, PSI] - pi / 4) <= away + 1e-6).all()
+
+
+def test_a_root_s_radius_holds_wherever_newtons_method_stops():
+    """Told at the first guess, without a single Newton step, a root is as far from the exact one as its value is from the
+    target over the slope between them, which may be the least slope of the range: the radius allows for that. Some come
+    within a half of it, so that a radius over any steeper slope would not do."""
+    random, worst = Random(46), 0.0
+
+    def first_guess(low, high, f_low, f_high, one, two, features, integers, reals, mode, target, start):
+        psi = min(max(low + 0.1 * (high - low), low), high) if random.random() < 0.5 else start
+        value_one, value_two = (value_at(psi, curve, features, integers, reals, mode)[0] for curve in (one, two))
+        return psi, abs(value_two - value_one - target)
+
+    early = changed(crossings, solve=first_guess)
+    for _ in range(60):
+        features, table = random_table(random)
+        low = random.uniform(-4, 4)
+        pieces = pieces_of(features, table, low, low + 1.0, HEIGHT)
+        for i, j in overlapping(random, pieces[pieces[:, STEADY] == 1.0], 12, 1e-2):
+            pair = [pieces[pieces[:, STEADY] == 1.0][k] for k in (i, j)]
+            found = cross(*pair, features, table, HEIGHT, 0.3, 2.0)
+            stopped = cross(*pair, features, table, HEIGHT, 0.3, 2.0, kernel=early)
+            assert len(found) == len(stopped) and (found[:, MULTIPLE] == stopped[:, MULTIPLE]).all()
+            off, radius = np.abs(found[:, PSI] - stopped[:, PSI]), stopped[:, RADIUS] + found[:, RADIUS]
+            assert (off <= radius).all()
+            worst = max(worst, (off / radius)[found[:, RADIUS] < 1e-9].max(initial=0.0))
+    assert worst > 0.5

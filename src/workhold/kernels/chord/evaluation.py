@@ -17,11 +17,13 @@ backward error : eta, a bound in mm of how far the computed contacts are off the
 
 Errors of computed chords
 -------------------------
-Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail satisfies
+Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail has
 \|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its determinant is X, and its
-Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b. The Newton-Kantorovich theorem says that when 64 kappa eta <= X^2
-there is exactly one chord within 4 eta / \|X\| of the computed one, on the same branch. The bounds of ``chord_state``
-follow by the chain rule from h' = -x . (u + p r_a) and p = cross(w, r_b) / X.
+Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b; so its inverse is at most 2 / \|X\| and the first Newton step at
+most 2 eta / \|X\|. The Newton-Kantorovich theorem says that when 16 kappa eta <= X^2 (its h is then 1 / 4) there is exactly
+one chord within 2.35 eta / \|X\| of the computed one, on the same branch. Over that way X changes by a part of 0.15, so
+the chain rule on P = u + p r_a, p = cross(w, r_b) / X, gives an error of P of at most
+eta / X^2 (2.35 + kappa (2.8 d + 5.2 \|p\|)). The bounds of ``chord_state`` are a little wider.
 Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
 """
 
@@ -231,7 +233,7 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
         p = 0.0
     eta, square = curve[BACKWARD_ERROR], turn * turn
     error, slope_error = inf, inf
-    if square >= 64.0 * kappa * eta and square > 0.0:
+    if square >= 16.0 * kappa * eta and square > 0.0:
         inverse = 1.0 / abs(turn)
         error = 6.0 * eta * inverse
         slope_error = 8.0 * eta * inverse * inverse * (1.0 + kappa * (d + 2.0 * abs(p)))

@@ -38,8 +38,9 @@ NARROW = 1e-6
 STEADY = 0.01
 # Ends of features are met with this much to spare, in mm: more than rounding, less than they were moved out.
 SPARE = 1e-8
-# Relative rounding of a cosine, generously counted.
-ROUNDINGS = 32.0 * 1.2e-16
+# Relative rounding of a cosine, in half units in the last place: differences and products of coordinates, their sum, the
+# length of a line's direction, the radius added, and the quotient make eight.
+ROUNDINGS = 10.0 * 1.2e-16
 
 
 @inner

@@ -16,6 +16,9 @@ from workhold.kernels.base.compiling import inner
 
 Array = NDArray[np.float64]
 
+# Rounding of a minor.
+ROUNDING = 1e-14
+
 
 @inner
 def cross(ax: float, ay: float, bx: float, by: float) -> float:
@@ -54,6 +57,16 @@ def minors(points: Array, normals: Array, length: float, out: Array) -> float:
     out[2] = t0 * m13 - t1 * m03 + t3 * m01
     out[3] = -(t0 * m12 - t1 * m02 + t2 * m01)
     return abs(out[0]) + abs(out[1]) + abs(out[2]) + abs(out[3])
+
+
+@inner
+def minor_band(swing: float, away: float, length: float) -> float:
+    """How far a minor may be off when normals may be turned by ``swing`` radians and points be off by ``away`` mm.
+
+    Moments over L, of size 1.42 at most, are off by away / L + 1.42 swing, and products of two normals by 2 swing. A minor
+    is three products of one with the other, so it is off by 12.8 swing + 3 away / L; the rest is for the second order.
+    """
+    return 20.0 * swing + 4.0 * away / length + ROUNDING
 
 
 @inner

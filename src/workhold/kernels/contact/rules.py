@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.chord.evaluation import parameter_on
-from workhold.kernels.contact.closure import minors, outward_normal
+from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.curves.columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL
 from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW
 
@@ -49,8 +49,6 @@ LEAST_CLAMPING = 1e-6
 # The sizes of the four minors must sum to more than this: with less, the lines of action meet in one point or are parallel
 # up to the rounding of the drawing, and the wrenches do not span the space.
 LEAST_SPAN = 1e-7
-# Rounding of a minor.
-ROUNDING = 1e-14
 
 # Indices into the limits handed to the kernels.
 MIN_GAP, CONTACT_MARGIN, WRENCH_LENGTH, MOST_COLUMN_STEPS, LEAST_MARGIN, MOST_LISTED = range(6)
@@ -126,8 +124,7 @@ def is_fixture(
     if leftmost_right - rightmost_left < limits[MIN_GAP] - GAP_SLACK - 2.0 * (radius + length * reach):
         return (1, apart)
     size = minors(points, normals, length, null)
-    # Normals are off by at most the swing, moments by radius / L + 2 swing, products of two normals by 2 swing.
-    band = 20.0 * swing + 4.0 * radius / length + ROUNDING
+    band = minor_band(swing, radius, length)
     low, high = min(null[0], null[1], null[2], null[3]), max(null[0], null[1], null[2], null[3])
     sign = 1.0 if high >= -low else -1.0
     smallest = low if sign > 0.0 else -high

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.evaluation import POSITION
-from workhold.kernels.contact.closure import outward_normal
+from workhold.kernels.contact.closure import minor_band, outward_normal
 from workhold.kernels.contact.rules import (
     GAP_SLACK,
     LEAST_CLAMPING,
@@ -23,7 +23,6 @@ from workhold.kernels.contact.rules import (
     MIN_GAP,
     PEG_LENGTH,
     RECORD_LENGTH,
-    ROUNDING,
     WRENCH_LENGTH,
     is_fixture,
     is_listed,
@@ -159,8 +158,7 @@ def may_close(
     nx, ny = outward_normal(row, x, y)
     swing = max(triple[3, 2], 0.0 if row[0] == 0.0 else radius / row[6])
     t = (x * ny - y * nx) / length
-    # As in ``is_fixture``: how far a minor may be off.
-    band = 20.0 * swing + 4.0 * doubt / length + ROUNDING
+    band = minor_band(swing, doubt, length)
     determinant = triple[4, 0]
     if determinant <= band:
         return True

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.contact.closure import ROUNDING
 from workhold.kernels.contact.equations import (
     MOVING,
     NEWTON,
@@ -32,7 +33,7 @@ from workhold.kernels.contact.equations import (
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.rules import APART, PSI, RADIUS, REACH, ROUNDING, TAIL_X, TAIL_Y
+from workhold.kernels.contact.rules import APART, PSI, RADIUS, REACH, TAIL_X, TAIL_Y
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, sizes
 from workhold.kernels.proof.variation import ERROR, FORCE_BAND, MOMENT_BAND, NUMBERS, TILT, is_broken, move_to, spread
 

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
-from workhold.kernels.contact.closure import minors, outward_normal
+from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.equations import (
     BACKWARD_ERROR,
     CONTACT_MARGIN,
@@ -55,7 +55,6 @@ from workhold.kernels.contact.rules import (
     PSI,
     RADIUS,
     REACH,
-    ROUNDING,
 )
 
 Array = NDArray[np.float64]
@@ -225,16 +224,17 @@ def judged(
     gap, push = held(w, pairs[0], pairs[1], null)
     reach = 4.5 * radius
     swing = reach / smallest
-    # Normals are off by at most the swing, moments by reach / L + 2 swing, products of two normals by 2 swing.
-    band = 20.0 * swing + 4.0 * reach / length + ROUNDING
+    band = minor_band(swing, reach, length)
     low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
     verdict = sign_of(end_slack(record, features, pairs[0], setting[CONTACT_MARGIN]), 1.2 * reach + 1e-12)
-    verdict = min(verdict, sign_of(gap - (setting[MIN_GAP] - GAP_SLACK), 3.0 * reach + 1e-12))
+    # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
+    verdict = min(verdict, sign_of(gap - (setting[MIN_GAP] - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
-    verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 2.0 * band))
-    doubt = 4.0 * band + size * (swing + radius / length)
+    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces push.
+    verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
+    doubt = 3.1 * band + size * (swing + radius / length)
     return min(verdict, sign_of(sign * push - LEAST_CLAMPING * size, doubt))
 
 

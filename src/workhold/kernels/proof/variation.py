@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.contact.closure import minors
+from workhold.kernels.contact.closure import ROUNDING, minors
 from workhold.kernels.contact.equations import (
     BACKWARD_ERROR,
     CONTACT_MARGIN,
@@ -26,7 +26,7 @@ from workhold.kernels.contact.equations import (
     UNKNOWNS,
     WRENCH_LENGTH,
 )
-from workhold.kernels.contact.rules import FEATURES, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, ROUNDING
+from workhold.kernels.contact.rules import FEATURES, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, end_slack
 
 Array = NDArray[np.float64]
