@@ -85,7 +85,7 @@ def test_images_are_permutations_that_form_a_group(part):
 
 def test_a_bump_is_never_carried_onto_a_notch():
     """A square with half-round bumps to the right and the left and notches of the same size above and below: a quarter turn
-    carries every circle onto a circle, and its ends onto ends, but material onto air. Only the half turn is one of its own."""
+    carries every circle onto a circle, and its ends onto ends, but material onto air. Only the half turn is its own."""
     side = [[20, -20, 0], [20, -5, 1], [20, 5, 0], [20, 20, 0], [5, 20, -1], [-5, 20, 0]]
     bumps_and_notches = side + [[-x, -y, bulge] for x, y, bulge in side]
     assert [r.angle for r in group(bumps_and_notches)] == pytest.approx([0.0, tau / 2])

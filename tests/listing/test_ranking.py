@@ -28,6 +28,13 @@ def test_the_next_figure_decides_among_those_about_as_good() -> None:
     assert rank(quality, ("wrench_radius", "location_error")).tolist() == [0, 2, 3, 1]
 
 
+@pytest.mark.parametrize("ranking", [("closure_margin",), ("location_error", "closure_margin")])
+def test_the_last_figure_counts_to_nine_digits(ranking: tuple[str, ...]) -> None:
+    """Margins that agree to seven digits still decide, alone or after others; larger is better."""
+    quality = figures(3, closure_margin=[0.12345678, 0.12345680, 0.12345679])
+    assert rank(quality, ranking).tolist() == [1, 2, 0]
+
+
 def test_equal_fixtures_stay_in_the_order_of_their_identities() -> None:
     """What agrees to nine digits in the last figure is not moved."""
     quality = figures(3, closure_margin=[0.2, 0.2 + 1e-11, 0.1])
