@@ -210,7 +210,6 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
         ('<path id="p" d="L 3 3 z"/>', "path 'p'.*path data"),
         ('<path id="p" d="M0 0 L 1e400 0 z"/>', "path 'p'.*not finite"),
         ('<rect id="r" width="5em" height="5"/>', "rect 'r' has width=\"5em\", which is not a plain length"),
-        ('<rect id="r" width="50%" height="5"/>', "not a plain length"),
         ('<polygon id="g" points="1 2 3"/>', "polygon 'g' has an odd number"),
         ('<polygon id="g" points="1 2 x 3"/>', "polygon 'g': points '1 2 x 3' is not a list of numbers"),
         ('<g id="g" transform="spin(3)"><rect width="5" height="5"/></g>', "g 'g' has the transform 'spin"),
@@ -220,10 +219,8 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
         ('<use id="u" href="#gone"/>', "use 'u' shows '#gone', which is not in the file"),
         ('<use id="u" href="other.svg#x"/>', "not in the file"),
         ('<g id="a"><use id="u" href="#a"/></g>', "use 'u' of use 'u' shows itself"),
-        ('<svg id="s"/>', "nested in the drawing"),
-        ('<symbol id="s" viewBox="0 0 1 1"/><use href="#s"/>', "symbol with a viewBox"),
         ("", "no lines or arcs that could be an outline"),
-        ('<line x2="5"/>', "no outline is closed: line number 1"),
+        ('<line x2="5" stroke="red"/>', "no outline is closed: line number 1"),
     ],
 )
 def test_refusals_name_element_and_place(tmp_path: Path, body: str, words: str) -> None:
@@ -248,8 +245,14 @@ def test_layers_are_for_dxf(tmp_path: Path) -> None:
         ('<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><svg>&b;</svg>', "declares XML entities"),
         ('<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]><svg>&x;</svg>', "declares XML entities"),
         ("<svg>" + "<g>" * 100_000, "nested more than 200 levels"),
-        ('<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="0 0 0 0"/>', "viewBox '0 0 0 0' is not usable"),
-        ('<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="a"/>', "viewBox 'a' is not a list"),
+        (
+            '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="0 0 0 0"/>',
+            "viewBox '0 0 0 0' of the root <svg> is not usable",
+        ),
+        (
+            '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="a"/>',
+            "the viewBox of the root <svg> 'a' is not a list",
+        ),
         ('<svg xmlns="http://www.w3.org/2000/svg" width="0mm"/>', "not positive"),
         (
             '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="3mm" viewBox="0 0 1 1" '
@@ -267,7 +270,7 @@ def test_broken_and_hostile_files(tmp_path: Path, content: str, words: str) -> N
 
 def test_use_bombs_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten levels of ten <use> elements stop at the limit."""
-    monkeypatch.setattr("workhold.files.svg.reader.MOST_ELEMENTS", 1000)
+    monkeypatch.setattr("workhold.files.svg.walk.MOST_ELEMENTS", 1000)
     levels = '<g id="g0"><rect width="1" height="1"/></g>'
     for k in range(1, 11):
         levels += f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * 10 + "</g>"

@@ -1,38 +1,224 @@
-"""Which SVG elements are not shown: ``display`` and ``visibility`` as attribute, style, or simple style-sheet rule."""
+"""Whether an element is seen: the computed values of ``display``, ``visibility``, ``opacity``, paints and their like.
+
+A shape counts when its author sees its fill or its stroke (SVG 2, chapters 11 and 13); what colour that is does not matter.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import TypeVar
 from xml.etree.ElementTree import Element
 
-__all__ = ["hidden_selectors", "is_hidden", "is_invisible"]
+from attrs import frozen
 
-RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
-COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
-DISPLAY_NONE = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
-VISIBILITY = re.compile(r"(?:^|;)\s*visibility\s*:\s*(\w+)")
+from workhold.errors import InputError
+from workhold.files.svg.cascade import Declared, Styles
+from workhold.files.svg.document import href, local_name, short
+
+__all__ = ["INITIAL", "Style", "computed", "link_of", "refuse_effects"]
+
+Value = TypeVar("Value")
+Declarations = dict[str, list[Declared]]
+
+NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(%|[a-z]*)$")
+HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
+URL = re.compile(r"""url\(\s*(?:"([^"]*)"|'([^']*)'|([^"')\s]*))\s*\)\s*(.*)$""", re.DOTALL | re.IGNORECASE)
+DISPLAYS = re.compile(
+    r"(?:none|contents|inline|list-item|run-in|compact|marker|flow-root|(?:inline-)?(?:table|flex|grid|block)|ruby"
+    r"|table-[a-z-]+)$"
+)
+PROFILE = re.compile(r"\s+(?:icc|device)-[a-z]+\(.*$")
+# What a paint of these kinds shows.
+NONE, SEEN, CURRENT = "none", "seen", "currentcolor"
+PAINT_SERVERS = ("linearGradient", "radialGradient", "pattern")
+# Properties that change what is seen in ways that are not read; the values that do not.
+EFFECTS = {
+    "mask": "none",
+    "mask-image": "none",
+    "mask-border": "none",
+    "filter": "none",
+    "clip": "auto",
+    "offset": "none",
+    "offset-path": "none",
+    "animation": "none",
+    "animation-name": "none",
+    "zoom": "1",
+    "all": "",
+}
+MARKERS = ("marker", "marker-start", "marker-mid", "marker-end")
 
 
-def hidden_selectors(root: Element) -> frozenset[str]:
-    """Simple selectors (``.class``, ``#id``, ``tag``) whose style-sheet rule says ``display: none``."""
-    found: set[str] = set()
-    for style in root.iter("{http://www.w3.org/2000/svg}style"):
-        for selectors, rules in RULE.findall(COMMENT.sub("", "".join(style.itertext()))):
-            if DISPLAY_NONE.search(rules):
-                found.update(selector.strip() for selector in selectors.split(","))
-    return frozenset(found)
+@frozen
+class Style:
+    """Computed values that matter for an outline.
+
+    Parameters
+    ----------
+    displayed : False takes the element away with all that is in it (``display: none``, ``opacity: 0``).
+    shown : visibility.
+    fill, stroke : "none", "seen" or "currentcolor".
+    fill_opaque, stroke_opaque, stroke_wide, stroke_drawn, color_opaque : whether opacity, width, a dash, and the alpha of
+        ``color`` are above 0.
+    even_odd : the fill rule.
+    markers : whether the element carries markers.
+    """
+
+    displayed: bool = True
+    shown: bool = True
+    fill: str = SEEN
+    stroke: str = NONE
+    fill_opaque: bool = True
+    stroke_opaque: bool = True
+    stroke_wide: bool = True
+    stroke_drawn: bool = True
+    color_opaque: bool = True
+    even_odd: bool = False
+    markers: bool = False
+
+    @property
+    def filled(self) -> bool:
+        """Whether a fill is seen."""
+        return self.fill_opaque and (self.fill == SEEN or (self.fill == CURRENT and self.color_opaque))
+
+    @property
+    def stroked(self) -> bool:
+        """Whether a stroke is seen."""
+        seen = self.stroke == SEEN or (self.stroke == CURRENT and self.color_opaque)
+        return seen and self.stroke_opaque and self.stroke_wide and self.stroke_drawn
 
 
-def is_hidden(element: Element, selectors: frozenset[str], tag: str) -> bool:
-    """Whether an element, with all that is in it, is not displayed."""
-    if DISPLAY_NONE.search(element.get("style", "")) or element.get("display", "").strip() == "none":
-        return True
-    names = [tag, f"#{element.get('id')}", *(f".{name}" for name in element.get("class", "").split())]
-    return any(name in selectors for name in names)
+INITIAL = Style()
 
 
-def is_invisible(element: Element, inherited: bool) -> bool:
-    """Whether an element is invisible (``visibility`` is inherited, and a child may turn it on again)."""
-    match = VISIBILITY.search(element.get("style", ""))
-    value = match.group(1) if match else element.get("visibility", "").strip()
-    return value in ("hidden", "collapse") if value and value != "inherit" else inherited
+def computed(declarations: Declarations, around: Style, styles: Styles, label: str) -> Style:
+    """The style of an element in one with the style ``around``.
+
+    Raises
+    ------
+    InputError
+        For values that are not read and decide whether the element is seen, naming the element.
+    """
+
+    def value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
+        """The first valid declared value, or else the inherited one."""
+        for given in declarations.get(name, ()):
+            text = given.text.lower() if "url(" not in given.text.lower() else given.text
+            if text in ("inherit", "unset", "revert") or (name == "color" and text == CURRENT):
+                return inherited
+            if text == "initial":
+                return initial
+            parsed = parse(text)
+            if parsed is not None:
+                return parsed
+            if "(" in text or text == "revert-layer":
+                raise InputError(f"{label} has {name}: {short(text)}, which is not read: write a plain value.")
+        return inherited
+
+    def painted(text: str) -> str | None:
+        return paint(text, styles)
+
+    display = value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
+    if display == "contents":
+        raise InputError(f"{label} has display: contents, which is not read: remove it.")
+    return Style(
+        displayed=display != "none" and value("opacity", positive, True, True),
+        shown=value("visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True),
+        fill=value("fill", painted, around.fill, INITIAL.fill),
+        stroke=value("stroke", painted, around.stroke, INITIAL.stroke),
+        fill_opaque=value("fill-opacity", positive, around.fill_opaque, True),
+        stroke_opaque=value("stroke-opacity", positive, around.stroke_opaque, True),
+        stroke_wide=value("stroke-width", width, around.stroke_wide, True),
+        stroke_drawn=value("stroke-dasharray", dashed, around.stroke_drawn, True),
+        color_opaque=value("color", opaque, around.color_opaque, True),
+        even_odd=value("fill-rule", {"evenodd": True, "nonzero": False}.get, around.even_odd, False),
+        markers=any(value(name, lambda text: text != "none", around.markers, False) for name in MARKERS),
+    )
+
+
+def refuse_effects(declarations: Declarations, label: str) -> None:
+    """Refuse masks, filters and other effects that cut, move or hide what is drawn.
+
+    Raises
+    ------
+    InputError
+        Naming element and property.
+    """
+    for name, harmless in EFFECTS.items():
+        if name in declarations:
+            text = declarations[name][0].text
+            if text.lower() != harmless and (
+                name == "all" or text.lower() not in ("normal", "initial", "unset", "inherit")
+            ):
+                raise InputError(
+                    f"{label} has the {name} '{short(text)}', which is not read: remove it, or draw its effect."
+                )
+
+
+def positive(text: str) -> bool | None:
+    """Whether an opacity is above 0; None when it is none."""
+    match = NUMBER.match(text)
+    return None if match is None or match.group(2) not in ("", "%") else float(match.group(1)) > 0
+
+
+def width(text: str) -> bool | None:
+    """Whether a stroke's width is above 0; None when it is none."""
+    match = NUMBER.match(text)
+    return None if match is None or float(match.group(1)) < 0 else float(match.group(1)) > 0
+
+
+def dashed(text: str) -> bool | None:
+    """Whether a pattern of dashes and gaps has a dash; None when it is none. Dashes are read as whole lines."""
+    words = text.replace(",", " ").split()
+    if text == "none" or len(words) % 2:
+        words *= 2
+    sizes = [text == "none" or width(word) for word in words]
+    return None if not sizes or None in sizes else any(sizes[::2])
+
+
+def opaque(text: str) -> bool | None:
+    """Whether a colour is not fully transparent; None when it is none."""
+    text = PROFILE.sub("", text)
+    if HEX.match(text):
+        return len(text) in (4, 7) or int(text[1:], 16) % (16 if len(text) == 5 else 256) > 0
+    from tinycss2.color4 import parse_color
+
+    color = parse_color(text)
+    return None if color is None or color == CURRENT else color.alpha > 0
+
+
+def link_of(text: str) -> tuple[str, str] | None:
+    """What ``url(...)`` points to, and what follows it; None when the text is no url."""
+    match = URL.match(text)
+    if match is None:
+        return None
+    return next(part for part in match.groups()[:3] if part is not None), match.group(4)
+
+
+def paint(text: str, styles: Styles) -> str | None:
+    """What a paint shows; None when it is none (SVG 2, 13.2)."""
+    if text in (NONE, CURRENT):
+        return text
+    if text in ("context-fill", "context-stroke"):
+        return NONE
+    link = link_of(text)
+    if link is None:
+        seen = opaque(text)
+        return None if seen is None else SEEN if seen else NONE
+    server = styles.document.linked(link[0])
+    if server is not None and local_name(server) in PAINT_SERVERS:
+        return SEEN if paints(server, styles) else NONE
+    return paint(link[1].lower() or NONE, styles)
+
+
+def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
+    """Whether a gradient has a stop that is seen, or a pattern has content; it may be that of another it links to."""
+    content = [child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")]
+    if content:
+        return any(
+            local_name(child) != "stop"
+            or all(positive(d.text) is not False for d in styles.of(child)["stop-opacity"][:1])
+            for child in content
+        )
+    linked = styles.document.linked(href(server))
+    return linked is not None and deepest > 0 and paints(linked, styles, deepest - 1)

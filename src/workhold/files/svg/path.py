@@ -1,0 +1,171 @@
+"""Paths of lines and circular arcs: path data as chains. svgelements resolves relative and shortened commands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import asin, cos, hypot, isfinite, pi, sin
+from typing import Any
+
+from workhold.conventions import CIRCULAR
+from workhold.errors import InputError
+from workhold.files.outline.chain import arc_bulges
+from workhold.files.svg.document import short
+from workhold.files.svg.lengths import NUMBER, Figure
+from workhold.files.svg.shape import Shape, near, refused
+from workhold.geometry.segment import Point
+
+__all__ = ["path"]
+
+# A chord this near the diameter, relatively, is a half circle: its sweep cannot be told from the chord.
+HALF = 1e-14
+COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
+SEPARATOR = r"\s*(?:,\s*(?=[-+.\d]))?"
+COMMAND = re.compile(r"\s*([MmZzLlHhVvCcSsQqTtAa])\s*")
+ARGUMENT = re.compile(rf"({NUMBER}){SEPARATOR}")
+FLAG = re.compile(rf"([01]){SEPARATOR}")
+CSS_PATH = re.compile(r"""path\(\s*(?:(?:nonzero|evenodd)\s*,\s*)?(?:"([^"]*)"|'([^']*)')\s*\)$""")
+
+
+def path(figure: Figure) -> Iterator[Shape]:
+    """A <path>; each subpath is a chain.
+
+    Raises
+    ------
+    InputError
+        For Bézier curves, elliptical arcs, and path data that cannot be read.
+    """
+    from svgelements import Path
+
+    label, data = figure.label, path_data(figure)
+    try:
+        segments = list(Path(" ".join(plain_commands(data))))
+    except Exception as error:  # svgelements raises many kinds for wrong path data
+        raise InputError(f"{label} has path data that cannot be read ('{short(data)}'): correct it.") from error
+    points: list[Point] = []
+    bulges: list[float] = []
+    labels: list[str] = []
+    for number, segment in enumerate(segments):
+        kind = type(segment).__name__
+        if kind == "Move":
+            if bulges:
+                yield Shape(tuple(points), tuple(bulges), tuple(labels))
+            points, bulges, labels = [xy(segment.end, label)], [], []
+            continue
+        name = f"{label} segment {number}"
+        for end, bulge in path_segment(segment, kind, name):
+            # Closing a path that is back at its start adds nothing.
+            if not (kind == "Close" and near(end, points[-1])):
+                points.append(end)
+                bulges.append(bulge)
+                labels.append(name)
+        if kind == "Close":
+            if bulges:
+                yield Shape(tuple(points), tuple(bulges), tuple(labels))
+            points, bulges, labels = [points[-1]], [], []
+    if bulges:
+        yield Shape(tuple(points), tuple(bulges), tuple(labels))
+
+
+def path_data(figure: Figure) -> str:
+    """The path data, as attribute or as CSS property; empty when there is none.
+
+    Raises
+    ------
+    InputError
+        For a property that is not ``path("...")``.
+    """
+    given = figure.given("d")
+    if given is None or given.text in ("", "none"):
+        return ""
+    match = CSS_PATH.match(given.text) if given.css else None
+    if given.css and match is None:
+        raise InputError(
+            f"{figure.label} has the d '{short(given.text)}' in its style, which is not read: make it an attribute."
+        )
+    return given.text if match is None else match.group(1) or match.group(2) or ""
+
+
+def plain_commands(data: str) -> Iterator[str]:
+    """The commands of path data, each with its letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
+
+    Raises
+    ------
+    ValueError
+        For path data that is not of SVG's grammar.
+    """
+    position, first = 0, True
+    while position < len(data.rstrip()):
+        match = COMMAND.match(data, position)
+        if match is None or (first and match.group(1) not in "Mm"):
+            raise ValueError(data[position : position + 10])
+        letter, position, first = match.group(1), match.end(), False
+        count, again = COUNTS[letter.upper()], True
+        while again:
+            words = []
+            for k in range(count):
+                match = (FLAG if count == 7 and k in (3, 4) else ARGUMENT).match(data, position)
+                if match is None:
+                    raise ValueError(data[position : position + 10])
+                words.append(match.group(1))
+                position = match.end()
+            if count == 7 and 0.0 in (float(words[0]), float(words[1])):
+                yield f"{'L' if letter == 'A' else 'l'} {' '.join(words[5:])}"
+            else:
+                yield f"{letter} {' '.join(words)}"
+            letter = {"M": "L", "m": "l"}.get(letter, letter)
+            again = count > 0 and ARGUMENT.match(data, position) is not None
+
+
+def path_segment(segment: Any, kind: str, label: str) -> list[tuple[Point, float]]:
+    """End points and bulges of one path command.
+
+    Raises
+    ------
+    InputError
+        For Bézier curves and elliptical arcs.
+    """
+    if kind in ("Line", "Close"):
+        return [(xy(segment.end, label), 0.0)]
+    start = xy(segment.start, label)
+    if kind != "Arc":
+        raise refused(label, "is a Bézier curve", start)
+    end = xy(segment.end, label)
+    if end == start:
+        return []  # SVG 2, 9.5.1
+    radius, other = float(segment.rx), float(segment.ry)
+    if not abs(radius - other) <= CIRCULAR * max(radius, other):
+        raise refused(label, "is an elliptical arc", start)
+    sweep = arc_sweep(start, end, radius, float(segment.sweep))
+    bulges = arc_bulges(sweep)
+    if len(bulges) == 1:
+        return [(end, bulges[0])]
+    cx, cy = xy(segment.center, label)
+    c, s = cos(sweep / 2), sin(sweep / 2)
+    dx, dy = start[0] - cx, start[1] - cy
+    return [((cx + c * dx - s * dy, cy + s * dx + c * dy), bulges[0]), (end, bulges[1])]
+
+
+def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
+    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which tells side and direction."""
+    half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
+    ratio = half_chord / radius if radius > 0 else 1.0
+    half = pi / 2 if ratio > 1 - HALF else asin(ratio)
+    sweep = 2 * half if abs(rough) <= pi else 2 * (pi - half)
+    # Near half a turn the rough sweep may fall on the wrong side; the nearer one is meant.
+    if abs(abs(rough) - pi) < 1e-6 and ratio > 1 - 1e-12:
+        sweep = pi
+    return sweep if rough > 0 else -sweep
+
+
+def xy(point: Any, label: str) -> Point:
+    """A point of svgelements.
+
+    Raises
+    ------
+    InputError
+        When it is missing or not finite.
+    """
+    if point is None or not (isfinite(point.x) and isfinite(point.y)):
+        raise InputError(f"{label} has path data with a number missing or not finite: correct it.")
+    return float(point.x), float(point.y)

@@ -1,0 +1,337 @@
+"""The walk through a drawing's elements: what is seen, where it is, and what messages call it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from xml.etree.ElementTree import Element
+
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Chain, counted
+from workhold.files.outline.placement import Placement
+from workhold.files.svg.cascade import Declared, Styles
+from workhold.files.svg.document import DEEPEST, Document, href, local_name, short
+from workhold.files.svg.lengths import Figure, Viewport
+from workhold.files.svg.shapes import SHAPES
+from workhold.files.svg.style import INITIAL, Style, computed, link_of, refuse_effects
+from workhold.files.svg.transforms import transform_of
+from workhold.files.svg.view import Window, convex, fitted, viewbox_of
+
+__all__ = ["Nest", "SvgWalk"]
+
+MOST_ELEMENTS = 1_000_000
+CONTAINERS = {"g", "a", "switch"}
+SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern", "filter"}
+SILENT |= {"linearGradient", "radialGradient", "view", "namedview"}
+CUT_OFF = ("hidden", "scroll", "clip")
+FEATURES = "http://www.w3.org/TR/SVG11/feature#"
+MARKED = ("path", "line", "polyline", "polygon")
+
+
+@frozen
+class Nest:
+    """Where the walk stands.
+
+    Parameters
+    ----------
+    placement : the map to mm.
+    viewport : what percentages are of.
+    style : the style around.
+    windows : what hides parts of the drawing.
+    suffix, links : the <use> elements around, for messages and against endless nesting.
+    anchored : whether it is within an <a>.
+    """
+
+    placement: Placement
+    viewport: Viewport
+    style: Style = INITIAL
+    windows: tuple[Window, ...] = ()
+    suffix: str = ""
+    links: tuple[str, ...] = ()
+    anchored: bool = False
+
+
+class SvgWalk:
+    """Collects the chains of a document's elements, and what was left out."""
+
+    def __init__(self, document: Document, styles: Styles) -> None:
+        self.document = document
+        self.styles = styles
+        self.chains: list[Chain] = []
+        self.hidden = 0
+        self.ignored: Counter[str] = Counter()
+        self.count = 0
+
+    def visit(self, element: Element, nest: Nest) -> None:
+        """Collect one element and those inside it.
+
+        Raises
+        ------
+        InputError
+            For an element that is refused, naming it.
+        """
+        self.count += 1
+        if self.count > MOST_ELEMENTS:
+            raise InputError(
+                f"the drawing has more than {MOST_ELEMENTS} elements once <use> is written out: simplify it."
+            )
+        tag = local_name(element)
+        if tag in SILENT:
+            return
+        label = self.document.name(element) + nest.suffix
+        declarations = self.styles.of(element)
+        style = computed(declarations, nest.style, self.styles, label)
+        if not (style.displayed and suits(element, label)):
+            self.hidden += 1
+            return
+        refuse_effects(declarations, label)
+        placement = nest.placement.after(transform_of(declarations, nest.viewport, label))
+        figure = Figure(element, label, declarations, nest.viewport, closed=not style.stroked)
+        if tag == "use":
+            placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
+        inner = self.clipped(evolve(nest, placement=placement, style=style), declarations, label)
+        if element is self.document.root:
+            if placement != nest.placement:
+                raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
+            self.visit_children(element, inner)
+        elif tag in CONTAINERS:
+            if tag == "a" and nest.anchored:
+                raise InputError(f"{label} is a link within a link, which not all programs show: ungroup it.")
+            self.visit_children(element, evolve(inner, anchored=nest.anchored or tag == "a"))
+        elif tag == "svg":
+            self.visit_view(figure, inner, (figure.length("x"), figure.length("y")), figure)
+        elif tag == "use":
+            self.visit_use(figure, inner)
+        elif tag in SHAPES:
+            self.visit_shape(figure, inner)
+        else:
+            self.ignored[tag] += style.shown
+
+    def visit_children(self, parent: Element, nest: Nest) -> None:
+        """Visit the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
+        for element in parent:
+            if not self.document.drawn(element):
+                continue
+            if local_name(parent) == "switch":
+                label = self.document.name(element) + nest.suffix
+                if not suits(element, label):
+                    continue
+                if local_name(element) in SILENT | {"a", "foreignObject"}:
+                    raise InputError(f"{label} is the choice of a switch, which not all programs show: remove it.")
+                self.visit(element, nest)
+                return
+            self.visit(element, nest)
+
+    def visit_shape(self, figure: Figure, nest: Nest) -> None:
+        """Add the chains of a shape that is seen.
+
+        Raises
+        ------
+        InputError
+            For transforms that crush the drawing or make arcs elliptical.
+        """
+        style, label = nest.style, figure.label
+        if not style.shown or not (style.stroked or style.filled):
+            self.hidden += 1
+            return
+        if style.markers and local_name(figure.element) in MARKED:
+            self.ignored["marker"] += 1
+        if nest.placement.flat:
+            raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
+        found = list(self.placed(figure, nest.placement))
+        self.hidden += not found
+        for window in nest.windows:
+            shown = {window.shows(chain) for chain in found}
+            if shown == {"nothing"}:
+                self.hidden += 1
+                return
+            if shown - {"all"}:
+                raise InputError(f"{label} is cut by {window.label}: cut the shape itself, or remove what cuts it.")
+        self.chains += found
+
+    def placed(self, figure: Figure, placement: Placement) -> Iterator[Chain]:
+        """The chains of a shape in mm; of a shape without stroke, what bounds its fill.
+
+        Raises
+        ------
+        InputError
+            For arcs that a transform makes elliptical.
+        """
+        for shape in SHAPES[local_name(figure.element)](figure):
+            if figure.closed:
+                if len(shape.bulges) == 1 and not shape.bulges[0]:
+                    continue  # a line has nothing to fill
+                shape = shape.closed()
+            if any(shape.bulges) and not placement.keeps_circles:
+                x, y = shape.points[0]
+                raise InputError(
+                    f"{figure.label} at ({x:.6g}, {y:.6g}) has arcs that its transform turns into ellipses: scale x and "
+                    "y equally, without skew."
+                )
+            points = tuple(placement(point) for point in shape.points)
+            yield Chain(points, placement.bulges(shape.bulges), shape.labels)
+
+    def visit_use(self, figure: Figure, nest: Nest) -> None:
+        """Visit what a <use> shows.
+
+        Raises
+        ------
+        InputError
+            For links to nothing, to other files and to themselves.
+        """
+        label, link = figure.label, href(figure.element)
+        target = self.document.linked(link)
+        if target is None:
+            raise InputError(f"{label} shows '{short(link)}', which is not in the file: unlink or remove it.")
+        if link in nest.links or len(nest.links) >= DEEPEST:
+            raise InputError(f"{label} shows itself: unlink it.")
+        inner = evolve(nest, suffix=f" of {label}", links=(*nest.links, link))
+        tag = local_name(target)
+        if tag in ("symbol", "svg"):
+            self.visit_target(target, figure, inner)
+        else:
+            self.visit(target, inner)
+
+    def visit_target(self, target: Element, use: Figure, nest: Nest) -> None:
+        """Visit a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
+
+        Raises
+        ------
+        InputError
+            For a transform, size or reference point of a symbol, which programs draw differently.
+        """
+        label = self.document.name(target) + nest.suffix
+        declarations = self.styles.of(target)
+        style = computed(declarations, nest.style, self.styles, label)
+        if not (style.displayed and suits(target, label)):
+            raise InputError(f"{label} is switched off itself, which programs take differently: switch off the use.")
+        refuse_effects(declarations, label)
+        inner = self.clipped(evolve(nest, style=style), declarations, label)
+        own = Figure(target, label, declarations, nest.viewport)
+        sized = {name for name in ("width", "height") if use.given(name) is not None}
+        if local_name(target) == "symbol":
+            names = {"x", "y", "refX", "refY"} | ({"width", "height"} - sized)
+            if any(own.given(name) is not None for name in names):
+                raise InputError(f"{label} has a place or size, which programs draw differently: give them to the use.")
+            self.visit_view(own, inner, (0.0, 0.0), use)
+        else:
+            self.visit_view(own, inner, (own.length("x"), own.length("y")), use)
+
+    def visit_view(self, figure: Figure, nest: Nest, corner: tuple[float, float], sizes: Figure) -> None:
+        """Visit the children of a nested drawing or symbol in its own viewport.
+
+        Raises
+        ------
+        InputError
+            For a transform, which programs draw differently, and for sizes that are not known.
+        """
+        element, label = figure.element, figure.label
+        if transform_of(figure.declarations, figure.viewport, label) != Placement():
+            raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
+        box = viewbox_of(element.get("viewBox"), label)
+        sides: list[float | None] = []
+        for name in ("width", "height"):
+            asked = sizes.given(name)
+            giver = figure if asked is None or asked.text == "auto" else sizes
+            whole = figure.viewport[name == "height"]
+            sides.append(whole if giver.given(name) is None else giver.length(name, default=-1.0))
+        width, height = sides
+        view = nest.placement.after(Placement(e=corner[0], f=corner[1]))
+        if width is None or height is None:
+            if box is not None:
+                raise InputError(f"{label} has a viewBox, but no size: give it width and height.")
+        elif not (width > 0 and height > 0):
+            self.hidden += 1
+            return
+        elif not visible_overflow(figure.declarations):
+            corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height), (0.0, 0.0))
+            window = Window(tuple(map(view, corners)), f"the edge of {label}")
+            nest = evolve(nest, windows=(*nest.windows, window))
+        if box is not None and width is not None and height is not None:
+            view = view.after(fitted(box, width, height, element.get("preserveAspectRatio", ""), label))
+            width, height = box[2], box[3]
+        self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
+
+    def clipped(self, nest: Nest, declarations: dict[str, list[Declared]], label: str) -> Nest:
+        """The nest with the window of an element's ``clip-path``.
+
+        Raises
+        ------
+        InputError
+            For clip paths other than one convex polygon.
+        """
+        text = declarations["clip-path"][0].text if "clip-path" in declarations else "none"
+        if text.lower() in ("none", "initial", "unset", ""):
+            return nest
+        error = InputError(
+            f"{label} has the clip-path '{short(text)}', which is not one plain rectangle or convex polygon: cut the "
+            "drawing itself, or release the clip."
+        )
+        link = link_of(text)
+        clip = None if link is None or link[1] else self.document.linked(link[0])
+        if (
+            clip is None
+            or local_name(clip) != "clipPath"
+            or clip.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse"
+        ):
+            raise error
+        shapes = [child for child in clip if local_name(child) not in SILENT]
+        placement = nest.placement
+        for part in (clip, *shapes[:1]):
+            values = self.styles.of(part)
+            style = computed(values, INITIAL, self.styles, label)
+            if "clip-path" in values or not (style.displayed and style.shown) or not suits(part, label):
+                raise error
+            refuse_effects(values, label)
+            placement = placement.after(transform_of(values, nest.viewport, self.document.name(part)))
+        if (
+            len(shapes) != 1
+            or local_name(shapes[0]) not in ("rect", "polygon", "path")
+            or not self.document.drawn(shapes[0])
+        ):
+            raise error
+        figure = Figure(shapes[0], self.document.name(shapes[0]), self.styles.of(shapes[0]), nest.viewport, closed=True)
+        outlines = list(SHAPES[local_name(shapes[0])](figure))
+        if len(outlines) != 1 or any(outlines[0].bulges) or not convex(outlines[0].closed().points):
+            raise error
+        window = Window(tuple(map(placement, outlines[0].closed().points)), f"the clip-path of {label}")
+        return evolve(nest, windows=(*nest.windows, window))
+
+    def remarks(self) -> list[str]:
+        """What was left out, one sentence for each reason."""
+        remarks = []
+        if +self.ignored:
+            kinds = ", ".join(f"{count} {kind}" for kind, count in sorted((+self.ignored).items()))
+            remarks.append(f"Ignored elements that are no outline: {kinds}.")
+        if self.hidden:
+            remarks.append(
+                f"Left out {counted(self.hidden, 'hidden element', 'hidden elements')} (switched off, transparent, empty, "
+                "or without fill and stroke); make them visible to read them."
+            )
+        return remarks
+
+
+def suits(element: Element, label: str) -> bool:
+    """Whether an element's conditions hold (SVG 2, 5.9).
+
+    Raises
+    ------
+    InputError
+        For conditions that programs judge differently.
+    """
+    if element.get("requiredExtensions") is not None:
+        return False
+    if element.get("systemLanguage") is not None:
+        raise InputError(f"{label} is shown in some languages only (systemLanguage): keep one, without the condition.")
+    if not all(name.startswith(FEATURES) for name in element.get("requiredFeatures", "").split()):
+        raise InputError(f"{label} is shown by some programs only (requiredFeatures): remove it, or the condition.")
+    return True
+
+
+def visible_overflow(declarations: dict[str, list[Declared]]) -> bool:
+    """Whether a nested drawing shows what reaches beyond its edge."""
+    names = ("overflow", "overflow-x", "overflow-y")
+    given = [declarations[name][0].text for name in names if name in declarations]
+    return bool(given) and all(text in ("visible", "auto") for text in given)
