@@ -223,7 +223,7 @@ class Drafter:
             kind = self.random.choice(("shape", "g", "symbol", "svg"))
             made = self.shape() if kind == "shape" else self.node(kind)
             if kind != "shape":
-                before, self.in_view = self.in_view, self.in_view or kind in ("symbol", "svg")
+                before, self.in_view = self.in_view, True
                 made.children = self.content(depth + 1)
                 self.in_view = before
             if kind in ("symbol", "svg"):

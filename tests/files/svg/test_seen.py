@@ -169,6 +169,10 @@ def test_strokes_count_however_thin() -> None:
         ),
         (f'{R} style="clip-path:inset(5px)"/>', r"rect 'r' has the clip-path 'inset\(5px\)'"),
         (f'<svg id="s" width="30" height="30">{R}/></svg>', "rect 'r' is cut by the edge of svg 's'"),
+        (
+            f'{CLIP}<svg id="s" clip-path="url(#c)">{R}/></svg>',
+            "svg 's' has a clip-path, which programs place differently",
+        ),
         (f'<svg id="s" transform="scale(2)">{R}/></svg>', "svg 's' has a transform, which programs draw differently"),
         (
             '<symbol id="s" viewBox="0 0 9 9" width="9"/><use id="u" href="#s"/>',

@@ -91,7 +91,7 @@ class SvgWalk:
         figure = Figure(element, label, declarations, nest.viewport, closed=not style.stroked)
         if tag == "use":
             placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
-        inner = self.clipped(evolve(nest, placement=placement, style=style), declarations, label)
+        inner = self.clipped(element, evolve(nest, placement=placement, style=style), declarations, label)
         if element is self.document.root:
             if placement != nest.placement:
                 raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
@@ -208,7 +208,7 @@ class SvgWalk:
         if not (style.displayed and suits(target, label)):
             raise InputError(f"{label} is switched off itself, which programs take differently: switch off the use.")
         refuse_effects(declarations, label)
-        inner = self.clipped(evolve(nest, style=style), declarations, label)
+        inner = self.clipped(target, evolve(nest, style=style), declarations, label)
         own = Figure(target, label, declarations, nest.viewport)
         sized = {name for name in ("width", "height") if use.given(name) is not None}
         if local_name(target) == "symbol":
@@ -254,7 +254,7 @@ class SvgWalk:
             width, height = box[2], box[3]
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
-    def clipped(self, nest: Nest, declarations: dict[str, list[Declared]], label: str) -> Nest:
+    def clipped(self, element: Element, nest: Nest, declarations: dict[str, list[Declared]], label: str) -> Nest:
         """The nest with the window of an element's ``clip-path``.
 
         Raises
@@ -269,6 +269,10 @@ class SvgWalk:
             f"{label} has the clip-path '{short(text)}', which is not one plain rectangle or convex polygon: cut the "
             "drawing itself, or release the clip."
         )
+        # A drawing has two coordinate systems, outside and inside; programs differ in which of them a clip path is.
+        target = self.document.linked(href(element)) if local_name(element) == "use" else element
+        if target is not None and local_name(target) in ("svg", "symbol"):
+            raise InputError(f"{label} has a clip-path, which programs place differently: put it on a group around.")
         link = link_of(text)
         clip = None if link is None or link[1] else self.document.linked(link[0])
         if (
