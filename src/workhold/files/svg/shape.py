@@ -12,7 +12,6 @@ from workhold.geometry.segment import Point
 __all__ = ["Shape", "near", "refused"]
 
 
-
 @frozen
 class Shape:
     """N + 1 points in user units, N bulges, N labels."""
