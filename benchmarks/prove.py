@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 import workhold  # noqa: E402
-from fixture_sets import Judge, Listed, listed, missing  # noqa: E402
+from fixture_sets import Judge, Listed, listed, missing, vise_of  # noqa: E402
 from strategies import random_outline  # noqa: E402
 from workhold import Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import design_by_algebra  # noqa: E402
@@ -50,7 +50,7 @@ def complete_sets() -> Iterator[Case]:
     for path in sorted((ROOT / "tests" / "data" / "complete").glob("*.json")):
         truth = json.loads(path.read_text())
         workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
-        yield path.stem, workpiece, Vise(**truth["vise"])
+        yield path.stem, workpiece, vise_of(truth)
 
 
 def random_parts(count: int) -> Iterator[Case]:

@@ -15,13 +15,13 @@ def candidates(count: int) -> Candidates:
         return np.repeat(np.array([values], dtype=kind), count, axis=0)
 
     return Candidates(
-        kind=repeated(1, int),
+        standing=repeated(2, int),
         feature=repeated([0, 1, 2, 3], int),
         column=repeated([0, 1, 0, 0], int),
         row=repeated([0, 2, 1, 4], int),
         theta=repeated(0.5),
         point=repeated([[0.0, 0.0], [3.0, 4.0], [20.0, 1.0], [21.0, 6.0]]),
-        opening=repeated(17.0),
+        gap=repeated(17.0),
         null=repeated([0.1, 0.2, 0.3, 0.4]),
         force=repeated([0.5, 1.0, 1.5, 2.0]),
     )

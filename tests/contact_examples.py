@@ -9,10 +9,22 @@ from typing import Any
 import numpy as np
 from attrs import define
 
+from workhold.kernels.base.given import Lattice, Limits, Setting
 from workhold.kernels.contact.closure import minors, outward_normal
 from workhold.kernels.contact.equations import WORK_LENGTH, touch
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def limits(length: float, gap: float = -1e9, margin: float = -1e9) -> Limits:
+    """Limits that leave everything but what is asked for: L, smallest gap and contact margin in mm."""
+    return Limits(gap, margin, length, 99.0, 1.0, -9.0, 0.0)
+
+
+def setting(length: float, gap: float = -1e9, margin: float = -1e9) -> Setting:
+    """A setting with such limits, and nothing else in it."""
+    return Setting(Lattice(0.0, 0.0, 0.0), limits(length, gap, margin), 0.0, 0.0, 0.0)
+
 
 # A record that names four features, one for each peg.
 RECORD = np.array([1.0, *range(4), *[0.0] * 14])
@@ -25,8 +37,8 @@ class Held:
     Parameters
     ----------
     rows : (4, 10) features, without ends, one for each peg.
-    offsets, slides : the pegs' places from the first in mm, and which move with the right jaw.
-    unknowns : psi, tail x, tail y and apart.
+    offsets, slides : the pegs' places from the first in mm, and which are on the moving carrier.
+    unknowns : psi, tail x, tail y and separation.
     length : L in mm, half the largest distance of two pegs.
     """
 
@@ -37,16 +49,18 @@ class Held:
     length: float
 
     @property
-    def lefts(self) -> int:
-        """How many pegs are on the left jaw."""
+    def standing(self) -> int:
+        """How many pegs are on the carrier that stands still."""
         return self.slides.count(0.0)
 
     def in_place(self, shift: Any = (0.0, 0.0, 0.0, 0.0)) -> tuple[Array, Array]:
         """Centres (4, 2) and arms from the first peg, with the unknowns moved by a shift in mm."""
-        psi, x, y, apart = (
+        psi, x, y, separation = (
             v + s / (self.length if k == 0 else 1.0) for k, (v, s) in enumerate(zip(self.unknowns, shift, strict=True))
         )
-        steps = np.array([(dx + slide * apart, dy) for (dx, dy), slide in zip(self.offsets, self.slides, strict=True)])
+        steps = np.array(
+            [(dx + slide * separation, dy) for (dx, dy), slide in zip(self.offsets, self.slides, strict=True)]
+        )
         arms = steps @ np.array([[cos(psi), sin(psi)], [-sin(psi), cos(psi)]])
         return arms + np.array([x, y]), arms
 
@@ -63,23 +77,23 @@ class Held:
         return work, points
 
     def forces(self, points: Array, psi: float) -> tuple[Array, float, float, float]:
-        """Signed minors, the sum of their sizes, the push of the left pegs and the gap of pegs about there."""
+        """Signed minors, the sum of their sizes, the push of the standing pegs and the gap of pegs about there."""
         normals, null = self.normals(points), np.zeros(4)
         size = minors(points, normals, self.length, null)
         null *= 1.0 if null.sum() > 0 else -1.0
         x = np.array([cos(psi), sin(psi)])
         along = points @ x
-        left = self.lefts
+        left = self.standing
         return null, size, -float(null[:left] @ normals[:left] @ x), float(along[left:].min() - along[:left].max())
 
 
 def held(random: Random, lines: bool | None = None, spread: float = 20.0) -> Held:
     """Four pegs about (0, 0), on lines only, on arcs only, or on both."""
-    psi, x, y, apart = random.uniform(-pi, pi), 0.0, 0.0, random.uniform(0.5, 1.5) * spread
-    lefts = random.choice([2, 3])
+    psi, x, y, separation = random.uniform(-pi, pi), 0.0, 0.0, random.uniform(0.5, 1.5) * spread
+    standing = random.choice([2, 3])
     offsets = [(0.0, 0.0), *((random.uniform(-spread, spread), random.uniform(-spread, spread)) for _ in range(3))]
-    slides = [float(k >= lefts) for k in range(4)]
-    steps = [complex(dx + slide * apart, dy) for (dx, dy), slide in zip(offsets, slides, strict=True)]
+    slides = [float(k >= standing) for k in range(4)]
+    steps = [complex(dx + slide * separation, dy) for (dx, dy), slide in zip(offsets, slides, strict=True)]
     turn = complex(cos(psi), sin(psi))
     middle = sum(steps) * turn / 4
     x, y = -middle.real, -middle.imag
@@ -97,4 +111,4 @@ def held(random: Random, lines: bool | None = None, spread: float = 20.0) -> Hel
             way = sign * normal
             rows.append([1.0, center.real, center.imag, way.real, way.imag, pi, radius, sign, 0.0, 0.0])
     length = max(hypot((a - b).real, (a - b).imag) for a in steps for b in steps) / 2
-    return Held(np.array(rows), offsets, slides, [psi, x, y, apart], length)
+    return Held(np.array(rows), offsets, slides, [psi, x, y, separation], length)

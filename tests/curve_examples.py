@@ -52,7 +52,7 @@ def special_table(random: Random, make: Callable[[Random], tuple[Array, Array, f
 
 def steps_of(table: CurveTable) -> LatticeSteps:
     """The lattice steps of one length that a table's first curve has."""
-    length, pitch = float(table.reals[0, LENGTH]), pitch_of(table)
+    length, pitch = float(table.curves.reals[0, LENGTH]), pitch_of(table)
     whole = np.array(
         [(k, m) for k in range(-2, 3) for m in range(-2, 3) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
     )
@@ -61,31 +61,31 @@ def steps_of(table: CurveTable) -> LatticeSteps:
 
 def pitch_of(table: CurveTable) -> float:
     """Pitch in mm of the square lattice of a table's curves."""
-    steps = table.integers[0, [COLUMN_STEP, ROW_STEP]]
-    return float(table.reals[0, LENGTH] / hypot(*steps))
+    steps = table.curves.integers[0, [COLUMN_STEP, ROW_STEP]]
+    return float(table.curves.reals[0, LENGTH] / hypot(*steps))
 
 
 def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode: float) -> Array:
     """All pieces of a table's curves in a cell."""
     members = np.arange(len(table))
     pitch = pitch_of(table) if len(table) else 1.0
-    return cell_pieces(low, high, members, features, table.integers, table.reals, table.stretches, pitch, 0.0, mode)
+    return cell_pieces(low, high, members, features, table.curves, pitch, 0.0, mode)
 
 
 def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=crossings) -> Array:
     """Roots (N, 3) of two pieces, found by a form of the kernel: orientation, radius and multiple of the period."""
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    number = kernel(first, second, features, table.integers, table.reals, mode, offset, period, flat, stack, roots)
+    number = kernel(first, second, features, table.curves, mode, offset, period, flat, stack, roots)
     assert number >= 0
     return roots[:number].copy()
 
 
 @numba.njit
-def sampled(psis, curve, features, integers, reals, mode):
+def sampled(psis, curve, features, curves, mode):
     """Values and slopes of a curve at many orientations, and bounds of their errors, shape (N, 4)."""
     out = np.empty((psis.shape[0], 4))
     for k in range(psis.shape[0]):
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value_at(psis[k], curve, features, integers, reals, mode)
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value_at(psis[k], curve, features, curves, mode)
     return out
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import check_result
 from workhold import Vise, Workpiece
 from workhold.model.fixture import Fixture
+from workhold.model.vise import OpeningVise
 
 Listed = dict[str, Any]
 
@@ -30,6 +31,15 @@ def listed(fixtures: Iterable[Fixture]) -> list[Listed]:
     ]
 
 
+def vise_of(truth: dict[str, Any]) -> Vise:
+    """The vise of a complete set."""
+    if "vise" in truth:
+        return Vise(**truth["vise"])
+    fields = dict(truth["toolkit"])
+    assert fields.pop("kind") == OpeningVise.kind
+    return OpeningVise(**fields)
+
+
 def vise_fields(vise: Vise) -> dict[str, Any]:
     """A vise in the form of the result file."""
     return {
@@ -40,6 +50,7 @@ def vise_fields(vise: Vise) -> dict[str, Any]:
         "min_gap": vise.min_gap,
         "max_opening": vise.max_opening,
         "row_offset": vise.row_offset,
+        "kind": vise.kind,
     }
 
 

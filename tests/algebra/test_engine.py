@@ -10,7 +10,7 @@ from threading import Event
 
 import pytest
 
-from fixture_sets import Judge, assert_same, listed
+from fixture_sets import Judge, assert_same, listed, vise_of
 from strategies import star, straightened
 from workhold import Vise, Workpiece, design
 from workhold.algebra import design_by_algebra
@@ -37,12 +37,12 @@ def rounded(width: float, height: float, radius: float, angle: float) -> Workpie
     return Workpiece.from_loops("rounded", [turned])
 
 
-@pytest.mark.parametrize("name", ["triangle_20_2", "oblongPart_10_1"])
+@pytest.mark.parametrize("name", ["triangle_20_2", "oblongPart_10_1", "opening_saddle_9_2_gap5"])
 def test_complete_sets(name: str) -> None:
     """The engine lists what an independent method found, apart from marginal fixtures."""
     truth = json.loads((COMPLETE / f"{name}.json").read_text())
     workpiece = Workpiece.from_loops(name, truth["workpiece"]["loops"])
-    vise = Vise(**truth["vise"])
+    vise = vise_of(truth)
     judge = Judge(workpiece, vise)
     have = [judge.identity(fixture) for fixture in listed(design_by_algebra(workpiece, vise))]
     for fixture in truth["fixtures"]:

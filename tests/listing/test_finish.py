@@ -17,7 +17,7 @@ def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
     feature = twice.feature.copy()
     feature[1, 2] = 7
     twice = evolve(twice, feature=feature, theta=twice.theta + np.array([0.0, 3e-9]), point=twice.point + 1e-9)
-    assert len(listed_once(twice).kind) == 1
+    assert len(listed_once(twice).standing) == 1
 
 
 def test_same_holes_and_orientation_in_two_places_are_two() -> None:
@@ -34,13 +34,13 @@ def test_same_holes_and_orientation_in_two_places_are_two() -> None:
 def test_fixtures_are_in_the_order_of_types_holes_orientation_faces_and_place() -> None:
     """Each of these counts only where those before it are equal."""
     many = candidates(6)
-    kind, row, theta, feature, point = (
-        getattr(many, name).copy() for name in ("kind", "row", "theta", "feature", "point")
+    standing, row, theta, feature, point = (
+        getattr(many, name).copy() for name in ("standing", "row", "theta", "feature", "point")
     )
-    kind[5], row[4, 0], theta[3], feature[2, 0], point[1] = 2, 1, 0.6, 1, point[1] + 5.0
+    standing[5], row[4, 0], theta[3], feature[2, 0], point[1] = 3, 1, 0.6, 1, point[1] + 5.0
     # So that each but the first would come first by what counts less.
     point[2:] -= 5.0 * np.arange(1, 5)[:, None, None]
-    many = evolve(many, kind=kind, row=row, theta=theta, feature=feature, point=point)
+    many = evolve(many, standing=standing, row=row, theta=theta, feature=feature, point=point)
     listed = listed_once(many.take(np.array([3, 5, 1, 0, 4, 2])))
     assert np.array_equal(listed.point, point)
 
@@ -58,8 +58,8 @@ def test_half_turn_swaps_the_jaws_to_one_form() -> None:
         null=here.null[:, ::-1],
         force=here.force[:, ::-1],
     )
-    one, other = canonical_form(here), canonical_form(there)
-    for name in ("kind", "feature", "column", "row", "null"):
+    one, other = canonical_form(here, 2), canonical_form(there, 2)
+    for name in ("standing", "feature", "column", "row", "null"):
         assert np.array_equal(getattr(one, name), getattr(other, name))
     assert np.allclose(one.theta, other.theta)
 
@@ -68,9 +68,9 @@ def test_orientations_at_the_ends_of_the_half_turn_are_one() -> None:
     """An orientation a hair below half a turn and one a hair above 0 are brought to the same side."""
     here = candidates(2)
     turned = evolve(here, theta=np.array([1e-9, 2e-9]))
-    assert (np.abs(canonical_form(turned).theta) < 1e-8).all()
+    assert (np.abs(canonical_form(turned, 2).theta) < 1e-8).all()
     below = evolve(here, theta=np.array([pi - 1e-9, 2 * pi - 1e-9]))
-    assert (np.abs(canonical_form(below).theta) < 1e-8).all()
+    assert (np.abs(canonical_form(below, 2).theta) < 1e-8).all()
 
 
 def test_packed_numbers_keep_their_order() -> None:

@@ -9,6 +9,7 @@ import pytest
 from attrs import evolve
 
 from candidate_examples import candidates
+from workhold.contact.frame import Frame
 from workhold.listing.placing import outward_moves, placed_as_is
 from workhold.model.vise import Vise
 
@@ -18,13 +19,14 @@ def test_pegs_move_outward_no_farther_than_the_largest_opening_demands_and_left_
     """Pegs in two columns on the left and one on the right, in jaws of four columns 10 mm apart: one column more between
     the jaws takes a pitch off the separation. The left pegs have two columns to move, then the right ones three."""
     vise = Vise(pitch=10, columns=4, peg_radius=3, min_gap=7.0, max_opening=12.0)
-    found = placed_as_is(evolve(candidates(1), opening=np.array([opening])), vise)
+    frame = Frame.of(vise)
+    found = placed_as_is(evolve(candidates(1), gap=np.array([opening])), frame)
     moves = max(ceil((opening - 12.0) / 10), 0)
     assert found.fits[0] == (opening - 10 * moves >= 7.0)
-    assert (found.left[0], found.right[0]) == (min(moves, 2), max(moves - 2, 0))
-    assert found.separation(vise)[0] == pytest.approx(opening - 10 * moves)
+    assert (found.standing[0], found.moving[0]) == (min(moves, 2), max(moves - 2, 0))
+    assert found.travel(frame)[0] == pytest.approx(opening - 10 * moves)
 
 
 def test_ways_outward_are_tried_with_the_fewest_columns_first_and_most_of_them_on_the_left() -> None:
     """Where blocked holes force pegs on, the same order holds."""
-    assert list(outward_moves(3)) == [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (2, 1), (1, 2), (2, 2)]
+    assert list(outward_moves(3, 3)) == [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (2, 1), (1, 2), (2, 2)]

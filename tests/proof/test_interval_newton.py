@@ -7,11 +7,12 @@ import pytest
 
 import ladders
 from exact_chords import exactly
+from workhold.kernels.base.given import Limits
 from workhold.proof import interval_newton as settling
-from workhold.proof.interval_newton import Box, Limits, Outcome, solutions_in
+from workhold.proof.interval_newton import Box, Outcome, solutions_in
 
-# The ladders' right pegs stand among the left ones: any gap will do here.
-LIMITS = Limits(0.0, -100.0, 20.0)
+# The ladders' moving pegs stand among the standing ones: any gap will do here.
+LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
 
 
 def box(height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES) -> Box:

@@ -11,7 +11,7 @@ import pytest
 from workhold import Vise, Workpiece, count_contacts, design, load
 from workhold.files.result.writer import write_result
 from workhold.listing.best import BestFixtures
-from workhold.search.toolkit_search import ViseSearch
+from workhold.search.toolkit_search import ToolkitSearch
 
 # Parts with ties, equal holes in two places, sliding pairs and coincidences; how many to keep.
 CASES = [
@@ -72,13 +72,13 @@ def test_work_is_left_out() -> None:
 def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the kernels are told rises, and stays below the margin of the last fixture listed in the end."""
     told: list[float] = []
-    limits_from = ViseSearch.limits_from
+    limits_from = ToolkitSearch.limits_from
 
-    def watched(self: ViseSearch, margin: float) -> np.ndarray:
+    def watched(self: ToolkitSearch, margin: float) -> np.ndarray:
         told.append(margin)
         return limits_from(self, margin)
 
-    monkeypatch.setattr(ViseSearch, "limits_from", watched)
+    monkeypatch.setattr(ToolkitSearch, "limits_from", watched)
     best = design(load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=1)
     assert told == sorted(told) and told[-1] > 0.0
     assert told[-1] < np.round(best.table.null_vector[-1].min(), 9)
@@ -92,7 +92,7 @@ def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> N
     def watched(self: BestFixtures) -> None:
         decide(self)
         assert self.kept is not None
-        held.append(len(self.kept.kind))
+        held.append(len(self.kept.standing))
 
     monkeypatch.setattr(BestFixtures, "decide", watched)
     design(load("oblongPart"), Vise(pitch=8, columns=10, peg_radius=3), best=50)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from fixture_sets import Judge, listed, near_an_end
-from workhold import Vise, Workpiece, design
+from fixture_sets import Judge, listed, near_an_end, vise_of
+from workhold import Workpiece, design
 
 COMPLETE = sorted((Path(__file__).parent.parent / "data" / "complete").glob("*.json"))
 
@@ -20,7 +20,7 @@ def test_complete_set_is_reproduced(path: Path) -> None:
     account adds up, with nothing undecided."""
     truth = json.loads(path.read_text())
     workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
-    vise = Vise(**truth["vise"])
+    vise = vise_of(truth)
     judge = Judge(workpiece, vise)
     result = design(workpiece, vise)
     proof = result.proof
@@ -56,6 +56,6 @@ def test_no_listed_contact_is_at_an_end(path: Path) -> None:
     joints that a contact falls on)."""
     truth = json.loads(path.read_text())
     workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
-    vise = Vise(**truth["vise"])
+    vise = vise_of(truth)
     judge = Judge(workpiece, vise)
     assert not any(near_an_end(judge, fixture, 1e-10) for fixture in listed(design(workpiece, vise)))

@@ -14,8 +14,8 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex
-from workhold.kernels.contact import closure
-from workhold.kernels.contact import rules as record
+from workhold.kernels.contact import closure, record
+from workhold.kernels.contact import rules as bound
 from workhold.model.vise import Vise
 from workhold.statics.wrenches import outward_normals
 
@@ -37,14 +37,14 @@ class Held:
 
     Parameters
     ----------
-    lefts : how many pegs, the first ones, are on the left jaw.
+    standing : how many pegs, the first ones, are on the jaw that stands still.
     feature, column, row : (N, 4), see ``Systems``.
     psi : (N,) orientation of the pegs in radians.
     reach : (N,) how far psi may be off in radians, and the centres in parts of the part's size.
     center : (N, 4) peg centres in the workpiece's frame as complex numbers.
     """
 
-    lefts: int
+    standing: int
     feature: IntArray
     column: IntArray
     row: IntArray
@@ -54,7 +54,7 @@ class Held:
 
     def take(self, which: BoolArray | IntArray) -> Held:
         """The parts of an index array or mask."""
-        return Held(self.lefts, *(getattr(self, name)[which] for name in HELD_FIELDS))
+        return Held(self.standing, *(getattr(self, name)[which] for name in HELD_FIELDS))
 
 
 HELD_FIELDS = ("feature", "column", "row", "psi", "reach", "center")
@@ -80,7 +80,7 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 
 
 def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float) -> Array:
-    """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.rules``).
+    """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
     Parameters
     ----------
@@ -92,26 +92,26 @@ def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float
     inside = within_ends(rows[held.feature], held.center, margin, radius[:, None])
     held = held.take(np.asarray(inside.all(axis=1)))
     along = (held.center * np.exp(-1j * held.psi)[:, None]).real
-    gap = along[:, held.lefts :].min(axis=1, initial=np.inf) - along[:, : held.lefts].max(axis=1, initial=-np.inf)
-    apart = np.asarray(gap >= vise.min_gap - record.GAP_SLACK - 8.0 * length * held.reach)
+    gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(axis=1, initial=-np.inf)
+    apart = np.asarray(gap >= vise.min_gap - bound.GAP_SLACK - 8.0 * length * held.reach)
     held, along = held.take(apart), along[apart]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :8]
-    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length)
+    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length, vise.clamping)
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
-    out[:, record.KIND] = 1.0 if held.lefts == 2 else 2.0
+    out[:, record.STANDING] = held.standing
     out[:, record.FEATURES : record.FEATURES + 4] = held.feature
     out[:, record.COLUMNS : record.COLUMNS + 4] = held.column
     out[:, record.ROWS : record.ROWS + 4] = held.row
     out[:, record.PSI] = held.psi
     out[:, record.TAIL_X : record.TAIL_Y + 1] = points[:, 0]
-    out[:, record.APART] = along[:, held.lefts] - along[:, 0]
+    out[:, record.SEPARATION] = along[:, held.standing] - along[:, 0]
     out[:, record.REACH] = held.reach
     out[:, record.RADIUS] = 4.0 * length * held.reach
     return np.asarray(out[good])
 
 
-def may_close(held: Held, held_rows: Array, normals: Array, points: Array, length: float) -> BoolArray:
+def may_close(held: Held, held_rows: Array, normals: Array, points: Array, length: float, clamping: int) -> BoolArray:
     """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
     Normals on arcs of radius R are off by at most radius / R, and every minor as ``closure.minor_band`` tells.
@@ -126,11 +126,11 @@ def may_close(held: Held, held_rows: Array, normals: Array, points: Array, lengt
     minors = minors * np.where(minors.max(axis=1) >= -minors.min(axis=1), 1.0, -1.0)[:, None]
     size = np.abs(minors).sum(axis=1)
     facing = normals[..., 0] * np.cos(held.psi)[:, None] + normals[..., 1] * np.sin(held.psi)[:, None]
-    clamp = -(minors * facing)[:, : held.lefts].sum(axis=1)
+    clamp = -clamping * (minors * facing)[:, : held.standing].sum(axis=1)
     return np.asarray(
-        (minors.min(axis=1) + band > record.LEAST_CLOSURE * (size - 4.0 * band))
-        & (size + 4.0 * band > record.LEAST_SPAN)
-        & (clamp + 4.0 * band + size * (swing + held.reach) > record.LEAST_CLAMPING * (size - 4.0 * band))
+        (minors.min(axis=1) + band > bound.LEAST_CLOSURE * (size - 4.0 * band))
+        & (size + 4.0 * band > bound.LEAST_SPAN)
+        & (clamp + 4.0 * band + size * (swing + held.reach) > bound.LEAST_CLAMPING * (size - 4.0 * band))
     )
 
 
@@ -230,4 +230,4 @@ def fourth_pegs(triples: Held, rows: Array, vise: Vise, margin: float, length: f
 
 def joined(parts: list[Held]) -> Held:
     """Several sets, at least one, as one."""
-    return Held(parts[0].lefts, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS))
+    return Held(parts[0].standing, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS))

@@ -91,9 +91,10 @@ class Solver:
         self.counts["systems"] += len(systems)
         self.counts["orientations"] += len(psi)
         chosen = systems.take(poses.owner)
-        lefts = 2 if systems.feature.shape[1] == 4 else 3
+        # Systems of three pegs are those of the standing pegs alone.
+        standing = 2 if systems.feature.shape[1] == 4 else 3
         center = peg_centers(contacts, poses) * self.diameter
-        return Held(lefts, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
+        return Held(standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
 
     def orientations(self, contacts: Contacts, case: Case, systems: Systems) -> tuple[IntArray, Array]:
         """Indices of systems and their orientations in radians."""

@@ -54,8 +54,8 @@ class Facings:
 
     Parameters
     ----------
-    left, right : (F, SECTORS) whether a feature can be pushed to the right by a left peg, or to the left by a right
-        peg, at an orientation: the two parts of the valid orientations (section 3.2).
+    left, right : (F, SECTORS) whether a feature can be pushed so as to clamp by a left peg, or by a right peg, at an
+        orientation: the two parts of the valid orientations (section 3.2).
     resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction: four features can close
         only if every direction is resisted by one of them (section 3).
     """
@@ -65,10 +65,11 @@ class Facings:
     resists: BoolArray
 
     @classmethod
-    def of(cls, rows: Array) -> Facings:
-        """The facings of feature rows (F, 8)."""
+    def of(cls, rows: Array, clamping: int) -> Facings:
+        """The facings of feature rows (F, 8) in a vise that clamps by closing (1) or by opening (-1)."""
         right = facing(rows, pi / 2 + HALF_SECTOR)
-        return cls(np.roll(right, -SECTORS // 2, axis=1), right, facing(rows, pi / 2))
+        left, right = (np.roll(right, -SECTORS // 2, axis=1), right)[::clamping]
+        return cls(left, right, facing(rows, pi / 2))
 
 
 def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
@@ -96,7 +97,7 @@ def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
 
 def type_one_systems(pairs: PegPairs, rows: Array, vise: Vise) -> Iterator[Systems]:
     """Quartets with two pegs on each jaw, but those with parallel lines on one jaw (section 3.5.1)."""
-    facings = Facings.of(rows)
+    facings = Facings.of(rows, vise.clamping)
     generic = np.flatnonzero(~are_parallel(rows, pairs.tail, pairs.head))
     rank, sectors = jaw_ranks(pairs, rows), pairs.sectors
     resists = facings.resists[pairs.tail] | facings.resists[pairs.head]
@@ -140,7 +141,7 @@ def type_two_systems(pairs: PegPairs, rows: Array, vise: Vise) -> Iterator[Syste
 
     The third peg lies in the wedges from the first and from the second peg.
     """
-    facings = Facings.of(rows)
+    facings = Facings.of(rows, vise.clamping)
     count = len(rows)
     number = {key: k for k, key in enumerate(zip(*(v.tolist() for v in whole(pairs)), strict=True))}
     sectors = pairs.sectors

@@ -11,15 +11,23 @@ from numpy.typing import NDArray
 
 from workhold.conventions import LOOSE
 from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.curves.columns import END_STRETCH, FIRST_STRETCH
+from workhold.kernels.curves.columns import (
+    CENTER,
+    END_STRETCH,
+    FIRST_STRETCH,
+    HEAD,
+    TAIL,
+    Curves,
+    SlidingPairs,
+)
 from workhold.kernels.curves.table import tail_curves
 
-__all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "loosened"]
+__all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
 
 
 @define(frozen=True, eq=False)
 class LatticeSteps:
-    """Differences between two holes of one jaw, grouped by their lengths.
+    """Differences between two holes of one carrier, grouped by their lengths.
 
     Parameters
     ----------
@@ -37,17 +45,13 @@ class LatticeSteps:
 
 @define(frozen=True, eq=False)
 class CurveTable:
-    """Chord curves and sliding pairs of all pairs of features, and the curves' stretches; columns are named in
-    ``kernels.curves.columns``, ``sliding_pairs`` and ``stretches``."""
+    """Chord curves and sliding pairs of pairs of features, see ``kernels.curves.columns``."""
 
-    integers: NDArray[np.int64]
-    reals: NDArray[np.float64]
-    sliding_pair_integers: NDArray[np.int64]
-    sliding_pair_reals: NDArray[np.float64]
-    stretches: NDArray[np.float64]
+    curves: Curves
+    sliding_pairs: SlidingPairs
 
     def __len__(self) -> int:
-        return len(self.integers)
+        return len(self.curves.integers)
 
 
 def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -79,4 +83,16 @@ def curve_table(rows: NDArray[np.float64], steps: LatticeSteps, tails: Sequence[
     for integers, _, _, _, stretches in parts:
         integers[:, [FIRST_STRETCH, END_STRETCH]] += before
         before += len(stretches)
-    return CurveTable(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    integers, reals, whole, sliding, stretches = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))
+
+
+def joined(one: CurveTable, other: CurveTable, before: int) -> CurveTable:
+    """Two tables as one, the second of features that begin at number ``before``."""
+    for table in (other.curves.integers, other.sliding_pairs.integers):
+        table[:, [TAIL, HEAD]] += before
+        table[:, CENTER] += before * (table[:, CENTER] >= 0)
+    other.curves.integers[:, [FIRST_STRETCH, END_STRETCH]] += len(one.curves.stretches)
+    integers, reals, stretches = (np.concatenate(pair) for pair in zip(one.curves, other.curves, strict=True))
+    whole, sliding = (np.concatenate(pair) for pair in zip(one.sliding_pairs, other.sliding_pairs, strict=True))
+    return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))

@@ -1,4 +1,4 @@
-"""What every engine begins with: a workpiece in a vise, made ready for arithmetic."""
+"""What every engine begins with: a workpiece in a toolkit, made ready for arithmetic."""
 
 from __future__ import annotations
 
@@ -10,10 +10,13 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.features import ContactFeature, allowed_features, contact_features, end_slacks, feature_rows
+from workhold.contact.frame import Frame
 from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.given import Limits, Setting
 from workhold.model.diameter import outline_diameter
 from workhold.model.restrictions import Restrictions
+from workhold.model.toolkit import Carrier
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -27,16 +30,18 @@ ROUNDINGS = 16.0 * 1.2e-16
 
 @define(frozen=True, eq=False)
 class Problem:
-    """A workpiece in a vise; lengths in mm, everything about the centre of the part's bounding box.
+    """A workpiece in a toolkit; lengths in mm, everything about the centre of the part's bounding box.
 
     Parameters
     ----------
     workpiece, vise : what to hold and what to hold it in.
     contact_margin : smallest distance between a contact and the end of its feature.
     restrictions : what is ruled out.
-    locus : all contact features, also those that are ruled out.
+    locus : all contact features, also those that are ruled out, ordered by face.
     rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
+    standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the same for both
+        where their pegs are alike, else those of the standing carrier come first.
     outline : (S, 8) the part's faces.
     diameter : largest distance between two peg centres that touch the part.
     """
@@ -48,6 +53,8 @@ class Problem:
     locus: tuple[ContactFeature, ...]
     rows: NDArray[np.float64]
     faces: NDArray[np.int64]
+    standing: tuple[int, int]
+    moving: tuple[int, int]
     outline: NDArray[np.float64]
     diameter: float
 
@@ -67,26 +74,32 @@ class Problem:
             When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
         """
         restrictions = restrictions or Restrictions()
-        features = contact_features(workpiece, vise.peg_radius)
-        if not features:
-            raise InputError(
-                f"a peg of radius {vise.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
-                "corners too narrow for it; use a smaller peg."
-            )
-        locus = tuple(features)
+        standing, moving = carriers = Frame.of(vise).carriers
+        alike = (standing.peg_radius, standing.body_radius) == (moving.peg_radius, moving.body_radius)
+        loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if alike else 2]]
+        allowed = loci
         if restrictions:
-            features = allowed_features(features, workpiece, restrictions, vise.body_radius)
+            allowed = [
+                allowed_features(locus, workpiece, restrictions, carrier.body_radius)
+                for locus, carrier in zip(loci, carriers, strict=False)
+            ]
+        features = [feature for part in allowed for feature in part]
         center = workpiece.center
         return cls(
             workpiece,
             vise,
             contact_margin,
             restrictions,
-            locus,
-            rows=np.concatenate([centered(feature_rows(features), center), end_slacks(features)], axis=1),
+            tuple(sorted((feature for locus in loci for feature in locus), key=lambda feature: feature.face)),
+            rows=np.concatenate(
+                [centered(feature_rows(features), center), np.concatenate([end_slacks(part) for part in allowed])],
+                axis=1,
+            ),
             faces=np.array([feature.face for feature in features], dtype=np.int64),
+            standing=(0, len(allowed[0])),
+            moving=(len(features) - len(allowed[-1]), len(features)),
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
-            diameter=outline_diameter(workpiece) + 2 * vise.peg_radius,
+            diameter=outline_diameter(workpiece) + 2 * max(carrier.peg_radius for carrier in carriers),
         )
 
     @property
@@ -99,6 +112,49 @@ class Problem:
         """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
         center = self.workpiece.center
         return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [1, 2, 6]]).max()))
+
+    @property
+    def frame(self) -> Frame:
+        """The toolkit as the search sees it."""
+        return Frame.of(self.vise)
+
+    @property
+    def limits(self) -> Limits:
+        """What bounds a fixture, as kernels take it."""
+        frame = self.frame
+        return Limits(
+            frame.gap,
+            self.contact_margin,
+            self.wrench_length,
+            most_column_steps=frame.standing.columns - 1.0,
+            clamping=float(self.vise.clamping),
+            least_margin=0.0,
+            most_listed=0.0,
+        )
+
+    @property
+    def setting(self) -> Setting:
+        """What a proof must know of the problem, as kernels take it."""
+        frame = self.frame
+        standing, moving = (carrier.peg_radius for carrier in frame.carriers)
+        return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
+
+
+def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
+    """All contact features of a workpiece for the pegs of a carrier.
+
+    Raises
+    ------
+    InputError
+        When such a peg fits nowhere along the part.
+    """
+    features = contact_features(workpiece, carrier.peg_radius)
+    if not features:
+        raise InputError(
+            f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
+            "corners too narrow for it; use a smaller peg."
+        )
+    return features
 
 
 def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:

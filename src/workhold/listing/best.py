@@ -62,7 +62,7 @@ class BestFixtures:
 
     def cut(self, everything: Candidates, ties: bool) -> Candidates:
         """The best ``most`` of fixtures that are listed once, and those that tie with the last."""
-        if len(everything.kind) <= self.most:
+        if len(everything.standing) <= self.most:
             return everything
         table = self.preference.measured(placed(everything, self.problem), self.problem)
         chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)

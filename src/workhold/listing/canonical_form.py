@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from attrs import define
+from attrs import define, fields
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE
-from workhold.kernels.contact import rules as record
+from workhold.kernels.contact import record
 from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
-from workhold.proof.deciding import peg_integers, setting_of
+from workhold.proof.deciding import peg_integers
 
 __all__ = [
     "Candidates",
@@ -29,29 +29,30 @@ IntArray = NDArray[np.int64]
 
 # Bits of a packed number.
 WORD = 63
+MOST_PEGS = 4
 
 
 @define(frozen=True, eq=False)
 class Candidates:
-    """N fixtures on their way to a table; pegs of the left jaw first, (N, 4) unless said otherwise.
+    """N fixtures on their way to a table; standing pegs first, (N, 4) unless said otherwise.
 
     Parameters
     ----------
-    kind : (N,) 1 or 2.
-    feature, column, row : touched feature and lattice place; columns count on each jaw, rows on both alike.
+    standing : (N,) how many of the pegs stand on the carrier that stands still.
+    feature, column, row : touched feature and lattice place; columns count on each carrier, rows on both alike.
     theta : (N,) orientation of the workpiece in radians.
     point : (N, 4, 2) peg centres in the workpiece's frame about the centre of the part, in mm.
-    opening : (N,) x distance in mm from the rightmost left peg to the leftmost right peg.
+    gap : (N,) x distance in mm from the rightmost standing to the leftmost moving peg.
     null, force : null vector and forces per unit of clamping force.
     """
 
-    kind: IntArray
+    standing: IntArray
     feature: IntArray
     column: IntArray
     row: IntArray
     theta: Array
     point: Array
-    opening: Array
+    gap: Array
     null: Array
     force: Array
 
@@ -60,17 +61,17 @@ class Candidates:
         return Candidates(*(getattr(self, name)[order] for name in CANDIDATE_FIELDS))
 
 
-CANDIDATE_FIELDS = ("kind", "feature", "column", "row", "theta", "point", "opening", "null", "force")
+CANDIDATE_FIELDS = tuple(a.name for a in fields(Candidates))
 
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
     """Proven records as candidates."""
     count = len(records)
     feature, column, row = peg_integers(records)
-    point, opening, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
-    contacts_of(records, problem.rows, setting_of(problem), point, opening, null, force)
-    kind = records[:, record.KIND].astype(np.int64)
-    return Candidates(kind, feature, column, row, -records[:, record.PSI], point, opening, null, force)
+    point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
+    contacts_of(records, problem.rows, problem.setting, point, gap, null, force)
+    standing = records[:, record.STANDING].astype(np.int64)
+    return Candidates(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
 
 
 def joined(parts: list[Candidates]) -> Candidates:
@@ -78,15 +79,15 @@ def joined(parts: list[Candidates]) -> Candidates:
     return Candidates(*(np.concatenate([getattr(p, name) for p in parts]) for name in CANDIDATE_FIELDS))
 
 
-def canonical_form(c: Candidates) -> Candidates:
-    """Bring candidates to the one form each fixture is listed in (``kernels.contact.canonical_form.stand``)."""
+def canonical_form(c: Candidates, swapped: int) -> Candidates:
+    """Bring candidates to the one form each fixture is listed in (``kernels.contact.canonical_form.to_canonical_form``)."""
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
-    order = np.empty((len(c.kind), 4), np.int64)
-    to_canonical_form(c.kind, theta, column, row, order, SAME_POSE)
+    order = np.empty((len(c.standing), 4), np.int64)
+    to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
     place = 4 * np.arange(len(order))[:, None] + order
     point = c.point.reshape(-1, 2)[place]
     feature, null, force = (np.ravel(values)[place] for values in (c.feature, c.null, c.force))
-    return Candidates(c.kind, feature, column, row, theta, point, c.opening, null, force)
+    return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
 
 
 def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
@@ -110,8 +111,10 @@ def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
 
 
 def packed_holes(c: Candidates) -> list[IntArray]:
-    """Types and holes of candidates, packed."""
-    return packed((c.kind[:, None], 2), *((numbers, numbers.max(initial=0)) for numbers in (c.column, c.row)))
+    """Arrangements and holes of candidates, packed."""
+    return packed(
+        (c.standing[:, None], MOST_PEGS), *((numbers, numbers.max(initial=0)) for numbers in (c.column, c.row))
+    )
 
 
 def changes(words: list[IntArray]) -> NDArray[np.bool_]:
@@ -138,10 +141,10 @@ def listed_once(c: Candidates) -> Candidates:
     A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same holes and the
     same orientation may still differ in where the workpiece lies; one number that mixes all that tells them apart.
     """
-    if len(c.kind) == 0:
+    if len(c.standing) == 0:
         return c
     first, group = same_holes_first(c)
-    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.opening)[first]
+    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.gap)[first]
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)

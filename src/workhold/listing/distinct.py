@@ -11,7 +11,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SAME_POSE
 from workhold.geometry.symmetry import Rotation, rotations_onto_itself
 from workhold.kernels.contact.canonical_form import to_canonical_form
-from workhold.listing.canonical_form import Candidates, changes, packed
+from workhold.listing.canonical_form import MOST_PEGS, Candidates, changes, packed
 
 __all__ = ["count_distinct"]
 
@@ -20,21 +20,21 @@ IntArray = NDArray[np.int64]
 
 
 def keys_and_pose(
-    c: Candidates, face: IntArray, largest: int, angle: float, size: float
+    c: Candidates, face: IntArray, largest: int, swapped: int, angle: float, size: float
 ) -> tuple[list[IntArray], Array]:
-    """Fixtures after the part is turned onto itself by an angle in radians: (N,) packed types, faces and holes, and (N,) a
-    number for the pose.
+    """Fixtures after the part is turned onto itself by an angle in radians: (N,) packed arrangements, faces and holes, and
+    (N,) a number for the pose.
 
     ``face`` (N, 4) are the faces that they then touch, none of a number above ``largest``; ``size`` in mm brings lengths to
     the scale of angles.
     """
     theta, column, row = c.theta - angle, c.column.copy(), c.row.copy()
     order = np.empty((len(face), 4), np.int64)
-    to_canonical_form(c.kind, theta, column, row, order, SAME_POSE)
+    to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
     face = np.ravel(face)[4 * np.arange(len(face))[:, None] + order]
-    # Same faces, holes and orientation still leave a choice of places; the opening tells those apart.
+    # Same faces, holes and orientation still leave a choice of places; the gap tells those apart.
     holes = ((column, column.max()), (row, row.max()))
-    return packed((c.kind[:, None], 2), (face, largest), *holes), theta + c.opening / size
+    return packed((c.standing[:, None], MOST_PEGS), (face, largest), *holes), theta + c.gap / size
 
 
 def precedes(a: list[IntArray], a_pose: Array, b: list[IntArray], b_pose: Array) -> NDArray[np.bool_]:
@@ -46,7 +46,7 @@ def precedes(a: list[IntArray], a_pose: Array, b: list[IntArray], b_pose: Array)
 
 
 def count_distinct(c: Candidates, problem: Problem, threads: int = 1) -> dict[str, int]:
-    """How many sets of each type the fixtures form when those equivalent under the part's rotations count once.
+    """How many sets of each arrangement the fixtures form when those equivalent under the part's rotations count once.
 
     Parameters
     ----------
@@ -55,18 +55,19 @@ def count_distinct(c: Candidates, problem: Problem, threads: int = 1) -> dict[st
     threads : how many threads share the work.
     """
     workpiece, face = problem.workpiece, problem.faces[c.feature]
+    toolkit, swapped = problem.vise, problem.frame.swapped
     faces = workpiece.faces
     rotations = rotations_onto_itself([f.segment for f in faces])
     if len(face) == 0 or len(rotations) == 1:
         # Only the part as it lies; every fixture is a set of its own.
-        return problem.vise.arrangements_counted(c.kind - 1)
+        return toolkit.arrangements_counted(toolkit.arrangement_numbers(c.standing))
     numbers = np.array([f.number for f in faces])
     x0, y0, x1, y1 = workpiece.bounds
 
     def turned(rotation: Rotation) -> tuple[list[IntArray], Array]:
         image = np.zeros(int(numbers.max()) + 1, np.int64)
         image[numbers] = numbers[rotation.image]
-        return keys_and_pose(c, image[face], len(image), rotation.angle, x1 - x0 + y1 - y0)
+        return keys_and_pose(c, image[face], len(image), swapped, rotation.angle, x1 - x0 + y1 - y0)
 
     best = turned(rotations[0])
     with ThreadPoolExecutor(max_workers=threads) as pool:
@@ -80,4 +81,4 @@ def count_distinct(c: Candidates, problem: Problem, threads: int = 1) -> dict[st
     order = np.lexsort([pose, *reversed(key)])
     fresh = changes([word[order] for word in key])
     fresh[1:] |= np.diff(pose[order]) > 2 * SAME_POSE
-    return problem.vise.arrangements_counted(c.kind[order[fresh]] - 1)
+    return toolkit.arrangements_counted(toolkit.arrangement_numbers(c.standing[order[fresh]]))

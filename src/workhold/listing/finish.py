@@ -1,4 +1,4 @@
-"""From the kernels' records to fixtures: decided, brought to the listed form, placed in the vise, listed once."""
+"""From the kernels' records to fixtures: decided, brought to the listed form, placed in the toolkit, listed once."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.kernels.contact import rules as record
+from workhold.kernels.contact import record
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.placing import arranged
 from workhold.proof.deciding import Account, Course, decided
@@ -45,11 +45,11 @@ def finish(
     -------
     (the fixtures, an account of all records)
     """
-    course = Course(sum(map(len, records)), cancel=cancel)
+    course, swapped = Course(sum(map(len, records)), cancel=cancel), problem.frame.swapped
 
     def listed_form(block: Array) -> tuple[Candidates, Account]:
         proven, account = decided(block, problem, course)
-        return canonical_form(candidates_of(proven, problem)), account
+        return canonical_form(candidates_of(proven, problem), swapped), account
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
         running = [pool.submit(listed_form, block) for block in blocks_of(records)]

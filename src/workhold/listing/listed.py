@@ -58,7 +58,7 @@ def listed_result(
     ----------
     problem : what was searched.
     preference : what makes one better than another.
-    records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.rules`` says.
+    records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
     best : list only this many, the best ones.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.

@@ -184,6 +184,13 @@ class Toolkit:
         """The carrier that moves."""
         return next(carrier for carrier in self.carriers if carrier.travel is not None)
 
+    @property
+    def moving_axis(self) -> tuple[float, float]:
+        """The unit vector along which travel is counted."""
+        travel = self.moving.travel
+        assert travel is not None
+        return travel.unit
+
     def arrangement(self, name: str) -> Arrangement:
         """The arrangement of a name."""
         return next(a for a in self.arrangements if a.name == name)
@@ -200,6 +207,11 @@ class Toolkit:
     def carrier_names(self, arrangement: Arrangement) -> tuple[str, ...]:
         """The name of each peg's carrier, in the order in which pegs are listed."""
         return tuple(self.carriers[number].name for number in arrangement.carriers)
+
+    def arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
+        """The indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
+        pegs = [one.pegs[0] for one in self.arrangements]
+        return np.asarray(np.array([pegs.index(k) if k in pegs else -1 for k in range(max(pegs) + 1)])[standing])
 
     def places(
         self, arrangement: NDArray[Any], column: NDArray[Any], row: NDArray[Any], travelled: NDArray[np.float64]

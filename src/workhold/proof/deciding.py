@@ -7,14 +7,14 @@ leaves with the first that decides it:
 2. the same for the features' rows as they are, without what rounding may have done to the drawing before;
 3. the interval Newton method in double precision (``kernels.proof.interval_newton``): boxes in which no fixture can be
    are dropped, and those with exactly one solution go through stage 2;
-4. the same method in ball arithmetic (``settling``).
+4. the same method in ball arithmetic (``interval_newton``).
 """
 
 from __future__ import annotations
 
 from itertools import combinations
 from threading import Event, Lock
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define, field
@@ -22,17 +22,16 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import PARALLEL
-from workhold.kernels.contact import rules as record
-from workhold.kernels.contact.equations import BACKWARD_ERROR
+from workhold.kernels.base.given import Lattice, Setting
+from workhold.kernels.contact import record
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
 from workhold.model.proof import Undecided
-from workhold.model.vise import Vise
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import Outcome
 
-__all__ = ["Account", "Course", "decided", "is_left", "merged", "peg_integers", "setting_of"]
+__all__ = ["Account", "Course", "decided", "is_standing", "merged", "peg_integers"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -105,9 +104,9 @@ class Account:
         return cls(records, verified, escalated, given_up, lost, left)
 
 
-def is_left(kind: IntArray) -> NDArray[np.bool_]:
-    """Which of the four pegs are on the left jaw, (N, 4)."""
-    return np.arange(4) < np.where(kind == 1, 2, 3)[:, None]
+def is_standing(standing: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which of the four pegs are on the carrier that stands still, (N, 4), from how many are (N,)."""
+    return np.arange(4) < standing[:, None]
 
 
 def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
@@ -116,23 +115,16 @@ def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
     return whole[:, :4], whole[:, 4:8], whole[:, 8:12]
 
 
-def peg_places(row: Array, vise: Vise) -> list[tuple[float, float]]:
-    """Places of the four pegs of one record in mm from the first, with the right jaw at zero."""
+def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
+    """Places of the four pegs of one record in mm from the first, without the separation."""
     _, columns, rows = (numbers[0] for numbers in peg_integers(row[None]))
-    right = ~is_left(row[[record.KIND]].astype(np.int64))[0]
-    height = rows * vise.pitch[1] + right * vise.row_offset
-    return [(float(x), float(y)) for x, y in zip(columns * vise.pitch[0], height, strict=True)]
-
-
-def setting_of(problem: Problem) -> Array:
-    """What the kernels must know of a problem, see ``kernels.contact.equations``."""
-    vise = problem.vise
-    lengths = [*vise.pitch, vise.row_offset, vise.min_gap, vise.peg_radius]
-    return np.array([*lengths, problem.contact_margin, problem.wrench_length, problem.backward_error], np.float64)
+    moves = ~is_standing(row[[record.STANDING]])[0]
+    height = rows * lattice.pitch_y + moves * lattice.row_offset
+    return [(float(x), float(y)) for x, y in zip(columns * lattice.pitch_x, height, strict=True)]
 
 
 def box_reach(records: Array, length: float) -> Array:
-    """How far the exact unknowns (L psi, tail x, tail y, apart) may be from those of records, (N, 4) in mm."""
+    """How far the exact unknowns (L psi, tail x, tail y, separation) may be from those of records, (N, 4) in mm."""
     turn, radius = length * records[:, record.REACH] + LEAST_REACH, records[:, record.RADIUS] + LEAST_REACH
     return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
 
@@ -142,7 +134,7 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
 
     Parameters
     ----------
-    records : (N, 19) from an engine, laid out as ``kernels.contact.rules`` says.
+    records : (N, 19) from an engine, laid out as ``kernels.contact.record`` says.
     course : told how far the work has come, and asked whether to stop.
 
     Returns
@@ -150,10 +142,10 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
     (those proven to be fixtures, with their solutions to the last digits; what became of all)
     """
     course = course or Course(len(records))
-    given_up = records[:, record.KIND] < 0.0
+    given_up = records[:, record.STANDING] < 0.0
     lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
     chosen = records[~given_up] if lost else records
-    proven, rest = sifted(chosen, problem, setting_of(problem))
+    proven, rest = sifted(chosen, problem, problem.setting)
     rest = rest[~has_three_parallels(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
     settled, reasons, left = escalated(rest, problem, course)
@@ -165,10 +157,10 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
     return proven, account
 
 
-def sifted(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
     """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
     solutions = np.empty((len(records), 4))
-    discs = discs_around(problem.outline, problem.vise.peg_radius)
+    discs = discs_around(problem.outline, max(setting.standing_radius, setting.moving_radius))
     verdicts = certified(records, problem.rows, problem.outline, discs, setting, solutions)
     is_proven = verdicts == PROVEN
     proven = records[is_proven]
@@ -198,8 +190,7 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
     the work was stopped."""
     if len(records) == 0:
         return records, [], 0
-    setting = setting_of(problem)
-    setting[BACKWARD_ERROR] = 0.0
+    setting = problem.setting._replace(backward_error=0.0)
     proven, rest = sifted(records, problem, setting)
     course.advance(len(records) - len(rest), len(proven))
     together = merged(rest, problem)
@@ -218,7 +209,7 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
     return np.concatenate([*found, settled]), reasons, left + unsettled
 
 
-def interval_newton_in_doubles(records: Array, problem: Problem, setting: Array) -> tuple[Array, Array]:
+def interval_newton_in_doubles(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
     """Open records narrowed: the fixtures found, and the boxes that stay open."""
     bounded = np.isfinite(records).all(axis=1)
     known = records[bounded]
@@ -284,29 +275,29 @@ def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[
 
 def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | None:
     """One record settled in ball arithmetic; None when the work was stopped before."""
-    from workhold.proof.interval_newton import Box, Limits, Outcome, solutions_in
+    from workhold.proof.interval_newton import Box, Outcome, solutions_in
 
     length = problem.wrench_length
     turn, right, up, slide = (float(v) for v in box_reach(row[None], length)[0])
     if not np.isfinite([turn, right, up, slide]).all():
         return Outcome((), UNBOUNDED)
-    psi, x, y, apart = (float(v) for v in row[record.PSI : record.REACH])
+    psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
     box = Box(
         features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
-        offsets=peg_places(row, problem.vise),
-        lefts=2 if row[record.KIND] == 1.0 else 3,
-        middle=(psi, x, y, apart),
+        offsets=peg_places(row, problem.frame.lattice),
+        standing=int(row[record.STANDING]),
+        middle=(psi, x, y, separation),
         reach=(turn / length, right, up, slide),
     )
-    limits = Limits(problem.contact_margin, problem.vise.min_gap, length)
     with BALLS:
-        return solutions_in(box, limits, lambda: course.is_stopped)
+        return solutions_in(box, problem.limits, lambda: course.is_stopped)
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
     """A record that is not decided, for the account."""
     feature, column, line = peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
-    kind = "I" if abs(row[record.KIND]) == 1.0 else "II"
+    standing = np.abs(row[[record.STANDING]]).astype(np.int64)
+    kind = problem.vise.arrangements[problem.vise.arrangement_numbers(standing)[0]].name
     theta = float(np.degrees(-row[record.PSI]) % 360.0)
     return Undecided(kind, tuple(faces), tuple(column[0].tolist()), tuple(line[0].tolist()), theta, reason)

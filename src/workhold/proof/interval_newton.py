@@ -1,7 +1,7 @@
 """What double precision leaves open, settled in ball arithmetic (python-flint).
 
-A candidate is a box of the four unknowns (psi, tail x, tail y, apart) that holds the exact contact, if there is one. At a
-nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
+A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if there is one. At
+a nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
 directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in which some rule
 is broken everywhere, are dropped; the interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
 there is none or exactly one solution, which then is judged at rising precision; what remains is halved. What is left after
@@ -14,30 +14,22 @@ References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import pi
+from math import isfinite, pi
 
 import numpy as np
 from attrs import frozen
 from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
+from workhold.kernels.base.given import Limits
 from workhold.kernels.contact import rules as rule
 
-__all__ = ["Box", "Limits", "Outcome", "contact_value", "solutions_in"]
+__all__ = ["Box", "Outcome", "contact_value", "solutions_in"]
 
 PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
-
-
-@frozen
-class Limits:
-    """Limits in mm that a candidate is judged by: contact margin, smallest gap, and L of the wrenches."""
-
-    margin: float
-    min_gap: float
-    length: float
 
 
 @frozen
@@ -47,15 +39,15 @@ class Box:
     Parameters
     ----------
     features : four feature rows of ten numbers (``geometry.segment.segment_rows`` and the slack of both ends).
-    offsets : four pegs' places in mm from the first peg, with the right jaw at zero.
-    lefts : how many of the pegs, the first ones, are on the left jaw.
-    middle : psi in radians, tail x, tail y and apart in mm.
+    offsets : four pegs' places in mm from the first peg, without the separation.
+    standing : how many of the pegs, the first ones, are on the carrier that stands still.
+    middle : psi in radians, tail x, tail y and separation in mm.
     reach : how far each may be off.
     """
 
     features: Sequence[Sequence[float]]
     offsets: Sequence[tuple[float, float]]
-    lefts: int
+    standing: int
     middle: tuple[float, float, float, float]
     reach: tuple[float, float, float, float]
 
@@ -92,12 +84,12 @@ def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
 
 def places(box: Box, unknowns: Sequence[arb]) -> Places:
     """Everything about the four contacts on a box of unknowns."""
-    psi, x, y, apart = unknowns
+    psi, x, y, separation = unknowns
     cosine, sine = psi.cos(), psi.sin()
     centers, normals, arms, values, slopes = [], [], [], [], []
     for k, (row, (dx, dy)) in enumerate(zip(box.features, box.offsets, strict=True)):
-        right = int(k >= box.lefts)
-        reach = (dx + right * apart, arb(dy))
+        moves = int(k >= box.standing)
+        reach = (dx + moves * separation, arb(dy))
         turned = (cosine * reach[0] - sine * reach[1], sine * reach[0] + cosine * reach[1])
         center = (x + turned[0], y + turned[1])
         if row[0] == 0.0:
@@ -108,7 +100,7 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
             gradient = ((center[0] - row[1]) / row[6], (center[1] - row[2]) / row[6])
             normal = (row[7] * gradient[0], row[7] * gradient[1])
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
-        slope.append((gradient[0] * cosine + gradient[1] * sine) * right)
+        slope.append((gradient[0] * cosine + gradient[1] * sine) * moves)
         centers.append(center)
         normals.append(normal)
         arms.append(turned)
@@ -122,11 +114,12 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
     out = [
         slack
         for row, center in zip(box.features, here.centers, strict=True)
-        for slack in end_slacks(row, center, limits.margin)
+        for slack in end_slacks(row, center, limits.contact_margin)
     ]
     along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
-    for left in along[: box.lefts]:
-        out += [right - left - (arb(limits.min_gap) - rule.GAP_SLACK) for right in along[box.lefts :]]
+    if isfinite(limits.gap):
+        for one in along[: box.standing]:
+            out += [other - one - (arb(limits.gap) - rule.GAP_SLACK) for other in along[box.standing :]]
     size = sum((abs(minor) for minor in minors), arb(0))
     out.append(size - rule.LEAST_SPAN)
     sign = 1 if sum(float(minor.mid()) for minor in minors) >= 0 else -1
@@ -134,10 +127,14 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
         sign = -sign
     for minor in minors:
         out.append(sign * minor - rule.LEAST_CLOSURE * size)
-    push = [n[0] * here.axis[0] + n[1] * here.axis[1] for n in here.normals]
-    # The force is the left jaw's push, and as well what the right jaw takes up.
-    out.append(-sum((sign * minors[k] * push[k] for k in range(box.lefts)), arb(0)) - rule.LEAST_CLAMPING * size)
-    out.append(sum((sign * minors[k] * push[k] for k in range(box.lefts, 4)), arb(0)) - rule.LEAST_CLAMPING * size)
+    sign *= int(limits.clamping)
+    push = [
+        sign * minor * (n[0] * here.axis[0] + n[1] * here.axis[1])
+        for minor, n in zip(minors, here.normals, strict=True)
+    ]
+    # The force is the push of the standing pegs, and as well what the moving pegs take up.
+    out.append(-sum(push[: box.standing], arb(0)) - rule.LEAST_CLAMPING * size)
+    out.append(sum(push[box.standing :], arb(0)) - rule.LEAST_CLAMPING * size)
     return out
 
 
@@ -164,7 +161,7 @@ def wrench_minors(here: Places, length: float) -> list[arb]:
         if one[0] == 0.0 or two[0] == 0.0:
             return n[i][0] * n[j][1] - n[i][1] * n[j][0]
         # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
-        # where both pegs are on one jaw: parallel normals stay so wherever the part slides.
+        # where both pegs are on one carrier: parallel normals stay so wherever the part slides.
         x = here.arms[j][0] - here.arms[i][0] - (arb(two[1]) - one[1])
         y = here.arms[j][1] - here.arms[i][1] - (arb(two[2]) - one[2])
         return (n[i][0] * y - n[i][1] * x) * (two[7] / arb(two[6]))
@@ -200,10 +197,10 @@ class Frame:
         """The frame of a box."""
         slopes = places(box, [arb(m) for m in box.middle]).slopes
         jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
-        jacobian[:, 0] /= limits.length
+        jacobian[:, 0] /= limits.wrench_length
         u, _, v = np.linalg.svd(jacobian)
         left, right = (arb_mat(4, 4, [float(e) for e in matrix.T.ravel()]) for matrix in (u, v))
-        return cls(box, v.T, left, right, limits.length)
+        return cls(box, v.T, left, right, limits.wrench_length)
 
     def start(self) -> list[arb]:
         """The whole box, in the frame's coordinates in mm, a little larger."""
@@ -294,7 +291,7 @@ def is_empty(box: Box, here: Places, limits: Limits) -> bool:
     """Whether some contact equation has no zero, or some rule is broken, everywhere in a place."""
     if any(value > 0 or value < 0 for value in here.values):
         return True
-    minors = wrench_minors(here, limits.length)
+    minors = wrench_minors(here, limits.wrench_length)
     if any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
         # Of opposite signs, so that nothing closes.
         return True
@@ -324,15 +321,15 @@ def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Outcome:
                 root = refined(frame, root)
                 unknowns = frame.unknowns(root)
                 here = places(frame.box, unknowns)
-                values = slacks(frame.box, here, wrench_minors(here, limits.length), limits)
+                values = slacks(frame.box, here, wrench_minors(here, limits.wrench_length), limits)
                 verdict = -1 if any(v < 0 for v in values) else int(all(v > 0 for v in values))
             if verdict != 0:
                 break
         if verdict == 0:
             reason = "a rule is met exactly at its edge"
         if verdict > 0:
-            psi, x, y, apart = (float(u.mid()) for u in unknowns)
-            fixtures.append((psi, x, y, apart))
+            psi, x, y, separation = (float(u.mid()) for u in unknowns)
+            fixtures.append((psi, x, y, separation))
     return Outcome(tuple(fixtures), reason)
 
 

@@ -49,9 +49,9 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
-    slack = 1e-9
-    base = table.reals[:, FROM] - table.reals[:, SHIFT]
-    span = table.reals[:, TO] - table.reals[:, FROM]
+    slack, reals = 1e-9, table.curves.reals
+    base = reals[:, FROM] - reals[:, SHIFT]
+    span = reals[:, TO] - reals[:, FROM]
     behind = (low - slack - base) % tau
     return np.flatnonzero((behind <= span) | (behind + (high - low) + 2 * slack >= tau))
 

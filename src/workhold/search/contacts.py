@@ -9,7 +9,7 @@ from workhold.kernels.crossing.two_and_two import CONTACTS
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
-from workhold.search.toolkit_search import ViseSearch
+from workhold.search.toolkit_search import ToolkitSearch
 
 __all__ = ["contacts_of", "count_contacts"]
 
@@ -34,6 +34,6 @@ def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = No
 
 def contacts_of(problem: Problem, types: Sequence[str], threads: int | None) -> int:
     """Simultaneous contacts of a problem, see :func:`count_contacts`."""
-    search = ViseSearch.of(problem, counting=True)
+    search = ToolkitSearch.of(problem, counting=True)
     run_blocks(search.blocks(types), thread_count(threads), None, None)
     return int(search.totals[CONTACTS])

@@ -24,7 +24,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.preview import Preview, Previews
-from workhold.search.toolkit_search import LEAST_BLOCKS, ViseSearch
+from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["design"]
 
@@ -93,7 +93,7 @@ def design(
     check_options(types, contact_margin, best, threads)
     preference = preference_of(rank_by, tolerance, loads)
     problem = Problem.of(workpiece, vise, contact_margin, restrictions)
-    search = ViseSearch.of(problem)
+    search = ToolkitSearch.of(problem)
     # Smaller blocks learn earlier what margin is to be reached.
     blocks = search.blocks(types, LEAST_BLOCKS if best is None else 2 * LEAST_BLOCKS)
     kept = None if best is None else BestFixtures(problem, preference, best, cancel)
@@ -126,7 +126,7 @@ def stage(progress: Progress | None, low: float, high: float) -> Progress | None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def why_none(search: ViseSearch, types: Sequence[str], contacts: int, proven: int, threads: int | None) -> str:
+def why_none(search: ToolkitSearch, types: Sequence[str], contacts: int, proven: int, threads: int | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
     problem, table = search.problem, search.table
     arcs = problem.rows[:, 0] != 0.0
@@ -135,7 +135,7 @@ def why_none(search: ViseSearch, types: Sequence[str], contacts: int, proven: in
             "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
             "from turning."
         )
-    if len(table) + len(table.sliding_pair_integers) == 0:
+    if len(table) + len(table.sliding_pairs.integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
     if contacts == 0 and contacts_of(problem, types, threads) == 0:
@@ -148,12 +148,12 @@ def why_none(search: ViseSearch, types: Sequence[str], contacts: int, proven: in
     return "Four pegs can touch the part at the same time, but no such set keeps the smallest gap, closes and clamps."
 
 
-def statistics(search: ViseSearch, totals: NDArray[np.int64]) -> dict[str, int]:
+def statistics(search: ToolkitSearch, totals: NDArray[np.int64]) -> dict[str, int]:
     """Counts that tell how much work a search was (see ``Result.statistics``)."""
     return {
         "features": len(search.problem.rows),
         "chord_curves": len(search.table),
-        "sliding_pairs": len(search.table.sliding_pair_integers),
+        "sliding_pairs": len(search.table.sliding_pairs.integers),
         "curve_pairs": int(totals[PAIRS]),
         "crossings_sought": int(totals[CROSSED]),
         "contacts_examined": int(totals[CONTACTS]),

@@ -19,7 +19,8 @@ from workhold.contact.features import end_distances
 from workhold.contact.problem import TYPES, Problem
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
-from workhold.kernels.contact import rules as record
+from workhold.kernels.contact import record
+from workhold.kernels.contact import rules as bound
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import arranged, placed
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
@@ -27,11 +28,11 @@ from workhold.model.restrictions import Restrictions
 from workhold.model.result import fixture_at
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.vise import Vise
-from workhold.proof.deciding import is_left
+from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.design import design
-from workhold.search.toolkit_search import ViseSearch
+from workhold.search.toolkit_search import ToolkitSearch
 from workhold.statics.wrenches import outward_normals
 
 __all__ = ["explain"]
@@ -60,7 +61,7 @@ class Contacts:
     candidates : the contacts, as fixtures would be.
     margin : (N,) smallest entry of the null vector of sum of sizes 1, of the sign that makes it largest.
     null : (N, 4) that null vector.
-    clamping : (N,) push of the left pegs along x for it.
+    clamping : (N,) the clamping force for it.
     end_distance : (N,) smallest distance in mm to the end of a feature.
     """
 
@@ -105,11 +106,12 @@ def explain(
 
 def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) -> Contacts:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
-    search = ViseSearch.of(problem, counting=True, most_listed=MOST_LISTED)
+    search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED)
     records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
+    swapped = search.frame.swapped
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
-    together = together[(together[:, record.KIND] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = listed_once(facing(canonical_form(candidates_of(together, problem))))
+    together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
+    c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
     # Null vectors come scaled to sum 1, all -1 where the wrenches do not span the space.
@@ -121,20 +123,21 @@ def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) ->
         evolve(c, force=null),
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
-        clamping=-(null * along * is_left(c.kind)).sum(axis=1),
+        clamping=-problem.vise.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
         end_distance=end_distances(rows, c.point).min(axis=(1, 2), initial=np.inf),
     )
 
 
-def facing(c: Candidates) -> Candidates:
-    """Contacts with the right chord on the right: of Type I those whose right pegs are farther right in the middle.
+def facing(c: Candidates, swapped: int) -> Candidates:
+    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those whose moving
+    pegs are farther right in the middle.
 
     Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
     lower one is taken for the right one.
     """
     across, upward = rotated(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
-    return c.take((c.kind != 1) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
+    return c.take((c.standing != swapped) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
 
 
 def restriction_removals(
@@ -184,12 +187,12 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
     out.append(
         (
             "smallest gap",
-            lambda c: c.candidates.opening >= vise.min_gap - record.GAP_SLACK,
+            lambda c: c.candidates.gap >= vise.min_gap - bound.GAP_SLACK,
             partial(too_near, vise, unit),
         )
     )
-    out.append(("closure", lambda c: c.margin > record.LEAST_CLOSURE, open_contact))
-    out.append(("clamping", lambda c: c.clamping > record.LEAST_CLAMPING, unclamped))
+    out.append(("closure", lambda c: c.margin > bound.LEAST_CLOSURE, open_contact))
+    out.append(("clamping", lambda c: c.clamping > bound.LEAST_CLAMPING, partial(unclamped, vise.clamping)))
     return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
 
 
@@ -235,11 +238,11 @@ def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
 
 def too_near(vise: Vise, unit: Unit, c: Contacts) -> tuple[int, str]:
     """The contact whose right pegs are farthest from the left ones."""
-    index = int(c.candidates.opening.argmax())
-    opening = c.candidates.opening[index]
-    where = f"{unit.text(abs(opening))} {'to the right of the left ones' if opening >= 0 else 'to their left'}"
-    gap = f"{unit.figure(vise.min_gap)} {unit.abbreviation}"
-    return index, f"the right pegs would stand {where}; the smallest gap is {gap}."
+    index = int(c.candidates.gap.argmax())
+    gap = c.candidates.gap[index]
+    where = f"{unit.text(abs(gap))} {'to the right of the left ones' if gap >= 0 else 'to their left'}"
+    least = f"{unit.figure(vise.min_gap)} {unit.abbreviation}"
+    return index, f"the right pegs would stand {where}; the smallest gap is {least}."
 
 
 def open_contact(c: Contacts) -> tuple[int, str]:
@@ -255,9 +258,10 @@ def open_contact(c: Contacts) -> tuple[int, str]:
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
 
 
-def unclamped(c: Contacts) -> tuple[int, str]:
-    """The contact that comes nearest to being clamped by closing the vise."""
-    return int(c.clamping.argmax()), "it holds when the jaws are pressed apart, not when they close."
+def unclamped(clamping: int, c: Contacts) -> tuple[int, str]:
+    """The contact that comes nearest to being clamped."""
+    ways = ("the jaws are pressed apart, not when they close", "the jaws close, not when they are pressed apart")
+    return int(c.clamping.argmax()), f"it holds when {ways[0 if clamping > 0 else 1]}."
 
 
 def no_place(words: str, c: Contacts) -> tuple[int, str]:

@@ -57,7 +57,7 @@ class Previews:
 
     def add(self, records: NDArray[np.float64]) -> None:
         """Take records (N, 19) that the search found, and show some if it is time."""
-        if self.shown is not None and len(self.shown.kind) >= ENOUGH:
+        if self.shown is not None and len(self.shown.standing) >= ENOUGH:
             return
         if len(records):
             before = records[:0] if self.newest is None else self.newest
@@ -68,7 +68,7 @@ class Previews:
         fresh, account = finish([self.newest], self.problem, None, self.hurry)
         self.newest = None
         together = fresh if self.shown is None else listed_once(joined([self.shown, fresh]))
-        if len(fresh.kind):
+        if len(fresh.standing):
             self.shown = together
             work = Work(complete=False, statistics={})
             self.show(result_of(self.problem, self.preference, together, account, work))

@@ -1,14 +1,13 @@
-"""The search of the fixture vise: its lattice steps and its blocks of work.
+"""The search of a toolkit: its lattice steps and its blocks of work.
 
-Two pegs of one jaw are a lattice step apart; the two jaws share the direction of rows and differ by the sliding of the
-right jaw along x. Another toolkit would bring its own module in place of this one and of ``kernels.contact.rules``,
-``kernels.crossing.two_and_two`` and ``kernels.crossing.three_and_one``; features, chord curves, crossings and closure
-are common to all.
+Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the travel of the
+one that moves, along x in the frame of the search. What is particular to a toolkit is data (``model.toolkit``); which
+kernels seek an arrangement of pegs is said in ``KERNELS``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from math import hypot, pi, tau
@@ -17,21 +16,28 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
+from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joined, loosened
+from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_HAIR
-from workhold.kernels.contact.rules import GAP_SLACK, LEAST_MARGIN
-from workhold.kernels.crossing.sliding_pairs import ORIENTATION, sliding_three_and_one, sliding_two_and_two
+from workhold.kernels.base.given import Features, Limits
+from workhold.kernels.contact.rules import GAP_SLACK
+from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.crossing.three_and_one import three_and_one_cells
 from workhold.kernels.crossing.two_and_two import STATISTICS, two_and_two_cells
-from workhold.kernels.curves.columns import FROM, TO
-from workhold.model.vise import Vise
+from workhold.kernels.curves.columns import FROM, ORIENTATION, TO
+from workhold.model.toolkit import Arrangement, Carrier
 from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
 
-__all__ = ["LEAST_BLOCKS", "ViseSearch", "lattice_steps"]
+__all__ = ["LEAST_BLOCKS", "ToolkitSearch", "lattice_steps"]
 
 Array = NDArray[np.float64]
 
+# Kernels of crossings and of sliding pairs for each arrangement of pegs, and how long the former take, relative to others.
+KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], Callable[..., Array], float]] = {
+    (2, 2): (two_and_two_cells, sliding_two_and_two, 1.0),
+    (3, 1): (three_and_one_cells, sliding_three_and_one, 0.5),
+}
 # Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
 CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
@@ -40,23 +46,27 @@ PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 16
 
 
-def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
-    """Differences between two holes of one jaw, up to a length in mm, both directions of each.
+def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
+    """Differences between two holes of one of some carriers of one pitch, up to a length in mm, both directions of each.
 
     Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never have.
     """
-    pitch_x, pitch_y = vise.pitch
-    most_rows = int(longest / pitch_y) if vise.rows is None else min(vise.rows - 1, int(longest / pitch_y))
+    pitch_x, pitch_y = carriers[0].pitch
+    most_columns = max(carrier.columns for carrier in carriers) - 1
+    most_rows = int(longest / pitch_y)
+    if all(carrier.rows is not None for carrier in carriers):
+        most_rows = min(max(carrier.rows or 0 for carrier in carriers) - 1, most_rows)
     columns, rows = np.meshgrid(
-        np.arange(-(vise.columns - 1), vise.columns), np.arange(-most_rows, most_rows + 1), indexing="ij"
+        np.arange(-most_columns, most_columns + 1), np.arange(-most_rows, most_rows + 1), indexing="ij"
     )
     steps = np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.int64)
     sizes = np.array([hypot(k * pitch_x, m * pitch_y) for k, m in np.abs(steps)])
     keep = (sizes > 0.0) & (sizes <= longest)
-    if vise.body_radius > vise.peg_radius:
-        keep &= sizes >= 2.0 * vise.body_radius - GAP_SLACK
-    if vise.blocked:
-        keep &= is_between_free_holes(vise, steps)
+    thick = [carrier.body_radius for carrier in carriers if carrier.body_radius > carrier.peg_radius]
+    if thick:
+        keep &= sizes >= 2.0 * min(thick) - GAP_SLACK
+    if any(carrier.blocked for carrier in carriers):
+        keep &= np.any([is_between_free_holes(carrier, steps) for carrier in carriers], axis=0)
     steps, sizes = steps[keep], sizes[keep]
     order = np.lexsort((steps[:, 1], steps[:, 0], sizes))
     steps, sizes = steps[order], sizes[order]
@@ -65,38 +75,54 @@ def lattice_steps(vise: Vise, longest: float) -> LatticeSteps:
     return LatticeSteps(lengths, np.append(starts, len(steps)).astype(np.int64), steps, angles)
 
 
-def is_between_free_holes(vise: Vise, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which differences (S, 2) of columns and rows two free holes of either jaw have, one way or the other.
+def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which differences (S, 2) of columns and rows two free holes of a carrier have.
 
-    Both jaws count for both directions, because the half turn swaps them. Where rows have no end, only whole blocked
-    columns are looked at: any pattern can be shifted up past a blocked hole.
+    Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a blocked hole.
     """
-    rows = 1 if vise.rows is None else vise.rows
-    possible = np.zeros((2 * vise.columns - 1, 2 * rows - 1), np.bool_)
-    for jaw in ("left", "right"):
-        free = np.ones((vise.columns, rows), np.bool_)
-        for holes in vise.blocked:
-            if holes.jaw != jaw:
-                continue
-            if holes.row is None:
-                free[holes.column] = False
-            elif vise.rows is not None:
-                free[holes.column, holes.row] = False
-        places = np.argwhere(free)
-        for place in places:
-            apart = places - place + (vise.columns - 1, rows - 1)
-            possible[apart[:, 0], apart[:, 1]] = True
-    row_places = steps[:, 1] + rows - 1 if vise.rows is not None else np.zeros(len(steps), np.int64)
-    return np.asarray(possible[steps[:, 0] + vise.columns - 1, row_places])
+    rows = 1 if carrier.rows is None else carrier.rows
+    possible = np.zeros((2 * carrier.columns - 1, 2 * rows - 1), np.bool_)
+    free = np.ones((carrier.columns, rows), np.bool_)
+    for holes in carrier.blocked:
+        if holes.row is None:
+            free[holes.column] = False
+        elif carrier.rows is not None:
+            free[holes.column, holes.row] = False
+    places = np.argwhere(free)
+    for place in places:
+        between = places - place + (carrier.columns - 1, rows - 1)
+        possible[between[:, 0], between[:, 1]] = True
+    column_places = steps[:, 0] + carrier.columns - 1
+    row_places = steps[:, 1] + rows - 1 if carrier.rows is not None else np.zeros(len(steps), np.int64)
+    there = (
+        (column_places >= 0) & (column_places < len(possible)) & (row_places >= 0) & (row_places < possible.shape[1])
+    )
+    return there & possible[np.where(there, column_places, 0), np.where(there, row_places, 0)]
 
 
-def may_lie_at(edges: Array, angles: Collection[tuple[float, float]], half_turns: int) -> NDArray[np.bool_]:
+def tables_of(problem: Problem, loose: Array) -> CurveTable:
+    """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the same."""
+    longest, carriers = problem.diameter + 1e-6, problem.frame.carriers
+    if problem.standing == problem.moving:
+        return curve_table(loose, lattice_steps(carriers, longest))
+    (first, end), (begin, last) = problem.standing, problem.moving
+    one, other = (
+        curve_table(rows, lattice_steps([carrier], longest))
+        for rows, carrier in zip((loose[first:end], loose[begin:last]), carriers, strict=True)
+    )
+    return joined(one, other, begin)
+
+
+def may_lie_at(
+    edges: Array, angles: Collection[tuple[float, float]], half_turns: int, turned: float = 0.0
+) -> NDArray[np.bool_]:
     """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in one of some ranges in degrees.
 
-    The part's angle is -psi; over one half turn of cells an angle stands for its opposite as well.
+    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search; over one half turn
+    of cells an angle stands for its opposite as well.
     """
     wanted = np.full(len(edges) - 1, not angles)
-    low, turn = -np.degrees(edges[1:]), 180.0 * half_turns
+    low, turn = turned - np.degrees(edges[1:]), 180.0 * half_turns
     width = float(np.degrees(edges[1] - edges[0]))
     for least, most in angles:
         wanted |= (least - ANGLE_HAIR - low) % turn <= width
@@ -119,8 +145,8 @@ def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, 
 
 
 @define(eq=False)
-class ViseSearch:
-    """Everything the vise's kernels need, and the blocks of work made of it.
+class ToolkitSearch:
+    """Everything the kernels of a toolkit need, and the blocks of work made of it.
 
     Parameters
     ----------
@@ -129,7 +155,6 @@ class ViseSearch:
     table : chord curves and sliding pairs between the loose features.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.
-    limits : what bounds a fixture, see ``kernels.contact.rules``.
     stats : (blocks, 4) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
@@ -139,32 +164,24 @@ class ViseSearch:
     counting: bool = False
     most_listed: int = 0
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
-    limits: Array = field(init=False)
-
-    def __attrs_post_init__(self) -> None:
-        """Write the limits as the kernels take them (see ``kernels.contact.rules``)."""
-        problem, vise = self.problem, self.problem.vise
-        lengths = [vise.min_gap, problem.contact_margin, problem.wrench_length]
-        self.limits = np.array([*lengths, vise.columns - 1.0, 0.0, self.most_listed])
 
     @classmethod
-    def of(cls, problem: Problem, counting: bool = False, most_listed: int = 0) -> ViseSearch:
+    def of(cls, problem: Problem, counting: bool = False, most_listed: int = 0) -> ToolkitSearch:
         """The search of a problem, with its chord curves; ``counting`` leaves the contact margin out."""
         if counting:
             problem = evolve(problem, contact_margin=0.0)
         loose = loosened(problem.rows[:, :8])
-        return cls(
-            problem,
-            loose,
-            curve_table(loose, lattice_steps(problem.vise, problem.diameter + 1e-6)),
-            counting,
-            most_listed,
-        )
+        return cls(problem, loose, tables_of(problem, loose), counting, most_listed)
 
     @property
-    def vise(self) -> Vise:
-        """The vise."""
-        return self.problem.vise
+    def frame(self) -> Frame:
+        """The toolkit as the kernels see it."""
+        return self.problem.frame
+
+    @property
+    def features(self) -> Features:
+        """The features as the kernels take them."""
+        return Features(self.loose, self.problem.rows, self.problem.standing, self.problem.moving)
 
     @property
     def totals(self) -> NDArray[np.int64]:
@@ -174,117 +191,72 @@ class ViseSearch:
     @property
     def alive(self) -> float:
         """How many chord curves exist at an orientation, on average."""
-        return float((self.table.reals[:, TO] - self.table.reals[:, FROM]).sum()) / tau
+        return float((self.table.curves.reals[:, TO] - self.table.curves.reals[:, FROM]).sum()) / tau
 
     def blocks(self, types: Collection[str], least: int = LEAST_BLOCKS) -> list[Block]:
-        """Blocks of work that together find all fixtures of the given types ("I", "II"), about ``least`` or more for a half
-        turn."""
+        """Blocks of work that together find all fixtures of the arrangements of given names, about ``least`` or more for a
+        half turn."""
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
         cells = int(
-            min(max(CELLS_PER_PITCH * self.problem.wrench_length / self.vise.pitch[1], FEWEST_CELLS), MOST_CELLS)
+            min(
+                max(CELLS_PER_PITCH * self.problem.wrench_length / self.frame.lattice.pitch_y, FEWEST_CELLS), MOST_CELLS
+            )
         )
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // least))
         blocks: list[Block] = []
-        for name, half_turns in (("I", 1), ("II", 2)):
-            if name not in types:
+        frame = self.frame
+        for arrangement in frame.toolkit.arrangements:
+            if arrangement.name not in types:
                 continue
+            half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
             edges = cell_edges(half_turns, half_turns * cells)
-            wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns)
+            wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
             for first, last in neighbours(wanted, together):
-                blocks.append(self.crossing_block(name, edges[first : last + 1]))
+                blocks.append(self.crossing_block(arrangement, edges[first : last + 1]))
             for cell, sliding_pairs in enumerate(self.sliding_pair_cells(half_turns, edges)):
                 if len(sliding_pairs) and wanted[cell]:
-                    blocks.append(
-                        self.sliding_pair_block(name, float(edges[cell]), float(edges[cell + 1]), sliding_pairs)
-                    )
+                    low, high = float(edges[cell]), float(edges[cell + 1])
+                    blocks.append(self.sliding_pair_block(arrangement, low, high, sliding_pairs))
         return blocks
 
     def sliding_pair_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
         """Sliding pairs by the cell their orientation falls into."""
-        psi = self.table.sliding_pair_reals[:, ORIENTATION]
+        reals = self.table.sliding_pairs.reals
+        psi = reals[:, ORIENTATION]
         psi = FIRST_ORIENTATION + (psi - FIRST_ORIENTATION) % tau
-        self.table.sliding_pair_reals[:, ORIENTATION] = psi
+        reals[:, ORIENTATION] = psi
         cells = np.searchsorted(edges, psi, side="right") - 1
         cells[psi >= FIRST_ORIENTATION + half_turns * pi] = -1
         order = np.argsort(cells, kind="stable")
         starts = np.searchsorted(cells[order], np.arange(len(edges)))
         return [order[first:last] for first, last in pairwise(starts)]
 
-    def crossing_block(self, name: str, edges: Array) -> Block:
+    def crossing_block(self, arrangement: Arrangement, edges: Array) -> Block:
         """The crossings of some neighbouring cells."""
-        kernel = two_and_two_cells if name == "I" else three_and_one_cells
+        kernel, _, weight = KERNELS[arrangement.pegs]
         members = members_of_cell(self.table, float(edges[0]), float(edges[-1]))
-        weight = 1.0 if name == "I" else 0.5
-        return Block(
-            partial(self.cross, kernel, edges, members, self.tally()), 1.0 + weight * len(members) ** 2, len(edges) - 1
-        )
+        work = partial(self.run, partial(kernel, edges), members, self.tally())
+        return Block(work, 1.0 + weight * len(members) ** 2, len(edges) - 1)
 
-    def sliding_pair_block(self, name: str, low: float, high: float, sliding_pairs: NDArray[np.int64]) -> Block:
+    def sliding_pair_block(self, arrangement: Arrangement, low: float, high: float, chosen: NDArray[np.int64]) -> Block:
         """The sliding pairs of one cell."""
-        kernel = sliding_two_and_two if name == "I" else sliding_three_and_one
+        _, kernel, _ = KERNELS[arrangement.pegs]
         members = members_of_cell(self.table, low, high)
-        return Block(
-            partial(self.meet_sliding_pairs, kernel, sliding_pairs, members, self.tally()),
-            1.0 + len(sliding_pairs) * len(members),
-        )
+        work = partial(self.run, partial(kernel, chosen, self.table.sliding_pairs), members, self.tally())
+        return Block(work, 1.0 + len(chosen) * len(members))
 
     def tally(self) -> NDArray[np.int64]:
         """A new row of statistics for a kernel to add to."""
         self.stats.append(np.zeros(STATISTICS, np.int64))
         return self.stats[-1]
 
-    def limits_from(self, margin: float) -> Array:
+    def run(
+        self, kernel: Callable[..., Array], members: NDArray[np.int64], stats: NDArray[np.int64], margin: float
+    ) -> Array:
+        """Run a kernel with some curves, for fixtures of a closure margin or more."""
+        limits = self.limits_from(margin)
+        return kernel(members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
+
+    def limits_from(self, margin: float) -> Limits:
         """The limits with a closure margin to reach."""
-        limits = self.limits.copy()
-        limits[LEAST_MARGIN] = margin
-        return limits
-
-    def cross(
-        self,
-        kernel: Callable[..., Array],
-        edges: Array,
-        members: NDArray[np.int64],
-        stats: NDArray[np.int64],
-        margin: float,
-    ) -> Array:
-        """Run a kernel of crossings on some cells, for fixtures of a closure margin or more."""
-        return kernel(
-            edges,
-            members,
-            self.loose,
-            self.problem.rows,
-            self.table.integers,
-            self.table.reals,
-            self.table.stretches,
-            self.vise.pitch[0],
-            self.vise.pitch[1],
-            self.vise.row_offset,
-            self.limits_from(margin),
-            self.counting,
-            stats,
-        )
-
-    def meet_sliding_pairs(
-        self,
-        kernel: Callable[..., Array],
-        sliding_pairs: NDArray[np.int64],
-        members: NDArray[np.int64],
-        stats: NDArray[np.int64],
-        margin: float,
-    ) -> Array:
-        """Run a kernel of sliding pairs on one cell, for fixtures of a closure margin or more."""
-        return kernel(
-            sliding_pairs,
-            self.table.sliding_pair_integers,
-            self.table.sliding_pair_reals,
-            members,
-            self.loose,
-            self.problem.rows,
-            self.table.integers,
-            self.table.reals,
-            self.vise.pitch[1],
-            self.vise.row_offset,
-            self.limits_from(margin),
-            self.counting,
-            stats,
-        )
+        return self.problem.limits._replace(least_margin=margin, most_listed=float(self.most_listed))

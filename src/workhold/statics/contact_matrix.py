@@ -3,7 +3,6 @@
 Glossary
 --------
 contact matrix : see ``kernels.statics.contact_matrix``; its inverse turns errors into movements and loads into peg forces.
-contact matrix : the contacts of a fixture in the part's frame, with the inverse of its contact matrix.
 """
 
 from __future__ import annotations
@@ -53,12 +52,14 @@ class Touched:
     length : L of the wrenches, half the diameter of the peg-centre locus.
     features : (F, 8) rows of the contact features, ordered by face.
     starts : where the features of each face number begin in them, one more than there are segments.
+    axis : (2,) unit vector against which the moving pegs clamp, in the toolkit's frame.
     """
 
     center: Array
     length: float
     features: Array
     starts: NDArray[np.int64]
+    axis: Array
 
     @classmethod
     def of(
@@ -81,16 +82,17 @@ class Touched:
             length=outline_diameter(workpiece) / 2 + vise.peg_radius if length is None else length,
             features=rows,
             starts=np.searchsorted(faces, np.arange(len(workpiece.segments) + 1)).astype(np.int64),
+            axis=vise.clamping * np.array(vise.moving_axis, np.float64),
         )
 
-    def contact_matrices(self, pegs: Array, pose: Array, right: Array, faces: NDArray[np.int64]) -> ContactMatrices:
-        """Stances of N fixtures.
+    def contact_matrices(self, pegs: Array, pose: Array, moves: Array, faces: NDArray[np.int64]) -> ContactMatrices:
+        """Contact matrices of N fixtures.
 
         Parameters
         ----------
-        pegs : (N, 4, 2) peg centres in the vise frame, in mm.
+        pegs : (N, 4, 2) peg centres in the toolkit's frame, in mm.
         pose : (N, 3) orientation in radians and translation in mm.
-        right : (N, 4) 1 for a peg on the right jaw, 0 on the left.
+        moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
         faces : (N, 4) numbers of the faces touched.
         """
         count = len(pegs)
@@ -99,7 +101,8 @@ class Touched:
         contact_matrices_of(
             np.array(pegs, np.float64, order="C"),
             np.array(pose, np.float64, order="C"),
-            np.array(right, np.float64, order="C"),
+            np.array(moves, np.float64, order="C"),
+            self.axis,
             np.array(faces, np.int64, order="C"),
             self.features,
             self.starts,

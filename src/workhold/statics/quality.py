@@ -66,9 +66,9 @@ def quality_of(
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
-        right = vise.peg_carriers(block.arrangement).astype(np.float64)
+        moves = vise.peg_carriers(block.arrangement).astype(np.float64)
         x, y = vise.places(block.arrangement, block.column, block.row, block.jaw_separation)
-        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, right, faces)
+        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, moves, faces)
         figures(
             contact_matrices.points,
             contact_matrices.normals,

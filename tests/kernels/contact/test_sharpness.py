@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_examples import held
+from contact_examples import held, limits
 from sharpness import Constant, changed, check_sharpness
+from workhold.kernels.base.given import Features
 from workhold.kernels.contact import closure, rules
 from workhold.kernels.crossing import three_and_one
 
@@ -74,10 +75,10 @@ def at_the_edge(rule: str) -> Callable[[Random, Callable[..., Kernel]], float]:
         edges = {"gap": gap, "clamp": push / size}
         if not (edges[rule] > 1e-3 and null.min() > 1e-3) or (rule == "clamp" and edges[rule] > 0.02):
             return 0.0
-        limits = np.array([-1e9, 0.0, contacts.length, 99.0, -9.0, 0.0])
         names = {**FREE, "LEAST_CLAMPING": edges["clamp"] * (1 - 1e-9)} if rule == "clamp" else FREE
-        if rule == "gap":
-            limits[rules.MIN_GAP] = gap + rules.GAP_SLACK - 1e-12
+        least = gap + rules.GAP_SLACK - 1e-12 if rule == "gap" else -1e9
+        asked = limits(contacts.length, least, 0.0)
+        features = Features(contacts.rows, contacts.rows, (0, 4), (0, 4))
         kernel = changed(form, **names)
         worst = 0.0
         for _ in range(8):
@@ -91,7 +92,7 @@ def at_the_edge(rule: str) -> Callable[[Random, Callable[..., Kernel]], float]:
                 pegs = np.column_stack([there, range(4), np.zeros((4, 2)), np.full(4, radius)])
                 reach = abs(turn - psi) * radius / OFF
                 work, out = np.zeros((8, 2)), np.zeros(4)
-                verdict, _ = kernel(pegs, float(contacts.lefts), turn, reach, contacts.rows, limits, work, out)
+                verdict, _ = kernel(pegs, float(contacts.standing), turn, reach, features, asked, work, out)
                 return bool(verdict == 2)
 
             worst = max(worst, needed(keeps))

@@ -21,18 +21,20 @@ from workhold import Vise, Workpiece
 from workhold.contact.problem import Problem
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
 from workhold.kernels.contact.closure import minors, outward_normal
-from workhold.kernels.contact.rules import (
-    GAP_SLACK,
-    MIN_GAP,
-    PEG_LENGTH,
-    WRENCH_LENGTH,
-    is_fixture,
-    place_peg,
-    share_a_jaw,
+from workhold.kernels.contact.record import PEG_LENGTH, place_peg
+from workhold.kernels.contact.rules import GAP_SLACK, is_fixture, share_a_carrier
+from workhold.kernels.crossing.roots import (
+    MOST_ROOTS,
+    ROOT_PSI,
+    ROOT_RADIUS,
+    STACK_DEPTH,
+    STACK_LENGTH,
+    crossings,
+    may_meet,
 )
-from workhold.kernels.crossing.roots import MOST_ROOTS, PSI, RADIUS, STACK_DEPTH, STACK_LENGTH, crossings, may_meet
 from workhold.kernels.crossing.three_and_one import (
     TRIPLE_ROWS,
+    faces_away,
     farthest_right,
     height_range,
     may_close,
@@ -53,21 +55,19 @@ from workhold.kernels.crossing.two_and_two import (
 from workhold.kernels.curves.columns import CENTER, HEAD, TAIL
 from workhold.kernels.curves.piece_columns import (
     CURVE,
-    FORCE_LEFT_HIGH,
-    FORCE_LEFT_LOW,
-    FORCE_RIGHT_HIGH,
-    FORCE_RIGHT_LOW,
     HIGH,
+    LEFTWARD_LOW,
     LOW,
+    RIGHTWARD_LOW,
     STEADY,
     VALUE_LEAST,
     VALUE_MOST,
-    X_LEFT,
-    X_RIGHT,
+    X_MOVING,
+    X_STANDING,
 )
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.search.cells import FIRST_ORIENTATION
-from workhold.search.toolkit_search import ViseSearch
+from workhold.search.toolkit_search import ToolkitSearch
 
 CELL = pi / 96
 # Columns of what the trials of pairs of pieces return, one row for each root.
@@ -78,17 +78,17 @@ FIRST, SECOND, ROOT, REACH, VERDICT, FORCE_DIRECTIONS, HEIGHTS, COUNTED, APART, 
 FARTHEST, VALUES, MEETING, RIGHT_FACE, CLOSES = range(5)
 
 
-def prepared(part: Workpiece, vise: Vise) -> ViseSearch:
+def prepared(part: Workpiece, vise: Vise) -> ToolkitSearch:
     """A search with its table of curves."""
-    return ViseSearch.of(Problem.of(part, vise))
+    return ToolkitSearch.of(Problem.of(part, vise))
 
 
-def pieces_in(search: ViseSearch, low: float, high: float, mode: float) -> np.ndarray:
+def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np.ndarray:
     """All pieces of a search's curves in a cell."""
     table = search.table
     members = np.arange(len(table))
-    pitch = search.vise.pitch[0]
-    return cell_pieces(low, high, members, search.loose, table.integers, table.reals, table.stretches, pitch, 0.0, mode)
+    pitch = search.frame.lattice.pitch_x
+    return cell_pieces(low, high, members, search.loose, table.curves, pitch, 0.0, mode)
 
 
 @numba.njit
@@ -124,50 +124,52 @@ def as_number(truth):
 
 
 @numba.njit
-def try_pairs(pieces, features, loose, integers, reals, pitch_y, row_offset, limits):
-    """All roots of all pairs of pieces, with what each comparison says of them."""
+def try_pairs(pieces, features, curves, lattice, limits, standing_force, moving_force):
+    """All roots of all pairs of pieces, with what each comparison says of them; the columns of forces of either carrier."""
+    loose, rows, integers = features.loose, features.rows, curves.integers
+    row_offset, pitch_y = lattice.row_offset, lattice.pitch_y
     out = np.empty((1 << 16, 13))
     count = 0
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
     fewer = np.empty((MOST_ROOTS, 3))
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
     lefts, rights = np.empty((pieces.shape[0], ROLE_LENGTH)), np.empty((pieces.shape[0], ROLE_LENGTH))
-    write_roles(pieces, X_LEFT, FORCE_LEFT_LOW, True, lefts)
-    write_roles(pieces, X_RIGHT, FORCE_RIGHT_LOW, True, rights)
+    write_roles(pieces, integers, features.standing, X_STANDING, standing_force, True, lefts)
+    write_roles(pieces, integers, features.moving, X_MOVING, moving_force, True, rights)
     for i in range(pieces.shape[0]):
         for j in range(pieces.shape[0]):
             first, second, left, right = pieces[i], pieces[j], lefts[i], rights[j]
             one, two = int(first[CURVE]), int(second[CURVE])
             if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
                 continue
-            number = crossings(first, second, loose, integers, reals, HEIGHT, row_offset, pitch_y, 0.0, stack, roots)
+            number = crossings(first, second, loose, curves, HEIGHT, row_offset, pitch_y, 0.0, stack, roots)
             if number <= 0:
                 continue
             flat = flat_slope(first, second)
-            steep = crossings(first, second, loose, integers, reals, HEIGHT, row_offset, pitch_y, flat, stack, fewer)
+            steep = crossings(first, second, loose, curves, HEIGHT, row_offset, pitch_y, flat, stack, fewer)
             for root in range(number):
-                psi, reach = roots[root, PSI], roots[root, RADIUS]
-                place_chord(pegs[:2], one, psi, reach, 0.0, features, integers, reals)
-                place_chord(pegs[2:], two, psi, reach, roots[root, 2], features, integers, reals)
+                psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
+                place_chord(pegs[:2], one, psi, reach, 0.0, rows, curves)
+                place_chord(pegs[2:], two, psi, reach, roots[root, 2], rows, curves)
                 row = out[count]
                 row[FIRST], row[SECOND], row[ROOT], row[REACH] = i, j, psi, reach
                 row[VERDICT], _ = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
                 row[FORCE_DIRECTIONS] = as_number(
-                    first[FORCE_LEFT_LOW] <= first[FORCE_LEFT_HIGH]
-                    and second[FORCE_RIGHT_LOW] <= second[FORCE_RIGHT_HIGH]
+                    first[standing_force] <= first[standing_force + 1]
+                    and second[moving_force] <= second[moving_force + 1]
                 )
-                row[HEIGHTS] = as_number(may_cross(left, right, row_offset, pitch_y, False))
-                row[COUNTED] = as_number(may_cross(left, right, row_offset, pitch_y, True))
+                row[HEIGHTS] = as_number(may_cross(left, right, lattice, False))
+                row[COUNTED] = as_number(may_cross(left, right, lattice, True))
                 row[APART] = right[ROLE_X] - left[ROLE_X]
                 row[MEETS] = as_number(
                     first[STEADY] * second[STEADY] == 0.0 or may_meet(first, second, row_offset, pitch_y)
                 )
                 row[STEEP] = 0.0
                 for other in range(steep):
-                    if abs(fewer[other, PSI] - psi) <= fewer[other, RADIUS] + reach:
+                    if abs(fewer[other, ROOT_PSI] - psi) <= fewer[other, ROOT_RADIUS] + reach:
                         row[STEEP] = 1.0
-                row[CLAMP] = clamping(pegs, psi, features, limits[WRENCH_LENGTH])
-                row[CLAMP_BOUND] = clamping_bound(one, two, psi, features, integers, reals)
+                row[CLAMP] = clamping(pegs, psi, rows, limits.wrench_length)
+                row[CLAMP_BOUND] = clamping_bound(one, two, psi, rows, integers, curves.reals)
                 count += 1
                 if count == out.shape[0]:
                     return out
@@ -175,38 +177,40 @@ def try_pairs(pieces, features, loose, integers, reals, pitch_y, row_offset, lim
 
 
 @numba.njit
-def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, row_offset, limits):
-    """All fixtures of three left pegs and a right one, with what each comparison says of them."""
+def try_triples(pieces, low, high, features, curves, lattice, limits):
+    """All fixtures of three standing pegs and a moving one, with what each comparison says of them."""
+    loose, rows, integers = features.loose, features.rows, curves.integers
+    row_offset, pitch_y = lattice.row_offset, lattice.pitch_y
     out = np.empty((1 << 14, 5))
     count = 0
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
     pegs, work, null, triple = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4), np.empty((TRIPLE_ROWS, 3))
-    farthest = farthest_right(loose, low, high) - limits[MIN_GAP] + GAP_SLACK + HAIR
-    length = limits[WRENCH_LENGTH]
+    farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
+    length = limits.wrench_length
     for i in range(pieces.shape[0]):
         for j in range(i):
             first, second = pieces[i], pieces[j]
             one, two = int(first[CURVE]), int(second[CURVE])
             tail = integers[one, TAIL]
-            if tail != integers[two, TAIL] or not share_a_jaw(integers[one], integers[two], limits):
+            if tail != integers[two, TAIL] or not share_a_carrier(integers[one], integers[two], limits):
                 continue
             if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
                 continue
             circle = loose[tail, 0] != 0.0 and loose[tail, 5] >= pi
             period = 2.0 * pi if circle else 0.0
-            number = crossings(first, second, loose, integers, reals, POSITION, 0.0, period, 0.0, stack, roots)
+            number = crossings(first, second, loose, curves, POSITION, 0.0, period, 0.0, stack, roots)
             for root in range(number):
-                psi, reach = roots[root, PSI], roots[root, RADIUS]
+                psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
                 if reach >= 1e-6:
                     continue
                 cx, cy = cos(psi), sin(psi)
-                place_triple(pegs, one, two, psi, reach, features, integers, reals)
-                write_triple(triple, pegs, psi, features, length)
+                place_triple(pegs, one, two, psi, reach, rows, curves)
+                write_triple(triple, pegs, psi, rows, length)
                 base = cx * pegs[0, 1] - cy * pegs[0, 0] + row_offset
                 error = pegs[0, 5] + 4.0 * length * reach
-                gap = limits[MIN_GAP] - GAP_SLACK - HAIR - 4.0 * length * reach
-                for e in range(features.shape[0]):
-                    lowest, highest = height_range(features[e], -cy, cx)
+                gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
+                for e in range(rows.shape[0]):
+                    lowest, highest = height_range(rows[e], -cy, cx)
                     slack = 1e-9 + error / pitch_y
                     for line in range(
                         int(np.ceil((lowest - base) / pitch_y - slack)),
@@ -214,7 +218,7 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
                     ):
                         for k in range(2):
                             height, side = base + line * pitch_y, 1.0 - 2.0 * k
-                            meets, x, y, radius = row_meets(features[e], -cy, cx, height, error, side)
+                            meets, x, y, radius = row_meets(rows[e], -cy, cx, height, error, side)
                             if not meets:
                                 continue
                             place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
@@ -222,7 +226,7 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
                             if verdict < 2:
                                 continue
                             row = out[count]
-                            row[FARTHEST] = as_number(first[X_LEFT] <= farthest and second[X_LEFT] <= farthest)
+                            row[FARTHEST] = as_number(first[X_STANDING] <= farthest and second[X_STANDING] <= farthest)
                             row[VALUES] = as_number(
                                 circle
                                 or (
@@ -232,48 +236,38 @@ def try_triples(pieces, low, high, features, loose, integers, reals, pitch_y, ro
                             )
                             steady = first[STEADY] * second[STEADY] == 1.0 and not circle
                             row[MEETING] = as_number(not steady or may_meet(first, second, 0.0, 0.0))
-                            straight = features[e, 0] == 0.0
-                            facing = features[e, 4] * cx - features[e, 3] * cy
-                            row[RIGHT_FACE] = as_number(not straight or facing >= -HAIR - reach)
-                            row[CLOSES] = as_number(may_close(triple, features[e], x, y, radius, cx, cy, gap, limits))
+                            row[RIGHT_FACE] = as_number(not faces_away(rows[e], cx, cy, limits.clamping, reach))
+                            row[CLOSES] = as_number(may_close(triple, rows[e], x, y, radius, cx, cy, gap, limits))
                             count += 1
                             if count == out.shape[0]:
                                 return out
     return out[:count]
 
 
-def common(search: ViseSearch) -> tuple:
+def common(search: ToolkitSearch) -> tuple:
     """What the trials take of a search."""
-    table, vise = search.table, search.vise
-    return (
-        search.problem.rows,
-        search.loose,
-        table.integers,
-        table.reals,
-        vise.pitch[1],
-        vise.row_offset,
-        search.limits,
-    )
+    return search.features, search.table.curves, search.frame.lattice, search.limits_from(0.0)
 
 
-def check_type_one(search: ViseSearch, low: float, high: float) -> tuple[int, int]:
+def check_type_one(search: ToolkitSearch, low: float, high: float) -> tuple[int, int]:
     """Try all pairs of pieces of a cell; return how many roots and how many fixtures there were."""
     pieces = pieces_in(search, low, high, HEIGHT)
-    rows = try_pairs(pieces, *common(search))
+    forces = (RIGHTWARD_LOW, LEFTWARD_LOW)[:: search.frame.toolkit.clamping]
+    rows = try_pairs(pieces, *common(search), *forces)
     # A root known to a wide range only passes for a fixture too easily, where none is in that range.
     rows = rows[rows[:, REACH] < 1e-6]
     contacts, fixtures = rows[rows[:, VERDICT] > 0], rows[rows[:, VERDICT] == 2]
     assert contacts[:, COUNTED].all() and contacts[:, MEETS].all()
     assert fixtures[:, FORCE_DIRECTIONS].all()
     assert fixtures[:, HEIGHTS].all()
-    assert (fixtures[:, APART] >= search.limits[MIN_GAP] - GAP_SLACK - HAIR).all()
+    assert (fixtures[:, APART] >= search.frame.gap - GAP_SLACK - HAIR).all()
     assert fixtures[:, STEEP].all()
     exact = contacts[contacts[:, REACH] < 1e-12]
     assert (exact[:, CLAMP] <= exact[:, CLAMP_BOUND] * (1 + 1e-6) + 1e-7).all()
     return len(rows), len(fixtures)
 
 
-def check_type_two(search: ViseSearch, low: float, high: float) -> int:
+def check_type_two(search: ToolkitSearch, low: float, high: float) -> int:
     """Try all pairs of pieces that share a tail, and all right pegs; return the number of fixtures."""
     pieces = pieces_in(search, low, high, POSITION)
     rows = try_triples(pieces, low, high, *common(search))
@@ -354,7 +348,7 @@ def test_no_crossing_of_two_steady_pieces_is_denied(seed):
             continue
         places = np.linspace(bottom, top, 30)
         values = [
-            sampled(places, int(piece[CURVE]), search.loose, search.table.integers, search.table.reals, mode)[:, 0]
+            sampled(places, int(piece[CURVE]), search.loose, search.table.curves, mode)[:, 0]
             for piece in (first, second)
         ]
         period, offset = random.uniform(0.01, 9.0), random.uniform(-5, 5)

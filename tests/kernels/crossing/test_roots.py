@@ -17,7 +17,7 @@ from strategies import random_row
 from workhold.contact.curves import curve_table
 from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.chord.discs import value_disc
-from workhold.kernels.crossing.roots import MULTIPLE, PSI, RADIUS, crossings, value_at
+from workhold.kernels.crossing.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_at
 from workhold.kernels.curves.columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
 from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
 
@@ -41,10 +41,8 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
     if high - low < 1e-6:
         return 0
     psis = sample_places(low, high, samples)
-    values = [
-        sampled(psis, int(piece[CURVE]), features, table.integers, table.reals, mode) for piece in (first, second)
-    ]
-    tail = features[table.integers[int(first[CURVE]), TAIL]]
+    values = [sampled(psis, int(piece[CURVE]), features, table.curves, mode) for piece in (first, second)]
+    tail = features[table.curves.integers[int(first[CURVE]), TAIL]]
     circle = mode == POSITION and tail[0] != 0.0 and tail[5] >= pi
     f = values[1][:, 0] - values[0][:, 0] - offset
     if circle:
@@ -59,15 +57,23 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
     jumps = np.abs(np.diff(levels))
     # Roots of one target that touch are one; the others are counted in the gap between samples that holds their middle.
     apart = merged_roots(roots)
-    counted = np.histogram(apart[:, PSI], bins=np.concatenate([[-np.inf], psis, [np.inf]]))[0][1:-1]
-    exact = apart[:, RADIUS] < 1e-9
+    counted = np.histogram(apart[:, ROOT_PSI], bins=np.concatenate([[-np.inf], psis, [np.inf]]))[0][1:-1]
+    exact = apart[:, ROOT_RADIUS] < 1e-9
     vague = np.zeros(len(jumps), bool)
     for psi, radius, _ in apart[~exact]:
         vague |= (psis[1:] >= psi - radius) & (psis[:-1] <= psi + radius)
     doubtful = near[1:] | near[:-1] | vague
-    detail = (features.tolist(), table.integers[[int(first[CURVE]), int(second[CURVE])]].tolist(), low, high, offset)
+    detail = (
+        features.tolist(),
+        table.curves.integers[[int(first[CURVE]), int(second[CURVE])]].tolist(),
+        low,
+        high,
+        offset,
+    )
     for k in np.flatnonzero(jumps):
-        reached = (roots[:, PSI] + roots[:, RADIUS] >= psis[k]) & (roots[:, PSI] - roots[:, RADIUS] <= psis[k + 1])
+        reached = (roots[:, ROOT_PSI] + roots[:, ROOT_RADIUS] >= psis[k]) & (
+            roots[:, ROOT_PSI] - roots[:, ROOT_RADIUS] <= psis[k + 1]
+        )
         if circle or period == 0.0:
             assert reached.any(), ("lost", detail)
         else:
@@ -78,10 +84,7 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
     assert ((counted - jumps)[~doubtful] <= 2).all(), ("too many", detail)
     for root, radius, multiple in roots:
         assert low <= root <= high and 0.0 < radius <= high - low
-        pair = [
-            sampled(np.array([root]), int(p[CURVE]), features, table.integers, table.reals, mode)[0]
-            for p in (first, second)
-        ]
+        pair = [sampled(np.array([root]), int(p[CURVE]), features, table.curves, mode)[0] for p in (first, second)]
         rest = pair[1][0] - pair[0][0] - offset
         assert circle or abs(rest / scale - multiple) < 0.5
         rest -= period * round(rest / period) if period else 0.0
@@ -103,20 +106,23 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
 def disc_size(piece, psi: float, reach: float, features, table, mode: float) -> float:
     """How far the values of a piece's curve within ``reach`` of an orientation may be from a middle one."""
     curve = int(piece[CURVE])
-    a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-    return value_disc(a, b, table.reals[curve], psi, reach, mode)[1]
+    a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+    return value_disc(a, b, table.curves.reals[curve], psi, reach, mode)[1]
 
 
 def merged_roots(roots: np.ndarray) -> np.ndarray:
     """Roots of one target whose ranges touch, put together."""
     out: list[np.ndarray] = []
-    for root in roots[np.lexsort([roots[:, PSI], roots[:, MULTIPLE]])]:
+    for root in roots[np.lexsort([roots[:, ROOT_PSI], roots[:, MULTIPLE]])]:
         last = out[-1] if out else None
         same = last is not None and last[MULTIPLE] == root[MULTIPLE]
-        if same and root[PSI] - root[RADIUS] <= last[PSI] + last[RADIUS] + 1e-13:
-            low, high = min(last[PSI] - last[RADIUS], root[PSI] - root[RADIUS]), root[PSI] + root[RADIUS]
-            high = max(high, last[PSI] + last[RADIUS])
-            last[PSI], last[RADIUS] = (low + high) / 2, (high - low) / 2
+        if same and root[ROOT_PSI] - root[ROOT_RADIUS] <= last[ROOT_PSI] + last[ROOT_RADIUS] + 1e-13:
+            low, high = (
+                min(last[ROOT_PSI] - last[ROOT_RADIUS], root[ROOT_PSI] - root[ROOT_RADIUS]),
+                root[ROOT_PSI] + root[ROOT_RADIUS],
+            )
+            high = max(high, last[ROOT_PSI] + last[ROOT_RADIUS])
+            last[ROOT_PSI], last[ROOT_RADIUS] = (low + high) / 2, (high - low) / 2
             continue
         out.append(root.copy())
     return np.array(out).reshape(-1, 3)
@@ -167,7 +173,7 @@ def test_positions_on_a_shared_tail_cross_wherever_a_dense_sampling_changes_sign
         whole = (features[:, 0] != 0.0) & (features[:, 5] >= pi)
         low = random.uniform(-4, 4)
         pieces = pieces_of(features, table, low, low + random.choice([0.03, 0.3, 1.0]), POSITION)
-        tails = table.integers[pieces[:, CURVE].astype(int), TAIL]
+        tails = table.curves.integers[pieces[:, CURVE].astype(int), TAIL]
         for tail in np.flatnonzero(whole == circles):
             mine = pieces[tails == tail]
             for i, j in overlapping(random, mine, 40):
@@ -185,8 +191,8 @@ def shared_tails(features, steps, low: float, high: float) -> set[tuple[float, f
     for i, j in overlapping(Random(0), pieces, 10**6, 0.0):
         if integers_agree(table, int(pieces[i, CURVE]), int(pieces[j, CURVE])):
             continue
-        for root in cross(pieces[i], pieces[j], features, table, POSITION, 0.0, tau)[:, PSI]:
-            value = sampled(np.array([root]), int(pieces[i, CURVE]), features, table.integers, table.reals, POSITION)
+        for root in cross(pieces[i], pieces[j], features, table, POSITION, 0.0, tau)[:, ROOT_PSI]:
+            value = sampled(np.array([root]), int(pieces[i, CURVE]), features, table.curves, POSITION)
             found.add((round((value[0, 0] + start) % tau, 6), round(root, 6)))
     return found
 
@@ -221,16 +227,16 @@ def test_a_crossing_at_a_tangency_is_found():
             for other in pieces[(pieces[:, LOW] < psi) & (pieces[:, HIGH] > psi) & (pieces[:, CURVE] != curve)][:6]:
                 if integers_agree(table, curve, int(other[CURVE])):
                     continue
-                there = sampled(np.array([psi]), int(other[CURVE]), features, table.integers, table.reals, HEIGHT)
+                there = sampled(np.array([psi]), int(other[CURVE]), features, table.curves, HEIGHT)
                 roots = cross(piece, other, features, table, HEIGHT, there[0, 0] - piece[VALUE_LOW], 0.0)
-                assert len(roots) and (abs(roots[:, PSI] - psi) <= roots[:, RADIUS] + 1e-9).any()
+                assert len(roots) and (abs(roots[:, ROOT_PSI] - psi) <= roots[:, ROOT_RADIUS] + 1e-9).any()
                 seen += 1
     assert seen > 20
 
 
 def integers_agree(table, one: int, two: int) -> bool:
     """Whether two curves are branches of one chord."""
-    return bool((table.integers[one, :4] == table.integers[two, :4]).all())
+    return bool((table.curves.integers[one, :4] == table.curves.integers[two, :4]).all())
 
 
 def test_known_crossings_of_two_ladders():
@@ -238,7 +244,9 @@ def test_known_crossings_of_two_ladders():
     features = np.array([line_row(0, 0, pi / 2, 40), line_row(0, 0, 0, 40)])
     steps = lattice(5.0, 3, 1)
     table = curve_table(features, steps, [0])
-    pick = [int(np.flatnonzero((table.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)]
+    pick = [
+        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)
+    ]
     pieces = pieces_of(features, table, -0.1, 6.1, HEIGHT)
     roots = []
     for a in pieces[pieces[:, CURVE] == pick[0]]:
@@ -246,8 +254,8 @@ def test_known_crossings_of_two_ladders():
             roots += merged_roots(cross(a, b, features, table, HEIGHT, 2.0, 0.0)).tolist()
     half = asin(-0.8) / 2
     expected = sorted(x % pi + k * pi for x in (half, pi / 2 - half) for k in (0, 1))
-    assert sorted(root[PSI] for root in roots) == pytest.approx(expected, abs=1e-12)
-    assert max(root[RADIUS] for root in roots) < 1e-11
+    assert sorted(root[ROOT_PSI] for root in roots) == pytest.approx(expected, abs=1e-12)
+    assert max(root[ROOT_RADIUS] for root in roots) < 1e-11
 
 
 def test_curves_on_top_of_each_other_are_told_as_ranges_and_not_given_up():
@@ -256,8 +264,8 @@ def test_curves_on_top_of_each_other_are_told_as_ranges_and_not_given_up():
     features = np.array([line, arc, arc])
     table = curve_table(features, lattice(12.0, 1, 1), [0])
     pieces = pieces_of(features, table, 0.95, 0.95 + 2e-6, HEIGHT)
-    heads = table.integers[pieces[:, CURVE].astype(int)]
-    branch = table.reals[pieces[:, CURVE].astype(int), 2]
+    heads = table.curves.integers[pieces[:, CURVE].astype(int)]
+    branch = table.curves.reals[pieces[:, CURVE].astype(int), 2]
     seen = 0
     for i in np.flatnonzero(heads[:, 1] == 1):
         for j in np.flatnonzero((heads[:, 1] == 2) & (heads[:, 3] == heads[i, 3]) & (branch == branch[i])):
@@ -265,8 +273,8 @@ def test_curves_on_top_of_each_other_are_told_as_ranges_and_not_given_up():
             if high > low:
                 roots = merged_roots(cross(pieces[i], pieces[j], features, table, HEIGHT, 0.0, 12.0))
                 assert len(roots) == 1 and roots[0, MULTIPLE] == 0
-                assert abs(roots[0, PSI] - (low + high) / 2) < 1e-12
-                assert roots[0, RADIUS] >= (high - low) / 2 * (1 - 1e-9)
+                assert abs(roots[0, ROOT_PSI] - (low + high) / 2) < 1e-12
+                assert roots[0, ROOT_RADIUS] >= (high - low) / 2 * (1 - 1e-9)
                 seen += 1
     assert seen > 0
 
@@ -310,16 +318,16 @@ def test_the_exact_root_is_within_the_radius():
 
 def is_coincident(features, table, curve: int) -> bool:
     """Whether a curve's chord is at a coincidence, taken as exact when it is so within rounding."""
-    a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-    return bool(coincidence(a, b, float(table.reals[curve, LENGTH]))[0] != NONE)
+    a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+    return bool(coincidence(a, b, float(table.curves.reals[curve, LENGTH]))[0] != NONE)
 
 
 def exact_difference(features, table, curves: list[int], psi: arb) -> arb | None:
     """Height of the second curve less that of the first."""
     heights = []
     for curve in curves:
-        a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-        d, branch, shift = (float(table.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
+        a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+        d, branch, shift = (float(table.curves.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
         chord = exact_chord(a, b, d, psi + shift, branch)
         if chord is None:
             return None
@@ -333,7 +341,9 @@ def test_planted_double_roots_are_told(rest):
     rest, is met within the ranges told; one above it by far more than rounding is not told at all."""
     features = np.array([line_row(0, 0, pi / 2, 40), line_row(0, 0, 0, 40)])
     table = curve_table(features, lattice(5.0, 3, 1), [0])
-    pick = [int(np.flatnonzero((table.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)]
+    pick = [
+        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)
+    ]
     # The height of the second over the first is -5/2 sin 2 psi: least where sin 2 psi = 1.
     pieces = pieces_of(features, table, 0.5, 1.1, HEIGHT)
     roots = np.concatenate(
@@ -350,8 +360,8 @@ def test_planted_double_roots_are_told(rest):
         return
     away = float(np.sqrt(rest / 5)) if rest else 0.0
     for psi in (pi / 4 - away, pi / 4 + away):
-        assert (np.abs(roots[:, PSI] - psi) <= roots[:, RADIUS] + 1e-15).any()
-    assert (np.abs(roots[:, PSI] - pi / 4) <= away + 1e-6).all()
+        assert (np.abs(roots[:, ROOT_PSI] - psi) <= roots[:, ROOT_RADIUS] + 1e-15).any()
+    assert (np.abs(roots[:, ROOT_PSI] - pi / 4) <= away + 1e-6).all()
 
 
 def test_a_root_s_radius_holds_wherever_newtons_method_stops():
@@ -360,9 +370,9 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
     within a half of it, so that a radius over any steeper slope would not do."""
     random, worst = Random(46), 0.0
 
-    def first_guess(low, high, f_low, f_high, one, two, features, integers, reals, mode, target, start):
+    def first_guess(low, high, f_low, f_high, one, two, features, curves, mode, target, start):
         psi = min(max(low + 0.1 * (high - low), low), high) if random.random() < 0.5 else start
-        value_one, value_two = (value_at(psi, curve, features, integers, reals, mode)[0] for curve in (one, two))
+        value_one, value_two = (value_at(psi, curve, features, curves, mode)[0] for curve in (one, two))
         return psi, abs(value_two - value_one - target)
 
     early = changed(crossings, solve=first_guess)
@@ -375,7 +385,10 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
             found = cross(*pair, features, table, HEIGHT, 0.3, 2.0)
             stopped = cross(*pair, features, table, HEIGHT, 0.3, 2.0, kernel=early)
             assert len(found) == len(stopped) and (found[:, MULTIPLE] == stopped[:, MULTIPLE]).all()
-            off, radius = np.abs(found[:, PSI] - stopped[:, PSI]), stopped[:, RADIUS] + found[:, RADIUS]
+            off, radius = (
+                np.abs(found[:, ROOT_PSI] - stopped[:, ROOT_PSI]),
+                stopped[:, ROOT_RADIUS] + found[:, ROOT_RADIUS],
+            )
             assert (off <= radius).all()
-            worst = max(worst, (off / radius)[found[:, RADIUS] < 1e-9].max(initial=0.0))
+            worst = max(worst, (off / radius)[found[:, ROOT_RADIUS] < 1e-9].max(initial=0.0))
     assert worst > 0.5

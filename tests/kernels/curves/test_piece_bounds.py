@@ -35,15 +35,15 @@ from workhold.kernels.curves.piece_columns import (
     ACROSS_MOST,
     CURVE,
     EDGE_LENGTH,
-    FORCE_LEFT_HIGH,
-    FORCE_LEFT_LOW,
-    FORCE_RIGHT_HIGH,
-    FORCE_RIGHT_LOW,
-    HEAD_X,
-    HEAD_Y,
+    HEAD_NORMAL_X,
+    HEAD_NORMAL_Y,
     HIGH,
+    LEFTWARD_HIGH,
+    LEFTWARD_LOW,
     LOW,
     PIECE_LENGTH,
+    RIGHTWARD_HIGH,
+    RIGHTWARD_LOW,
     SECOND_DERIVATIVE_HIGH,
     SECOND_DERIVATIVE_LOW,
     SLOPE_ERROR_HIGH,
@@ -51,12 +51,12 @@ from workhold.kernels.curves.piece_columns import (
     SLOPE_HIGH,
     SLOPE_LOW,
     STEADY,
-    TAIL_X,
-    TAIL_Y,
+    TAIL_NORMAL_X,
+    TAIL_NORMAL_Y,
     VALUE_LEAST,
     VALUE_MOST,
-    X_LEFT,
-    X_RIGHT,
+    X_MOVING,
+    X_STANDING,
 )
 from workhold.kernels.curves.pieces import largest_part
 
@@ -120,14 +120,14 @@ def fronts(one, two, x) -> list[arb]:
 def check_piece(features, table, piece, mode, random: Random) -> int:
     """Hold a piece against exact chords inside it; return how many there were."""
     curve = int(piece[CURVE])
-    a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-    d, branch, shift = (float(table.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
-    step = float(table.integers[curve, COLUMN_STEP]) * pitch_of(table)
+    a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+    d, branch, shift = (float(table.curves.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
+    step = float(table.curves.integers[curve, COLUMN_STEP]) * pitch_of(table)
     circle = mode == POSITION and a[0] != 0.0 and a[5] >= pi
     scale = 1.0 if a[0] == 0.0 else arb(float(a[6]))
     checked = 0
     with exactly():
-        for place in places(random, float(piece[LOW]), float(piece[HIGH])) + beyond(piece, table.reals[curve]):
+        for place in places(random, float(piece[LOW]), float(piece[HIGH])) + beyond(piece, table.curves.reals[curve]):
             psi = arb(place)
             chord, speed = exact_chord(a, b, d, psi + shift, branch), exact_speed(a, b, d, psi + shift, branch)
             if chord is None or speed is None:
@@ -151,14 +151,14 @@ def check_piece(features, table, piece, mode, random: Random) -> int:
                 )
             tail = dot(x, chord.tail)
             tail_and_head = (tail, tail + step)
-            assert not max(tail_and_head) < piece[X_LEFT] - 1e-12, ("left", detail)
-            assert not min(tail_and_head) > piece[X_RIGHT] + 1e-12, ("right", detail)
+            assert not max(tail_and_head) < piece[X_STANDING] - 1e-12, ("left", detail)
+            assert not min(tail_and_head) > piece[X_MOVING] + 1e-12, ("right", detail)
             assert not exceeds(dot(y, center), piece[ACROSS_LEAST], piece[ACROSS_MOST]), ("across", detail)
             if mode == HEIGHT:
                 one, two = outward(a, chord.along_a), outward(b, chord.along_b)
                 for low, high, sign in (
-                    (piece[FORCE_LEFT_LOW], piece[FORCE_LEFT_HIGH], -1),
-                    (piece[FORCE_RIGHT_LOW], piece[FORCE_RIGHT_HIGH], 1),
+                    (piece[RIGHTWARD_LOW], piece[RIGHTWARD_HIGH], -1),
+                    (piece[LEFTWARD_LOW], piece[LEFTWARD_HIGH], 1),
                 ):
                     force_directions = ((one[0] * sign, one[1] * sign), (two[0] * sign, two[1] * sign))
                     for direction in fronts(*force_directions, x):
@@ -184,8 +184,8 @@ def check_table(features, table, random: Random, most: int) -> int:
     checked = 0
     for piece in some(random, pieces_of(features, table, low, low + width, mode), most):
         curve = int(piece[CURVE])
-        pair = [features[k] for k in table.integers[curve, [TAIL, HEAD]]]
-        if not is_rounded_coincidence(*pair, float(table.reals[curve, LENGTH])):
+        pair = [features[k] for k in table.curves.integers[curve, [TAIL, HEAD]]]
+        if not is_rounded_coincidence(*pair, float(table.curves.reals[curve, LENGTH])):
             checked += check_piece(features, table, piece, mode, random)
     return checked
 
@@ -212,10 +212,10 @@ def test_pieces_next_to_the_ends_of_a_curve_bound_what_they_tell(make):
     while checked < 1500:
         features, table = special_table(random, make)
         for curve in random.sample(range(len(table)), min(4, len(table))):
-            pair = [features[k] for k in table.integers[curve, [TAIL, HEAD]]]
-            if is_rounded_coincidence(*pair, float(table.reals[curve, LENGTH])):
+            pair = [features[k] for k in table.curves.integers[curve, [TAIL, HEAD]]]
+            if is_rounded_coincidence(*pair, float(table.curves.reals[curve, LENGTH])):
                 continue
-            first, last, shift = (float(table.reals[curve, k]) for k in (0, 1, SHIFT))
+            first, last, shift = (float(table.curves.reals[curve, k]) for k in (0, 1, SHIFT))
             depth, width = 10 ** random.uniform(-13, -1), 10 ** random.uniform(-10, -1)
             low = first - shift + depth if random.random() < 0.5 else last - shift - depth - width
             for mode in (HEIGHT, POSITION):
@@ -233,8 +233,8 @@ def test_a_small_part_between_lines_of_action_near_the_middle(seed):
     if not len(table):
         return
     curve = random.randrange(len(table))
-    a, b = (features[k].copy() for k in table.integers[curve, [TAIL, HEAD]])
-    first, last, branch, d = (float(table.reals[curve, k]) for k in (0, 1, BRANCH, LENGTH))
+    a, b = (features[k].copy() for k in table.curves.integers[curve, [TAIL, HEAD]])
+    first, last, branch, d = (float(table.curves.reals[curve, k]) for k in (0, 1, BRANCH, LENGTH))
     alpha = first + random.random() * (last - first)
     if is_rounded_coincidence(a, b, d):
         return
@@ -248,12 +248,12 @@ def test_a_small_part_between_lines_of_action_near_the_middle(seed):
     moved[:, 1:3] -= center
     table = curve_table(moved, steps_of(table))
     for step in range(len(table)):
-        psi = alpha - float(table.reals[step, SHIFT])
+        psi = alpha - float(table.curves.reals[step, SHIFT])
         width = 10 ** random.uniform(-3, -0.5)
         for piece in pieces_of(moved, table, psi - width / 2, psi + width / 2, HEIGHT):
             if int(piece[CURVE]) == step:
-                pair = [moved[k] for k in table.integers[step, [TAIL, HEAD]]]
-                if not is_rounded_coincidence(*pair, float(table.reals[step, LENGTH])):
+                pair = [moved[k] for k in table.curves.integers[step, [TAIL, HEAD]]]
+                if not is_rounded_coincidence(*pair, float(table.curves.reals[step, LENGTH])):
                     check_piece(moved, table, piece, HEIGHT, random)
 
 
@@ -271,12 +271,12 @@ def test_what_the_errors_of_the_instant_centre_allow_is_told():
     while checked < 300:
         features, table = special_table(random, random.choice(SPECIAL))
         for curve in random.sample(range(len(table)), min(4, len(table))):
-            a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-            low = float(table.reals[curve, 0] - table.reals[curve, SHIFT]) + 10 ** random.uniform(-12, -3)
+            a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+            low = float(table.curves.reals[curve, 0] - table.curves.reals[curve, SHIFT]) + 10 ** random.uniform(-12, -3)
             pieces = pieces_of(features, table, low, low + 10 ** random.uniform(-9, -4), HEIGHT)
             for piece in pieces[(pieces[:, CURVE] == curve) & (pieces[:, STEADY] == 1.0)]:
                 for psi in (float(piece[LOW]), float(piece[HIGH])):
-                    state = chord_state(a, b, table.reals[curve], psi, cos(psi), sin(psi))
+                    state = chord_state(a, b, table.curves.reals[curve], psi, cos(psi), sin(psi))
                     across = cos(psi) * state[7] - sin(psi) * state[6]
                     assert piece[ACROSS_LEAST] <= across - state[9] <= across + state[9] <= piece[ACROSS_MOST]
                     assert piece[SECOND_DERIVATIVE_HIGH] >= (hypot(state[6], state[7]) + state[9]) * (1 - 1e-12)
@@ -325,7 +325,12 @@ def turning_edges(random: Random) -> list[tuple[np.ndarray, float, float]]:
     for part in np.linspace(0.0, 1.0, 21):
         one, two = (start + part * turn for start, turn in zip(starts, turns, strict=True))
         edge = np.zeros(EDGE_LENGTH)
-        edge[TAIL_X], edge[TAIL_Y], edge[HEAD_X], edge[HEAD_Y] = cos(one), sin(one), cos(two), sin(two)
+        edge[TAIL_NORMAL_X], edge[TAIL_NORMAL_Y], edge[HEAD_NORMAL_X], edge[HEAD_NORMAL_Y] = (
+            cos(one),
+            sin(one),
+            cos(two),
+            sin(two),
+        )
         out.append((edge, one, two))
     return out
 
@@ -342,8 +347,8 @@ def test_pushes_of_a_piece_hold_those_at_every_orientation_between(seed):
         write_force_directions(row, edges[0][0], edges[-1][0], 0.0, 0.0)
         for _, one, two in edges:
             for turn, low, high in (
-                (pi, row[FORCE_LEFT_LOW], row[FORCE_LEFT_HIGH]),
-                (0.0, row[FORCE_RIGHT_LOW], row[FORCE_RIGHT_HIGH]),
+                (pi, row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH]),
+                (0.0, row[LEFTWARD_LOW], row[LEFTWARD_HIGH]),
             ):
                 for angle in angle_range(one + turn, two + turn):
                     told = sin(angle) / (cos(angle) + abs(sin(angle)))

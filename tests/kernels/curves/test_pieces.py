@@ -58,7 +58,7 @@ def test_pieces_tile_the_curves_in_a_cell(mode, width):
         for curve in range(len(table)):
             mine = pieces[pieces[:, CURVE] == curve]
             mine = mine[np.argsort(mine[:, LOW])]
-            expected = parts_in_cell(table.reals[curve], low, low + width)
+            expected = parts_in_cell(table.curves.reals[curve], low, low + width)
             runs = []
             for piece in mine:
                 if runs and abs(piece[LOW] - runs[-1][1]) < 4e-15:
@@ -83,7 +83,7 @@ def test_slopes_stay_in_the_enclosure_of_a_piece(mode):
                 continue
             s, t = sorted(piece[LOW] + span * random.random() for _ in range(2))
             psis = np.concatenate([[s, t], np.linspace(s, t, 25)[1:-1]])
-            slopes = sampled(psis, curve, features, table.integers, table.reals, mode)[:, 1]
+            slopes = sampled(psis, curve, features, table.curves, mode)[:, 1]
             lowest, highest = slope_range(
                 slopes[0], slopes[1], piece[SECOND_DERIVATIVE_LOW], piece[SECOND_DERIVATIVE_HIGH], t - s
             )
@@ -109,14 +109,14 @@ def test_values_at_the_ends_of_pieces_are_the_curves(mode):
         for piece in pieces_of(features, table, low, low + 1.5, mode):
             curve, span = int(piece[CURVE]), piece[HIGH] - piece[LOW]
             for end, inward, value, slope, tangent in (
-                (piece[LOW], 1e-9, piece[VALUE_LOW], piece[SLOPE_LOW], table.reals[curve, TANGENT_FROM]),
-                (piece[HIGH], -1e-9, piece[VALUE_HIGH], piece[SLOPE_HIGH], table.reals[curve, TANGENT_TO]),
+                (piece[LOW], 1e-9, piece[VALUE_LOW], piece[SLOPE_LOW], table.curves.reals[curve, TANGENT_FROM]),
+                (piece[HIGH], -1e-9, piece[VALUE_HIGH], piece[SLOPE_HIGH], table.curves.reals[curve, TANGENT_TO]),
             ):
                 if span < 1e-8:
                     continue
-                inside = sampled(np.array([end + inward]), curve, features, table.integers, table.reals, mode)[0]
+                inside = sampled(np.array([end + inward]), curve, features, table.curves, mode)[0]
                 off = inside[0] - value
-                if mode == POSITION and features[table.integers[curve, TAIL], 0] != 0.0:
+                if mode == POSITION and features[table.curves.integers[curve, TAIL], 0] != 0.0:
                     off = (off + np.pi) % tau - np.pi
                 if isinf(slope):
                     assert tangent
@@ -137,7 +137,7 @@ def test_two_branches_agree_at_their_tangency():
         pieces = pieces_of(features, table, -3.0, 3.0, HEIGHT)
         at_tangency = {}
         for piece in pieces:
-            key = tuple(table.integers[int(piece[CURVE]), :4])
+            key = tuple(table.curves.integers[int(piece[CURVE]), :4])
             for end, value, error, slope in (
                 (piece[LOW], piece[VALUE_LOW], piece[VALUE_ERROR_LOW], piece[SLOPE_LOW]),
                 (piece[HIGH], piece[VALUE_HIGH], piece[VALUE_ERROR_HIGH], piece[SLOPE_HIGH]),
@@ -162,8 +162,8 @@ def test_values_at_the_ends_of_pieces_are_within_their_errors():
             pieces = pieces_of(features, table, -1.0, 1.0, mode)
             for piece in pieces[:: max(1, len(pieces) // 40)]:
                 curve = int(piece[CURVE])
-                a, b = (features[k] for k in table.integers[curve, [TAIL, HEAD]])
-                d, branch, shift = (float(table.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
+                a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
+                d, branch, shift = (float(table.curves.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
                 if coincidence(a, b, d)[0] != NONE:
                     continue
                 for end, value, error in (

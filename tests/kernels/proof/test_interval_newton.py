@@ -8,23 +8,24 @@ from numpy.typing import NDArray
 
 import ladders
 from exact_chords import exactly
-from workhold.kernels.contact.rules import APART, PSI, RADIUS, RECORD_LENGTH, TAIL_X, TAIL_Y
+from workhold.kernels.base.given import Lattice, Limits, Setting
+from workhold.kernels.contact.record import PSI, RADIUS, RECORD_LENGTH, SEPARATION, TAIL_X, TAIL_Y
 from workhold.kernels.proof import interval_newton as narrowing
 from workhold.kernels.proof import variation as variations
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, OPEN
-from workhold.proof.interval_newton import Box, Limits, solutions_in
+from workhold.proof.interval_newton import Box, solutions_in
 
 LENGTH = 20.0
-MIN_GAP = -100.0
+LIMITS = Limits(-100.0, 0.0, LENGTH, 9.0, 1.0, 0.0, 0.0)
 # Pitches of 1 mm, no row offset, any gap; the columns and rows of a record are then millimetres.
-SETTING = np.array([1.0, 1.0, 0.0, MIN_GAP, 0.0, 0.0, LENGTH, 0.0])
+SETTING = Setting(Lattice(1.0, 1.0, 0.0), LIMITS, 0.0, 0.0, 0.0)
 FEATURES = np.array(ladders.FEATURES)
 
 
 def record(height: float, turn: float, reach: float) -> NDArray[np.float64]:
     """The ladders with psi within ``reach`` of 45 degrees and a turn, as one record."""
     out = np.zeros((1, RECORD_LENGTH))
-    out[0, :5] = 1.0, *range(4)
+    out[0, :5] = 2.0, *range(4)
     places = np.array(ladders.offsets(height))
     out[0, 5:9], out[0, 9:13] = places[:, 0], places[:, 1]
     out[0, PSI:] = *ladders.near(np.pi / 4 + turn, height), reach, 10.0 * reach
@@ -45,9 +46,9 @@ def settled(row: NDArray[np.float64]) -> list[float]:
     """Orientations of the fixtures of the same box in ball arithmetic."""
     reach, radius = float(row[0, 17]) + 1e-9 / LENGTH, float(row[0, RADIUS]) + 1e-9
     places = list(zip(row[0, 5:9].tolist(), row[0, 9:13].tolist(), strict=True))
-    middle = (float(row[0, PSI]), float(row[0, TAIL_X]), float(row[0, TAIL_Y]), float(row[0, APART]))
+    middle = (float(row[0, PSI]), float(row[0, TAIL_X]), float(row[0, TAIL_Y]), float(row[0, SEPARATION]))
     widths = (reach, radius, radius, 2.0 * (radius + LENGTH * reach))
-    outcome = solutions_in(Box(ladders.FEATURES, places, 2, middle, widths), Limits(0.0, MIN_GAP, LENGTH))
+    outcome = solutions_in(Box(ladders.FEATURES, places, 2, middle, widths), LIMITS)
     assert outcome is not None and outcome.reason == ""
     return [fixture[0] for fixture in outcome.fixtures]
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from contact_examples import RECORD, Held, held
+from contact_examples import RECORD, Held, held, setting
 from exact_chords import exact_solution, exactly
 from rounding import ROUNDED, error_of
 from sharpness import Constant, changed, check_sharpness
-from workhold.kernels.contact.equations import CONTACT_MARGIN, INVERSE, MIN_GAP, OFF, UNKNOWNS, WRENCH_LENGTH, touch
+from workhold.kernels.contact.equations import INVERSE, OFF, UNKNOWNS, touch
 from workhold.kernels.contact.rules import GAP_SLACK
 from workhold.kernels.proof import newton_kantorovich as kantorovich
 from workhold.kernels.proof import variation
@@ -149,12 +149,10 @@ def varies(column: int, about: bool = False) -> Callable[[Random, Kernel], float
     def ratio(random: Random, kernel: Kernel) -> float:
         contacts, frame, place = boxed(random, about)
         work, points = contacts.work()
-        setting = np.zeros(8)
-        setting[WRENCH_LENGTH] = contacts.length
         pairs, told = np.zeros((3, 4, 2)), np.zeros((variation.NUMBERS, 4))
         pairs[0] = points
         size, _ = kantorovich.sizes(RECORD, contacts.rows, points)
-        kernel(RECORD, contacts.rows, size, setting, place, frame, work, pairs, told)
+        kernel(RECORD, contacts.rows, size, setting(contacts.length), place, frame, work, pairs, told)
         here = numbers(contacts, np.zeros(4))[column]
         worst = 0.0
         for signs in SIGNS[::3]:
@@ -199,11 +197,11 @@ def equation_error(random: Random, kernel: Kernel) -> float:
     """Rounding of a contact equation, counted by machine, over what a part of a box allows for."""
     contacts = held(random)
     work, points = contacts.work()
-    setting = np.zeros(8)
-    setting[WRENCH_LENGTH] = contacts.length
     pairs, told = np.zeros((3, 4, 2)), np.zeros((variation.NUMBERS, 4))
     pairs[0] = points
-    kernel(RECORD, contacts.rows, 0.0, setting, np.zeros((2, 4)), np.zeros((2, 4, 4)), work, pairs, told)
+    kernel(
+        RECORD, contacts.rows, 0.0, setting(contacts.length), np.zeros((2, 4)), np.zeros((2, 4, 4)), work, pairs, told
+    )
     rows, centers = Rows(work), Rows(points)
     ROUNDED_TOUCH([int(v) for v in RECORD], contacts.rows.tolist(), contacts.length, rows, centers)
     return max(error_of(rows[OFF, k]) / told[variation.ERROR, k] for k in range(4))
@@ -219,16 +217,15 @@ def judged_from_aside(rule: str, lines: bool) -> Callable[[Random, Kernel], floa
         points, _ = contacts.in_place()
         _, size, _, gap = contacts.forces(points, psi)
         others = {"LEAST_SPAN": -9.0, "LEAST_CLOSURE": -9.0, "LEAST_CLAMPING": -9.0}
-        setting = np.zeros(8)
-        setting[[WRENCH_LENGTH, MIN_GAP, CONTACT_MARGIN]] = contacts.length, -1e9, -1e9
+        asked = setting(contacts.length)
         if rule == "gap":
-            setting[MIN_GAP] = gap + GAP_SLACK
+            asked = setting(contacts.length, gap=gap + GAP_SLACK)
         elif rule == "end":
             peg = random.randrange(4)
             row = contacts.rows[peg]
             row[5] = 1.0 if lines else 0.8
             row[1:5] = ended(row, points[peg], random.choice([1.0, -1.0]))
-            setting[CONTACT_MARGIN] = 0.0
+            asked = setting(contacts.length, margin=0.0)
         else:
             others["LEAST_SPAN"] = size
         judge = changed(kernel, **others)
@@ -243,7 +240,7 @@ def judged_from_aside(rule: str, lines: bool) -> Callable[[Random, Kernel], floa
 
             def is_open(part: float, moved: Held = moved, work: Array = work, pairs: Array = pairs) -> bool:
                 null = np.zeros(4)
-                return bool(judge(RECORD, moved.rows, setting, off * part, smallest, work, pairs, null) == OPEN)
+                return bool(judge(RECORD, moved.rows, asked, off * part, smallest, work, pairs, null) == OPEN)
 
             if not is_open(1.0):
                 return inf

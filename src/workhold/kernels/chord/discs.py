@@ -8,7 +8,7 @@ min(sqrt q, q / half). Between two arcs, g = |c - w| is known to e, and with D =
     half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t),
     the direction of c - w  to  1.6 e / g.
 
-Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R) (see ``through_motion``: there
+Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R) (see ``chord.coincidences``: there
 d sin(gamma / 2) <= 0.7 R between arcs, d (1 - cos gamma) <= R between a line and an arc).
 """
 

@@ -1,4 +1,4 @@
-r"""Chords: two pegs of one jaw touching two features, as a curve over the orientation.
+r"""Chords: two pegs of one carrier touching two features, as a curve over the orientation.
 
 Look from the workpiece's frame: the pegs turn by psi = -theta and move as one rigid set. Two pegs a lattice step
 ``Delta`` apart, the first on feature a (the chord's tail u) and the second on feature b (its head v = u + w), form a
@@ -10,7 +10,7 @@ Conventions
 r_a, r_b : unit normal of a line, unit vector from the centre for an arc (its sign plays no part in lines of action).
 P : the chord's instant centre, where the lines of action through both contacts meet; P = u + p r_a with
     p = cross(w, r_b) / X and X = cross(r_a, r_b). When psi turns, u' = J (u - P), J the quarter turn.
-height : h = y . u, with x = (cos psi, sin psi) and y = J x the vise's axes. From u' follows h' = -x . P.
+height : h = y . u, with x = (cos psi, sin psi) and y = J x the axes of the pegs' frame. From u' follows h' = -x . P.
 position : s, the parameter of u on feature a. s' = -p on a line, -p / R on an arc of radius R.
 A tangency of the chord (X = 0) is where its two branches meet and both derivatives are infinite.
 backward error : eta, a bound in mm of how far the computed contacts are off their features, from rounding alone.

@@ -29,8 +29,8 @@ MOST_EVENTS = 16
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both sides), the chord
 # is a tangency, or ranges are cut for another reason.
 END, TANGENCY, CUT = 0.0, 1.0, 2.0
-# Half-width in radians of the sliver left out around a coincidence (see ``through_motion``): there both contacts share one
-# line of action; what slides there is covered by the sliding pairs.
+# Half-width in radians of the sliver left out around a coincidence (see ``chord.coincidences``): there both contacts share
+# one line of action; what slides there is covered by the sliding pairs.
 SLIVER = 1e-12
 # In ranges narrower than this, in radians, the test in the middle cannot be trusted near a tangency.
 NARROW = 1e-6

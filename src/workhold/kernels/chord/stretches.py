@@ -2,13 +2,13 @@
 
 All lattice steps of one length share the stretches of their curves: P, seen from the workpiece, depends on the direction
 alpha only. Beside a tangency, where P runs off to infinity, a short stretch tells of X^3 P' and X^3 instead (see
-``chord_bounds``), from which the signs of second derivatives follow.
+``chord.center_speeds``), from which the signs of second derivatives follow.
 
-Columns of a stretch: HIGH (where it ends, alpha in radians; it begins where the one before it ends, the first part of a
-stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a tangency), X_LOW, X_HIGH, Y_LOW, Y_HIGH
-(of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), TURN (largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3),
-PART_A, PART_B (largest sizes of the parts of X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this
-stretch once more, for lattice steps whose curves it tells too little of).
+Columns of a stretch: STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends, the first part
+of a stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a tangency), X_LOW, X_HIGH, Y_LOW,
+Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), LARGEST_CROSS (largest |X|, with the sign of X), LEAST_CUBE
+(smallest |X|^3), PART_A, PART_B (largest sizes of the parts of X^3 P' along r_a and r_b), PARTS (how many of the rows that
+follow divide this stretch once more, for lattice steps whose curves it tells too little of).
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from workhold.kernels.curves.columns import BRANCH, FROM, LENGTH, TANGENT_FROM, 
 
 Array = NDArray[np.float64]
 
-HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH, TURN, LEAST_CUBE, PART_A, PART_B, PARTS = range(13)
+STRETCH_HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH = range(8)
+LARGEST_CROSS, LEAST_CUBE, PART_A, PART_B, PARTS = range(8, 13)
 STRETCH_LENGTH = 13
 
 # Widest and narrowest stretches in radians, and the length to which those beside a tangency are cut.
@@ -53,12 +54,12 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
     when P moves no farther than some part of the chord's length.
     """
     turn, x, y, along, part_a, part_b = center_motion(a, b, curve, low, high, sign)
-    row[HIGH], row[PARTS] = high, 0.0
+    row[STRETCH_HIGH], row[PARTS] = high, 0.0
     row[X_LOW], row[X_HIGH], row[Y_LOW], row[Y_HIGH] = x[0], x[1], y[0], y[1]
     row[ALONG_LOW], row[ALONG_HIGH] = along
     row[PART_A], row[PART_B] = max(-part_a[0], part_a[1]), max(-part_b[0], part_b[1])
-    row[TURN] = turn[1] if sign > 0.0 else turn[0]
-    least, most = min(abs(turn[0]), abs(turn[1])), abs(row[TURN])
+    row[LARGEST_CROSS] = turn[1] if sign > 0.0 else turn[0]
+    least, most = min(abs(turn[0]), abs(turn[1])), abs(row[LARGEST_CROSS])
     size = hypot(max(-x[0], x[1]), max(-y[0], y[1]))
     row[SPEED], row[LEAST_CUBE] = inf, least * least * least
     if least > 0.0 and size < inf:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.contact.equations import WORK_LENGTH, WRENCH_LENGTH, take_pegs, touch
+from workhold.kernels.base.given import Setting
+from workhold.kernels.contact.equations import WORK_LENGTH, take_pegs, touch
 from workhold.kernels.contact.rules import LEAST_SPAN
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
 
@@ -18,30 +19,30 @@ IntArray = NDArray[np.int64]
 
 @compiled
 def contacts_of(
-    records: Array, features: Array, setting: Array, points: Array, openings: Array, nulls: Array, forces: Array
+    records: Array, rows: Array, setting: Setting, points: Array, gaps: Array, nulls: Array, forces: Array
 ) -> None:
     """Where the contacts of records are, and with what forces they hold.
 
     Parameters
     ----------
-    records : (N, 19), see ``kernels.contact.rules``.
-    features : (F, 10) rows.
-    setting : see ``kernels.contact.equations``.
+    records : (N, 19), see ``kernels.contact.record``.
+    rows : (F, 10) of the features.
     points : (N, 4, 2) receives the pegs' centres in mm.
-    openings : (N,) receives the x distance from the rightmost left peg to the leftmost right peg.
+    gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
     nulls : (N, 4) receives the null vectors scaled to sum 1, all -1 where the wrenches do not span the space.
     forces : (N, 4) receives the forces per unit of clamping force.
     """
-    length = setting[WRENCH_LENGTH]
+    length = setting.limits.wrench_length
     w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
     for n in range(records.shape[0]):
-        take_pegs(records[n], setting, w)
-        touch(records[n], features, length, w, pairs[0])
-        wrenches(records[n], features, length, pairs, null)
+        take_pegs(records[n], setting.lattice, w)
+        touch(records[n], rows, length, w, pairs[0])
+        wrenches(records[n], rows, length, pairs, null)
         total = null[0] + null[1] + null[2] + null[3]
         for k in range(4):
             null[k] = null[k] / total if abs(total) > LEAST_SPAN else -1.0
-        openings[n], push = held(w, pairs[0], pairs[1], null)
+        gaps[n], push = held(w, pairs[0], pairs[1], null)
+        push *= setting.limits.clamping
         for k in range(4):
             points[n, k, 0], points[n, k, 1] = pairs[0, k, 0], pairs[0, k, 1]
             nulls[n, k], forces[n, k] = null[k], null[k] / push
@@ -49,35 +50,36 @@ def contacts_of(
 
 @compiled
 def to_canonical_form(
-    kind: IntArray, theta: Array, columns: IntArray, rows: IntArray, orders: IntArray, hair: float
+    standing: IntArray, theta: Array, columns: IntArray, rows: IntArray, orders: IntArray, swapped: int, hair: float
 ) -> None:
     """Bring fixtures to the form they are listed in, in place.
 
-    Orientations are in [0, 2 pi), for Type I in [0, pi), up to a hair; columns count from the leftmost peg of each jaw, rows
-    from the lowest of all; pegs of a jaw are in the order of columns and rows.
+    Orientations are in [0, 2 pi), or in [0, pi) where the half turn that swaps the carriers leaves the arrangement as it is,
+    up to a hair; columns count from the leftmost peg of each carrier, rows from the lowest of all; pegs of a carrier are in
+    the order of columns and rows.
 
     Parameters
     ----------
-    kind : (N,) 1 or 2.
+    standing : (N,) how many of the pegs, the first ones, stand on the carrier that stands still.
     theta : (N,) orientation of the workpiece in radians.
-    columns, rows : (N, 4) lattice places, pegs of the left jaw first.
+    columns, rows : (N, 4) lattice places.
     orders : (N, 4) receives the order of the pegs.
+    swapped : how many pegs stand on each carrier of the arrangement that such a half turn leaves as it is; 0 for none.
     hair : orientations nearer than this, in radians, are one.
     """
-    for n in range(len(kind)):
+    for n in range(len(standing)):
         angle = (theta[n] + hair) % (2.0 * pi) - hair
-        # The vise turned half way round: the jaws swap, rows and columns run the other way.
-        turned = kind[n] == 1 and angle >= pi - hair
+        # Everything turned half way round: the carriers swap, rows and columns run the other way.
+        turned = standing[n] == swapped and angle >= pi - hair
         theta[n] = angle - pi if turned else angle
         order, column, row = orders[n], columns[n], rows[n]
         for k in range(4):
             order[k] = 3 - k if turned else k
             if turned:
                 column[k], row[k] = -column[k], -row[k]
-        lefts = 2 if kind[n] == 1 else 3
         lowest = min(min(row[0], row[1]), min(row[2], row[3]))
-        for jaw in range(2):
-            first, last = (0, lefts) if jaw == 0 else (lefts, 4)
+        for carrier in range(2):
+            first, last = (0, standing[n]) if carrier == 0 else (standing[n], 4)
             base = column[order[first]]
             for k in range(first, last):
                 base = min(base, column[order[k]])

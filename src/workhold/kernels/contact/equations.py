@@ -1,18 +1,19 @@
 """Four pegs in place: their centres, how far those are off their features, and how that changes when they move.
 
-The unknowns are z = (psi, tail x, tail y, apart): the turn of the pegs in the workpiece's frame, the centre of the first
-peg, and the x distance from the first left to the first right peg. The contact equations say that every centre lies on its
-feature's line or circle; their Jacobian is taken over (L psi, tail x, tail y, apart), all in mm.
+The unknowns are z = (psi, tail x, tail y, separation): the turn of the pegs in the workpiece's frame, the centre of the
+first peg, and the x distance from the first standing to the first moving peg (sigma in the paper). The contact equations say
+that every centre lies on its feature's line or circle; their Jacobian is taken over (L psi, tail x, tail y, separation), all
+in mm.
 
 Work space: ``w`` (18, 4), a row of four numbers, one for each peg where nothing else is said, at
 
 - UNKNOWNS: z;
-- MOVING: 1 for a peg that moves with the right jaw, else 0;
-- STEP_X, STEP_Y: places in mm from the first peg, with the right jaw at zero;
+- MOVING: 1 for a peg of the moving carrier, else 0;
+- STEP_X, STEP_Y: places in mm from the first peg, without the separation;
 - OFF: distances in mm of the centres from their lines and circles, outward positive;
-- NEWTON: the Newton step in mm, over (L psi, tail x, tail y, apart);
+- NEWTON: the Newton step in mm, over (L psi, tail x, tail y, separation);
 - SLOPES (4): the Jacobian, a row for each peg;
-- LEFT (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse.
+- REST (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse.
 
 ``points`` (4, 2) holds the centres in mm.
 """
@@ -25,28 +26,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.contact.rules import APART, COLUMNS, FEATURES, KIND, PSI, ROWS, TAIL_X, TAIL_Y
+from workhold.kernels.base.given import Lattice
+from workhold.kernels.contact.record import COLUMNS, FEATURES, PSI, ROWS, SEPARATION, STANDING, TAIL_X, TAIL_Y
 
 Array = NDArray[np.float64]
 
-UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, LEFT, INVERSE = 0, 1, 2, 3, 4, 5, 6, 10, 14
+UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, REST, INVERSE = 0, 1, 2, 3, 4, 5, 6, 10, 14
 WORK_LENGTH = 18
-
-# Indices into what is common to all records of a search, lengths in mm: the lattice, the smallest gap and the peg radius of
-# the vise, the contact margin, L of the wrenches, and how far the features' rows may be from the drawing.
-PITCH_X, PITCH_Y, ROW_OFFSET, MIN_GAP, PEG_RADIUS, CONTACT_MARGIN, WRENCH_LENGTH, BACKWARD_ERROR = range(8)
-SETTING_LENGTH = 8
 
 
 @inner
-def take_pegs(record: Array, setting: Array, w: Array) -> None:
-    """Bring the pegs of a (19,) record to their places on the jaws, and the unknowns to its own."""
+def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
+    """Bring the pegs of a (19,) record to their places on the carriers, and the unknowns to its own."""
     w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
-    w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[APART]
+    w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[SEPARATION]
     for k in range(4):
-        w[MOVING, k] = 1.0 if k == 3 or (k == 2 and record[KIND] == 1.0) else 0.0
-        w[STEP_X, k] = record[COLUMNS + k] * setting[PITCH_X]
-        w[STEP_Y, k] = record[ROWS + k] * setting[PITCH_Y] + w[MOVING, k] * setting[ROW_OFFSET]
+        w[MOVING, k] = 1.0 if k >= record[STANDING] else 0.0
+        w[STEP_X, k] = record[COLUMNS + k] * lattice.pitch_x
+        w[STEP_Y, k] = record[ROWS + k] * lattice.pitch_y + w[MOVING, k] * lattice.row_offset
 
 
 @inner
@@ -83,26 +80,26 @@ def invert(w: Array) -> float:
     """
     for i in range(4):
         for j in range(4):
-            w[LEFT + i, j] = w[SLOPES + i, j]
+            w[REST + i, j] = w[SLOPES + i, j]
             w[INVERSE + i, j] = 1.0 if i == j else 0.0
     determinant = 1.0
     for k in range(4):
         best = k
         for i in range(k + 1, 4):
-            if abs(w[LEFT + i, k]) > abs(w[LEFT + best, k]):
+            if abs(w[REST + i, k]) > abs(w[REST + best, k]):
                 best = i
-        pivot = w[LEFT + best, k]
+        pivot = w[REST + best, k]
         determinant *= abs(pivot)
         if not determinant > 0.0:
             return determinant
         for j in range(4):
-            one, other = w[LEFT + best, j] / pivot, w[INVERSE + best, j] / pivot
-            w[LEFT + best, j], w[INVERSE + best, j] = w[LEFT + k, j], w[INVERSE + k, j]
-            w[LEFT + k, j], w[INVERSE + k, j] = one, other
+            one, other = w[REST + best, j] / pivot, w[INVERSE + best, j] / pivot
+            w[REST + best, j], w[INVERSE + best, j] = w[REST + k, j], w[INVERSE + k, j]
+            w[REST + k, j], w[INVERSE + k, j] = one, other
         for i in range(4):
-            factor = w[LEFT + i, k] if i != k else 0.0
+            factor = w[REST + i, k] if i != k else 0.0
             for j in range(4):
-                w[LEFT + i, j] -= factor * w[LEFT + k, j]
+                w[REST + i, j] -= factor * w[REST + k, j]
                 w[INVERSE + i, j] -= factor * w[INVERSE + k, j]
     for i in range(4):
         w[NEWTON, i] = 0.0

@@ -21,7 +21,7 @@ from workhold.kernels.base.between_ends import slope_range, value_bounds
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.chord.discs import value_disc
 from workhold.kernels.chord.evaluation import curve_value
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.curves.columns import HEAD, TAIL, Curves
 from workhold.kernels.curves.piece_columns import (
     CURVE,
     HIGH,
@@ -40,10 +40,9 @@ from workhold.kernels.curves.piece_columns import (
 from workhold.kernels.curves.pieces import SAME
 
 Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is then below
-# ``vise_checks.LEAST_CLAMPING`` throughout.
+# ``contact.rules.LEAST_CLAMPING`` throughout.
 NARROWEST = 1e-8
 # A range over which a curve moves farther than this, in mm or radians, is split beyond the narrowest.
 FARTHEST = 1e-6
@@ -56,23 +55,21 @@ HAIR = 1e-9
 # Ranges in radians from which on chords are bounded as discs, where their slopes are unknown, and to which those are split.
 WIDEST_DISC = 0.1
 NARROWEST_DISC = 1e-13
-# Columns of a root: PSI and RADIUS in radians, MULTIPLE (k of the target offset + k period).
-PSI, RADIUS, MULTIPLE = range(3)
+# Columns of a root: ROOT_PSI and ROOT_RADIUS in radians, MULTIPLE (k of the target offset + k period).
+ROOT_PSI, ROOT_RADIUS, MULTIPLE = range(3)
 STACK_LENGTH = 18
 # Rounding of sums and differences of values, relative to them.
 ROUNDINGS = 8.0 * 1.2e-16
 
 
 @inner
-def value_at(
-    psi: float, curve: int, features: Array, integers: IntArray, reals: Array, mode: float
-) -> tuple[float, float, float, float]:
+def value_at(psi: float, curve: int, features: Array, curves: Curves, mode: float) -> tuple[float, float, float, float]:
     """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the slope may be
     infinite)."""
-    a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
-    value, slope, error, spread = curve_value(a, b, reals[curve], psi, mode)
+    a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
+    value, slope, error, spread = curve_value(a, b, curves.reals[curve], psi, mode)
     if not isfinite(error):
-        value, error = value_disc(a, b, reals[curve], psi, SAME, mode)
+        value, error = value_disc(a, b, curves.reals[curve], psi, SAME, mode)
     return value, slope, error, spread
 
 
@@ -98,8 +95,7 @@ def solve(
     one: int,
     two: int,
     features: Array,
-    integers: IntArray,
-    reals: Array,
+    curves: Curves,
     mode: float,
     target: float,
     start: float,
@@ -121,8 +117,8 @@ def solve(
     for _ in range(100):
         if not low < psi < high:
             psi = (low + high) / 2.0
-        value_one, slope_one, error_one, _ = value_at(psi, one, features, integers, reals, mode)
-        value_two, slope_two, error_two, _ = value_at(psi, two, features, integers, reals, mode)
+        value_one, slope_one, error_one, _ = value_at(psi, one, features, curves, mode)
+        value_two, slope_two, error_two, _ = value_at(psi, two, features, curves, mode)
         rest = value_two - value_one - target
         error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
         # Nothing is gained where rounding is the larger part of what is left.
@@ -154,12 +150,12 @@ def targets(low: float, high: float, offset: float, period: float) -> tuple[int,
 
 @inner
 def disc_bounds(
-    low: float, high: float, curve: int, features: Array, integers: IntArray, reals: Array, mode: float
+    low: float, high: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float]:
     """Bounds of a curve's values over a range from a disc that holds its chords, whatever its slopes."""
-    a, b = features[integers[curve, TAIL]], features[integers[curve, HEAD]]
+    a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     middle, reach = low + (high - low) / 2.0, (high - low) / 2.0 + SAME
-    value, radius = value_disc(a, b, reals[curve], middle, reach, mode)
+    value, radius = value_disc(a, b, curves.reals[curve], middle, reach, mode)
     return (value - radius, value + radius)
 
 
@@ -200,8 +196,7 @@ def crossings(
     first: Array,
     second: Array,
     features: Array,
-    integers: IntArray,
-    reals: Array,
+    curves: Curves,
     mode: float,
     offset: float,
     period: float,
@@ -234,13 +229,13 @@ def crossings(
     c1, q1 = first[VALUE_ERROR_HIGH], first[SLOPE_ERROR_HIGH]
     c2, q2 = second[VALUE_ERROR_HIGH], second[SLOPE_ERROR_HIGH]
     if is_inside(low, first[LOW], first[SLOPE_LOW]):
-        v1, s1, e1, g1 = value_at(low, one, features, integers, reals, mode)
+        v1, s1, e1, g1 = value_at(low, one, features, curves, mode)
     if is_inside(low, second[LOW], second[SLOPE_LOW]):
-        v2, s2, e2, g2 = value_at(low, two, features, integers, reals, mode)
+        v2, s2, e2, g2 = value_at(low, two, features, curves, mode)
     if is_inside(high, first[HIGH], first[SLOPE_HIGH]):
-        w1, t1, c1, q1 = value_at(high, one, features, integers, reals, mode)
+        w1, t1, c1, q1 = value_at(high, one, features, curves, mode)
     if is_inside(high, second[HIGH], second[SLOPE_HIGH]):
-        w2, t2, c2, q2 = value_at(high, two, features, integers, reals, mode)
+        w2, t2, c2, q2 = value_at(high, two, features, curves, mode)
     rounding = ROUNDINGS * (abs(v1) + abs(v2) + abs(w1) + abs(w2) + abs(offset))
     found = 0
     depth = 0
@@ -266,11 +261,11 @@ def crossings(
             while k <= last:
                 target = offset + k * period
                 start = first_guess(low, high, f_low - target, f_high - target, s2 - s1, t2 - t1)
-                psi, rest = solve(low, high, f_low, f_high, one, two, features, integers, reals, mode, target, start)
+                psi, rest = solve(low, high, f_low, f_high, one, two, features, curves, mode, target, start)
                 if psi in (low, high):
                     rest += error
-                roots[found, PSI], roots[found, MULTIPLE] = psi, k
-                roots[found, RADIUS] = min(rest / steepness, width) + SAME
+                roots[found, ROOT_PSI], roots[found, MULTIPLE] = psi, k
+                roots[found, ROOT_RADIUS] = min(rest / steepness, width) + SAME
                 found += 1
                 k += 1
             done = True
@@ -282,10 +277,10 @@ def crossings(
             smallest = NARROWEST_DISC if steep else NARROWEST
             # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are bounded.
             if width <= WIDEST_DISC and not (isfinite(bottom1) and isfinite(top1)):
-                bottom1, top1 = disc_bounds(low, high, one, features, integers, reals, mode)
+                bottom1, top1 = disc_bounds(low, high, one, features, curves, mode)
                 smallest = NARROWEST_DISC
             if width <= WIDEST_DISC and not (isfinite(bottom2) and isfinite(top2)):
-                bottom2, top2 = disc_bounds(low, high, two, features, integers, reals, mode)
+                bottom2, top2 = disc_bounds(low, high, two, features, curves, mode)
                 smallest = NARROWEST_DISC
             bottom, top = bottom2 - top1 - error, top2 - bottom1 + error
             if isfinite(lowest) or isfinite(highest):
@@ -298,8 +293,8 @@ def crossings(
                     if last - k >= roots.shape[0] - found:
                         return -1
                     while k <= last:
-                        roots[found, PSI], roots[found, MULTIPLE] = low + width / 2.0, k
-                        roots[found, RADIUS] = width / 2.0 * (1.0 + 1e-15) + SAME
+                        roots[found, ROOT_PSI], roots[found, MULTIPLE] = low + width / 2.0, k
+                        roots[found, ROOT_RADIUS] = width / 2.0 * (1.0 + 1e-15) + SAME
                         found += 1
                         k += 1
                     done = True
@@ -322,8 +317,8 @@ def crossings(
             middle = low + width / 4.0
         elif isinf(t1) or isinf(t2):
             middle = high - width / 4.0
-        m1, n1, error1, spread1 = value_at(middle, one, features, integers, reals, mode)
-        m2, n2, error2, spread2 = value_at(middle, two, features, integers, reals, mode)
+        m1, n1, error1, spread1 = value_at(middle, one, features, curves, mode)
+        m2, n2, error2, spread2 = value_at(middle, two, features, curves, mode)
         item = stack[depth]
         item[0], item[1] = middle, high
         item[2], item[3], item[4], item[5] = m1, n1, m2, n2

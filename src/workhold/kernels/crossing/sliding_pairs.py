@@ -6,9 +6,6 @@ over the orientation: it stands upright at one. It is met with the other chords 
 
 Two sliding pairs at one orientation leave the workpiece a freedom that the contacts do not resist, so they never make a
 fixture together; nor does a sliding pair whose contacts share one line of action.
-
-Columns of a sliding pair: FROM and TO (parameter of the tail on its feature), DIRECTION (alpha), STEP_LENGTH, ORIENTATION
-(psi in radians); its whole numbers are TAIL, HEAD, COLUMN_STEP, ROW_STEP as for a curve.
 """
 
 from __future__ import annotations
@@ -19,31 +16,43 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
 from workhold.kernels.chord.evaluation import backward_error, parameter_on
 from workhold.kernels.chord.intervals import PARALLEL
-from workhold.kernels.contact.rules import (
+from workhold.kernels.contact.record import (
     PEG_LENGTH,
+    PEG_RADIUS,
+    PEG_X,
+    PEG_Y,
     RECORD_LENGTH,
-    WRENCH_LENGTH,
-    is_fixture,
-    is_listed,
     place_peg,
-    share_a_jaw,
     write_record,
 )
-from workhold.kernels.crossing.three_and_one import add_right_pegs, height_range, place_triple, row_meets
-from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, place_chord
-from workhold.kernels.curves.columns import COLUMN_STEP, HEAD, ROW_STEP, SHIFT, TAIL
-from workhold.kernels.curves.columns import FROM as CURVE_FROM
-from workhold.kernels.curves.columns import TO as CURVE_TO
+from workhold.kernels.contact.rules import is_fixture, is_listed, share_a_carrier
+from workhold.kernels.crossing.three_and_one import add_moving_pegs, height_range, place_triple, row_meets
+from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, is_among, place_chord
+from workhold.kernels.curves.columns import (
+    COLUMN_STEP,
+    DIRECTION,
+    FROM,
+    HEAD,
+    ORIENTATION,
+    ROW_STEP,
+    SHIFT,
+    SLIDE_FROM,
+    SLIDE_TO,
+    STEP_LENGTH,
+    TAIL,
+    TO,
+    Curves,
+    SlidingPairs,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-FROM, TO, DIRECTION, STEP_LENGTH, ORIENTATION = range(5)
-SLIDING_PAIR_REALS = 5
 TURN = 2.0 * pi
 # A chord square to its parallel lines, to within rounding of this cosine, has one line of action for both contacts.
 SQUARE = 4e-15
@@ -67,7 +76,7 @@ def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
         middle = same * ((a[1] + d * cos(alpha) - b[1]) * b[3] + (a[2] + d * sin(alpha) - b[2]) * b[4])
         low, high = max(-a[5], -b[5] - middle), min(a[5], b[5] - middle)
         if low <= high:
-            out[count, FROM], out[count, TO], out[count, DIRECTION] = low, high, alpha
+            out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
             count += 1
     return count
 
@@ -80,14 +89,14 @@ def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
     alpha = atan2(b[2] - a[2], b[1] - a[1])
     turned = atan2(a[3] * b[4] - a[4] * b[3], a[3] * b[3] + a[4] * b[4])
     if b[5] >= pi:
-        out[0, FROM], out[0, TO], out[0, DIRECTION] = -a[5], a[5], alpha
+        out[0, SLIDE_FROM], out[0, SLIDE_TO], out[0, DIRECTION] = -a[5], a[5], alpha
         return 1
     count = 0
     for lap in range(-1, 2):
         middle = turned + lap * TURN
         low, high = max(-a[5], middle - b[5]), min(a[5], middle + b[5])
         if low <= high:
-            out[count, FROM], out[count, TO], out[count, DIRECTION] = low, high, alpha
+            out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
             count += 1
     return count
 
@@ -114,7 +123,7 @@ def sliding_pairs_between(a: Array, b: Array, d: float) -> Array:
 @inner
 def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
     """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its range."""
-    low, high = reals[curve, CURVE_FROM] - reals[curve, SHIFT], reals[curve, CURVE_TO] - reals[curve, SHIFT]
+    low, high = reals[curve, FROM] - reals[curve, SHIFT], reals[curve, TO] - reals[curve, SHIFT]
     inside = psi + TURN * ceil((low - INSIDE - reach - psi) / TURN)
     return (inside <= high + INSIDE + reach, min(max(inside, low), high))
 
@@ -167,50 +176,52 @@ def tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: flo
     if row[0] != 0.0:
         spare = 1.2 * spare / row[6]
     s = parameter_on(row, x, y)
-    return sliding_pair[FROM] - spare <= s <= sliding_pair[TO] + spare
+    return sliding_pair[SLIDE_FROM] - spare <= s <= sliding_pair[SLIDE_TO] + spare
 
 
 @compiled
 def sliding_two_and_two(
     chosen: IntArray,
-    whole: IntArray,
-    sliding_pairs: Array,
+    sliding_pairs: SlidingPairs,
     members: IntArray,
-    loose: Array,
-    features: Array,
-    integers: IntArray,
-    reals: Array,
-    pitch_y: float,
-    row_offset: float,
-    limits: Array,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All Type I fixtures that rest on one of the ``chosen`` sliding pairs and on a curve of ``members``.
+    """All fixtures of two and two pegs that rest on one of the ``chosen`` sliding pairs and on a curve of ``members``.
 
     Parameters and result as for ``two_and_two_cells``.
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
+    loose, rows, pitch_y = features.loose, features.rows, lattice.pitch_y
     for u in chosen:
-        sliding_pair, psi = sliding_pairs[u], sliding_pairs[u, ORIENTATION]
+        whole, sliding_pair = sliding_pairs.integers[u], sliding_pairs.reals[u]
+        psi = sliding_pair[ORIENTATION]
         ax, ay = -sin(psi), cos(psi)
-        row = loose[whole[u, TAIL]]
-        reach = sliding_pair_reach(row, loose[whole[u, HEAD]], sliding_pair)
+        row = loose[whole[TAIL]]
+        reach = sliding_pair_reach(row, loose[whole[HEAD]], sliding_pair)
         lowest, highest = height_range(row, ax, ay)
         for curve in members:
-            exists, inside = orientation_inside(curve, psi, reach, reals)
-            if not exists or shares_a_line(reals[curve], inside):
+            exists, inside = orientation_inside(curve, psi, reach, curves.reals)
+            if not exists or shares_a_line(curves.reals[curve], inside):
                 continue
-            place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
-            height = ax * pegs[0, 0] + ay * pegs[0, 1]
-            error = pegs[0, 5] + 4.0 * limits[WRENCH_LENGTH] * reach
+            tail = curves.integers[curve, TAIL]
+            place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, rows, curves)
+            height = ax * pegs[0, PEG_X] + ay * pegs[0, PEG_Y]
+            error = pegs[0, PEG_RADIUS] + 4.0 * limits.wrench_length * reach
             slack = 1e-9 + error / pitch_y
             for order in range(2):
-                # The sliding pair is on the left for order 0, on the right for order 1.
+                # The sliding pair stands still for order 0, and is on the moving carrier for order 1.
+                one, two = (whole[TAIL], tail) if order == 0 else (tail, whole[TAIL])
+                if not (is_among(one, features.standing) and is_among(two, features.moving)):
+                    continue
                 sign = 1.0 if order == 0 else -1.0
-                base = height - sign * row_offset
+                base = height - sign * lattice.row_offset
                 first = int(ceil((lowest - base) / pitch_y - slack))
                 last = int(floor((highest - base) / pitch_y + slack))
                 for line in range(first, last + 1):
@@ -218,21 +229,18 @@ def sliding_two_and_two(
                         meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
                         if not meets or not tail_inside(row, sliding_pair, x, y, radius):
                             continue
-                        if order == 0:
-                            place_sliding_pair(pegs[:2], x, y, 0.0, whole[u], sliding_pair, radius, reach)
-                            place_chord(
-                                pegs[2:], curve, inside, 2.0 * reach + INSIDE, float(-line), features, integers, reals
-                            )
-                        else:
-                            place_chord(pegs[:2], curve, inside, 2.0 * reach + INSIDE, 0.0, features, integers, reals)
-                            place_sliding_pair(pegs[2:], x, y, float(line), whole[u], sliding_pair, radius, reach)
-                        verdict, apart = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
+                        # The first peg of the standing chord is in row 0.
+                        slid, turned = (0.0, float(-line)) if order == 0 else (float(line), 0.0)
+                        at, other = 2 * order, 2 - 2 * order
+                        place_sliding_pair(pegs[at : at + 2], x, y, slid, whole, sliding_pair, radius, reach)
+                        place_chord(pegs[other : other + 2], curve, inside, 2.0 * reach + INSIDE, turned, rows, curves)
+                        verdict, separation = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
                         stats[CANDIDATES] += 1
                         if verdict > 0 and order == 0:
                             stats[CONTACTS] += 1
                         if is_listed(verdict, counting, count, limits):
                             out = with_room(out, count)
-                            write_record(out[count], 1.0, pegs, psi, apart, reach)
+                            write_record(out[count], 2.0, pegs, psi, separation, reach)
                             count += 1
     return out[:count]
 
@@ -240,44 +248,44 @@ def sliding_two_and_two(
 @compiled
 def sliding_three_and_one(
     chosen: IntArray,
-    whole: IntArray,
-    sliding_pairs: Array,
+    sliding_pairs: SlidingPairs,
     members: IntArray,
-    loose: Array,
-    features: Array,
-    integers: IntArray,
-    reals: Array,
-    pitch_y: float,
-    row_offset: float,
-    limits: Array,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All Type II fixtures two of whose left pegs form one of the ``chosen`` sliding pairs from the shared tail.
+    """All fixtures of three and one peg two of whose standing pegs form one of the ``chosen`` sliding pairs from the shared
+    tail.
 
     Parameters and result as for ``two_and_two_cells``.
     """
     out = np.empty((16, RECORD_LENGTH))
     count = int(np.int64(0))
     pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
+    loose = features.loose
     for u in chosen:
-        sliding_pair, psi = sliding_pairs[u], sliding_pairs[u, ORIENTATION]
-        tail = whole[u, TAIL]
-        reach = sliding_pair_reach(loose[tail], loose[whole[u, HEAD]], sliding_pair)
+        whole, sliding_pair = sliding_pairs.integers[u], sliding_pairs.reals[u]
+        psi, tail = sliding_pair[ORIENTATION], whole[TAIL]
+        if not is_among(tail, features.standing):
+            continue
+        reach = sliding_pair_reach(loose[tail], loose[whole[HEAD]], sliding_pair)
         for curve in members:
-            if integers[curve, TAIL] != tail:
+            if curves.integers[curve, TAIL] != tail:
                 continue
-            exists, inside = orientation_inside(curve, psi, reach, reals)
-            if not exists or not share_a_jaw(whole[u], integers[curve], limits):
+            exists, inside = orientation_inside(curve, psi, reach, curves.reals)
+            if not exists or not share_a_carrier(whole, curves.integers[curve], limits):
                 continue
-            if shares_a_line(reals[curve], inside):
+            if shares_a_line(curves.reals[curve], inside):
                 continue
-            place_triple(pegs, curve, curve, inside, 2.0 * reach + INSIDE, features, integers, reals)
-            x, y, radius = pegs[0, 0], pegs[0, 1], pegs[0, 5]
+            place_triple(pegs, curve, curve, inside, 2.0 * reach + INSIDE, features.rows, curves)
+            x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
             if not tail_inside(loose[tail], sliding_pair, x, y, radius):
                 continue
-            place_sliding_pair(pegs[:2], x, y, 0.0, whole[u], sliding_pair, radius, reach)
-            out, count = add_right_pegs(
-                out, count, pegs, psi, reach, features, pitch_y, row_offset, limits, counting, work, null, stats
+            place_sliding_pair(pegs[:2], x, y, 0.0, whole, sliding_pair, radius, reach)
+            out, count = add_moving_pegs(
+                out, count, pegs, psi, reach, features, lattice, limits, counting, work, null, stats
             )
     return out[:count]

@@ -1,8 +1,8 @@
 """Directions in which the two pegs of a piece can push together.
 
-Two pegs push together with a force F between the two directions in which each pushes. For the clamping force to be positive
-F must point along +x on the left jaw, and the right jaw's pegs push with -F. Directions with positive x are told as y / (x
-+ |y|), which grows from -1 to 1 with the angle at a rate of at most 1.
+Two pegs push together with a force F between the two directions in which each pushes. Where closing clamps, F must point
+along +x for standing pegs, and moving pegs push with -F; where opening clamps it is the other way round. Directions with
+positive x are told as y / (x + |y|), which grows from -1 to 1 with the angle at a rate of at most 1.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.curves.piece_columns import (
-    FORCE_LEFT_HIGH,
-    FORCE_LEFT_LOW,
-    FORCE_RIGHT_HIGH,
-    FORCE_RIGHT_LOW,
-    HEAD_X,
-    HEAD_Y,
-    TAIL_X,
-    TAIL_Y,
+    HEAD_NORMAL_X,
+    HEAD_NORMAL_Y,
+    LEFTWARD_HIGH,
+    LEFTWARD_LOW,
+    RIGHTWARD_HIGH,
+    RIGHTWARD_LOW,
+    TAIL_NORMAL_X,
+    TAIL_NORMAL_Y,
 )
 
 Array = NDArray[np.float64]
@@ -71,15 +71,15 @@ def shared_force(ax: float, ay: float, bx: float, by: float, share: float, doubt
 @inner
 def sum_is_long(edge: Array, share: float) -> bool:
     """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a normal."""
-    cosine = edge[TAIL_X] * edge[HEAD_X] + edge[TAIL_Y] * edge[HEAD_Y]
+    cosine = edge[TAIL_NORMAL_X] * edge[HEAD_NORMAL_X] + edge[TAIL_NORMAL_Y] * edge[HEAD_NORMAL_Y]
     return 1.0 + 2.0 * share * cosine + share * share >= 0.25
 
 
 @inner
 def largest_turn(low: Array, high: Array) -> float:
     """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than 1."""
-    tail_x, tail_y = high[TAIL_X] - low[TAIL_X], high[TAIL_Y] - low[TAIL_Y]
-    head_x, head_y = high[HEAD_X] - low[HEAD_X], high[HEAD_Y] - low[HEAD_Y]
+    tail_x, tail_y = high[TAIL_NORMAL_X] - low[TAIL_NORMAL_X], high[TAIL_NORMAL_Y] - low[TAIL_NORMAL_Y]
+    head_x, head_y = high[HEAD_NORMAL_X] - low[HEAD_NORMAL_X], high[HEAD_NORMAL_Y] - low[HEAD_NORMAL_Y]
     # A chord of up to 1 radian is no shorter than 0.95 times its arc.
     return 1.06 * sqrt(max(tail_x * tail_x + tail_y * tail_y, head_x * head_x + head_y * head_y))
 
@@ -99,13 +99,13 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
     turn = largest_turn(low, high) + 4.0 * turned
     if share <= 0.0 or turn > LITTLE_TURN or not (sum_is_long(low, share) and sum_is_long(high, share)):
         return
-    wide = row[FORCE_LEFT_LOW], row[FORCE_LEFT_HIGH], row[FORCE_RIGHT_LOW], row[FORCE_RIGHT_HIGH]
+    wide = row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH], row[LEFTWARD_LOW], row[LEFTWARD_HIGH]
     write_hull(row, low, high, share, 5.0 * (2.0 * turned + turn * turn / 4.0))
     # Both are bounds.
-    row[FORCE_LEFT_LOW], row[FORCE_LEFT_HIGH] = max(row[FORCE_LEFT_LOW], wide[0]), min(row[FORCE_LEFT_HIGH], wide[1])
-    row[FORCE_RIGHT_LOW], row[FORCE_RIGHT_HIGH] = (
-        max(row[FORCE_RIGHT_LOW], wide[2]),
-        min(row[FORCE_RIGHT_HIGH], wide[3]),
+    row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH] = max(row[RIGHTWARD_LOW], wide[0]), min(row[RIGHTWARD_HIGH], wide[1])
+    row[LEFTWARD_LOW], row[LEFTWARD_HIGH] = (
+        max(row[LEFTWARD_LOW], wide[2]),
+        min(row[LEFTWARD_HIGH], wide[3]),
     )
 
 
@@ -113,23 +113,26 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
 def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
     """Write the hull of the pushes (see ``shared_force``) at both ends of a piece, widened for a ``doubt`` of directions."""
     for k in range(2):
-        # Pegs push against the outward normals; the right jaw's pegs push with -F.
+        # Pegs push against the outward normals: rightward as told, leftward as the opposite.
         sign = -1.0 if k == 0 else 1.0
-        bottom, top = shared_force(
-            sign * low[TAIL_X], sign * low[TAIL_Y], sign * low[HEAD_X], sign * low[HEAD_Y], share, 2.0 * doubt
-        )
-        first, last = shared_force(
-            sign * high[TAIL_X], sign * high[TAIL_Y], sign * high[HEAD_X], sign * high[HEAD_Y], share, 2.0 * doubt
-        )
-        row[FORCE_LEFT_LOW + 2 * k] = min(bottom, first) - 4.0 * doubt - HAIR
-        row[FORCE_LEFT_HIGH + 2 * k] = max(top, last) + 4.0 * doubt + HAIR
+        bottom, top = edge_force(low, sign, share, 2.0 * doubt)
+        first, last = edge_force(high, sign, share, 2.0 * doubt)
+        row[RIGHTWARD_LOW + 2 * k] = min(bottom, first) - 4.0 * doubt - HAIR
+        row[RIGHTWARD_HIGH + 2 * k] = max(top, last) + 4.0 * doubt + HAIR
         if bottom > top and first > last:
-            row[FORCE_LEFT_LOW + 2 * k], row[FORCE_LEFT_HIGH + 2 * k] = 2.0, -2.0
+            row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = 2.0, -2.0
         elif bottom > top or first > last:
-            row[FORCE_LEFT_LOW + 2 * k], row[FORCE_LEFT_HIGH + 2 * k] = -1.0, 1.0
+            row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = -1.0, 1.0
+
+
+@inner
+def edge_force(edge: Array, sign: float, share: float, doubt: float) -> tuple[float, float]:
+    """``shared_force`` of the normals of an edge, times a sign."""
+    ax, ay = sign * edge[TAIL_NORMAL_X], sign * edge[TAIL_NORMAL_Y]
+    return shared_force(ax, ay, sign * edge[HEAD_NORMAL_X], sign * edge[HEAD_NORMAL_Y], share, doubt)
 
 
 @inner
 def write_all_force_directions(row: Array) -> None:
     """Write that a piece's pegs may push in any direction."""
-    row[FORCE_LEFT_LOW], row[FORCE_LEFT_HIGH], row[FORCE_RIGHT_LOW], row[FORCE_RIGHT_HIGH] = -1.0, 1.0, -1.0, 1.0
+    row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH], row[LEFTWARD_LOW], row[LEFTWARD_HIGH] = -1.0, 1.0, -1.0, 1.0

@@ -33,18 +33,18 @@ from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, cur
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
+    LARGEST_CROSS,
     LEAST_CUBE,
     PART_A,
     PART_B,
     PARTS,
     SPEED,
-    TURN,
+    STRETCH_HIGH,
     X_HIGH,
     X_LOW,
     Y_HIGH,
     Y_LOW,
 )
-from workhold.kernels.chord.stretches import HIGH as STRETCH_HIGH
 from workhold.kernels.curves.columns import (
     COLUMN_STEP,
     END_STRETCH,
@@ -58,6 +58,7 @@ from workhold.kernels.curves.columns import (
     TANGENT_FROM,
     TANGENT_TO,
     TO,
+    Curves,
 )
 from workhold.kernels.curves.force_directions import HAIR, write_all_force_directions, write_force_directions
 from workhold.kernels.curves.piece_columns import (
@@ -75,8 +76,8 @@ from workhold.kernels.curves.piece_columns import (
     EDGE_VALUE,
     EDGE_VALUE_ERROR,
     EDGE_X,
-    HEAD_X,
-    HEAD_Y,
+    HEAD_NORMAL_X,
+    HEAD_NORMAL_Y,
     HIGH,
     LOW,
     PIECE_LENGTH,
@@ -87,16 +88,16 @@ from workhold.kernels.curves.piece_columns import (
     SLOPE_HIGH,
     SLOPE_LOW,
     STEADY,
-    TAIL_X,
-    TAIL_Y,
+    TAIL_NORMAL_X,
+    TAIL_NORMAL_Y,
     VALUE_ERROR_HIGH,
     VALUE_ERROR_LOW,
     VALUE_HIGH,
     VALUE_LEAST,
     VALUE_LOW,
     VALUE_MOST,
-    X_LEFT,
-    X_RIGHT,
+    X_MOVING,
+    X_STANDING,
 )
 
 Array = NDArray[np.float64]
@@ -132,10 +133,10 @@ def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: 
     edge[EDGE_CENTER_ERROR] = state[9]
     side_a = 1.0 if a[0] == 0.0 else a[7]
     side_b = 1.0 if b[0] == 0.0 else b[7]
-    edge[TAIL_X] = side_a * (cosine * state[2] + sine * state[3])
-    edge[TAIL_Y] = side_a * (cosine * state[3] - sine * state[2])
-    edge[HEAD_X] = side_b * (cosine * state[4] + sine * state[5])
-    edge[HEAD_Y] = side_b * (cosine * state[5] - sine * state[4])
+    edge[TAIL_NORMAL_X] = side_a * (cosine * state[2] + sine * state[3])
+    edge[TAIL_NORMAL_Y] = side_a * (cosine * state[3] - sine * state[2])
+    edge[HEAD_NORMAL_X] = side_b * (cosine * state[4] + sine * state[5])
+    edge[HEAD_NORMAL_Y] = side_b * (cosine * state[5] - sine * state[4])
 
 
 @inner
@@ -146,14 +147,14 @@ def second_derivative_beside(
 
     X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``; X^3 s'' = -X^3 P' . r_a.
     """
-    cube = stretch[TURN] * stretch[TURN] * stretch[TURN]
+    cube = stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS]
     if mode == HEIGHT:
         psi, half = (low + high) / 2.0, (high - low) / 2.0
         x, y = cos(psi), sin(psi)
         first = min(x * stretch[X_LOW], x * stretch[X_HIGH]) + min(y * stretch[Y_LOW], y * stretch[Y_HIGH])
         last = max(x * stretch[X_LOW], x * stretch[X_HIGH]) + max(y * stretch[Y_LOW], y * stretch[Y_HIGH])
         size = hypot(max(-stretch[X_LOW], stretch[X_HIGH]), max(-stretch[Y_LOW], stretch[Y_HIGH]))
-        doubt = size * (half + HAIR) + stretch[TURN] * stretch[TURN] * d
+        doubt = size * (half + HAIR) + stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * d
         swing_low, swing_high, fixed = -last - doubt, -first + doubt, reach
     else:
         scale = 1.0 if a[0] == 0.0 else 1.0 / a[6]
@@ -204,8 +205,8 @@ def write_steady(
         # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
         tail = head = 1.0
         if turns_little:
-            tail = largest_part(low[TAIL_X], low[TAIL_Y], high[TAIL_X], high[TAIL_Y])
-            head = largest_part(low[HEAD_X], low[HEAD_Y], high[HEAD_X], high[HEAD_Y])
+            tail = largest_part(low[TAIL_NORMAL_X], low[TAIL_NORMAL_Y], high[TAIL_NORMAL_X], high[TAIL_NORMAL_Y])
+            head = largest_part(low[HEAD_NORMAL_X], low[HEAD_NORMAL_Y], high[HEAD_NORMAL_X], high[HEAD_NORMAL_Y])
         swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
         second_derivative = (center + min(speed, swing)) * (1.0 + HAIR)
     else:
@@ -215,8 +216,8 @@ def write_steady(
     row[VALUE_LEAST] = min(row[VALUE_LOW], row[VALUE_HIGH]) - doubt
     row[VALUE_MOST] = max(row[VALUE_LOW], row[VALUE_HIGH]) + doubt
     doubt = (center + speed) * sag + error + HAIR
-    row[X_LEFT] = min(low[EDGE_X], high[EDGE_X]) - doubt
-    row[X_RIGHT] = max(low[EDGE_X], high[EDGE_X]) + doubt
+    row[X_STANDING] = min(low[EDGE_X], high[EDGE_X]) - doubt
+    row[X_MOVING] = max(low[EDGE_X], high[EDGE_X]) + doubt
     if mode == HEIGHT:
         if turns_little:
             write_force_directions(row, low, high, share, turned)
@@ -255,7 +256,7 @@ def write_beside(
     value, doubt = value_disc(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
     place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + HAIR
-    row[X_LEFT], row[X_RIGHT] = place - doubt, place + doubt
+    row[X_STANDING], row[X_MOVING] = place - doubt, place + doubt
     write_all_force_directions(row)
     row[ACROSS_LEAST], row[ACROSS_MOST] = -inf, inf
     row[STEADY] = 0.0
@@ -277,9 +278,7 @@ def add_pieces(
     out: Array,
     count: int,
     features: Array,
-    integers: IntArray,
-    reals: Array,
-    stretches: Array,
+    curves: Curves,
     pitch_x: float,
     share: float,
     index: int,
@@ -298,7 +297,8 @@ def add_pieces(
     base : psi at the low end of the curve's range.
     edges : (2, 14) work space.
     """
-    a, b, curve = features[integers[index, TAIL]], features[integers[index, HEAD]], reals[index]
+    integers, stretches, curve = curves.integers, curves.stretches, curves.reals[index]
+    a, b = features[integers[index, TAIL]], features[integers[index, HEAD]]
     circles = mode == POSITION and a[0] != 0.0 and a[5] >= pi
     step = integers[index, COLUMN_STEP] * pitch_x
     span = curve[TO] - curve[FROM]
@@ -343,8 +343,8 @@ def add_pieces(
             write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
             if circles:
                 unwind(row, a, b, curve)
-        row[X_LEFT] += max(step, 0.0)
-        row[X_RIGHT] += min(step, 0.0)
+        row[X_STANDING] += max(step, 0.0)
+        row[X_MOVING] += min(step, 0.0)
         for n in range(EDGE_LENGTH):
             at_low[n] = at_high[n]
         left, known = right, True
@@ -370,9 +370,7 @@ def cell_pieces(
     cell_high: float,
     members: IntArray,
     features: Array,
-    integers: IntArray,
-    reals: Array,
-    stretches: Array,
+    curves: Curves,
     pitch_x: float,
     least_margin: float,
     mode: float,
@@ -384,7 +382,6 @@ def cell_pieces(
     cell_low, cell_high : psi in radians, less than a turn apart.
     members : (M,) indices of the curves to consider, ascending.
     features : (F, 8) rows.
-    integers, reals, stretches : (C, 7), (C, 14) and (S, 13) curve table.
     pitch_x : column pitch in mm.
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
         m / (1 - 3 m) of any other.
@@ -397,6 +394,7 @@ def cell_pieces(
     share = least_margin / (1.0 - 3.0 * least_margin)
     out = np.empty((64, PIECE_LENGTH))
     edges = np.empty((2, EDGE_LENGTH))
+    reals = curves.reals
     count = int(np.int64(0))
     for index in members:
         base = reals[index, FROM] - reals[index, SHIFT]
@@ -407,19 +405,6 @@ def cell_pieces(
             left, right = max(low, cell_low), min(low + span, cell_high)
             if right - left > 0.0:
                 out, count = add_pieces(
-                    out,
-                    count,
-                    features,
-                    integers,
-                    reals,
-                    stretches,
-                    pitch_x,
-                    share,
-                    index,
-                    left,
-                    right,
-                    low,
-                    mode,
-                    edges,
+                    out, count, features, curves, pitch_x, share, index, left, right, low, mode, edges
                 )
     return out[:count]

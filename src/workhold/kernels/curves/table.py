@@ -12,23 +12,21 @@ from workhold.kernels.base.growing import grown, grown_whole
 from workhold.kernels.chord.evaluation import write_curve, write_shift
 from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
-from workhold.kernels.crossing.sliding_pairs import (
-    DIRECTION,
-    ORIENTATION,
-    SLIDING_PAIR_REALS,
-    STEP_LENGTH,
-    sliding_pairs_between,
-)
+from workhold.kernels.crossing.sliding_pairs import sliding_pairs_between
 from workhold.kernels.curves.columns import (
     CENTER,
     COLUMN_STEP,
     CURVE_INTEGERS,
     CURVE_REALS,
+    DIRECTION,
     END_STRETCH,
     FIRST_STRETCH,
     FROM,
     HEAD,
+    ORIENTATION,
     ROW_STEP,
+    SLIDING_PAIR_REALS,
+    STEP_LENGTH,
     TAIL,
     TANGENT_FROM,
     TANGENT_TO,
@@ -67,9 +65,8 @@ def tail_curves(
     Returns
     -------
     (integers, reals, sliding pair integers, sliding pair reals, stretches)
-        The curve table of ``curve_columns``, the sliding pair table of ``sliding_pairs`` (its orientations, alpha -
-        shift, still to be brought into range by the caller) and the curves' stretches (see ``stretches``), counted from
-        0 for this tail.
+        See ``curves.columns``; the orientations of sliding pairs, alpha - shift, are still to be brought into range by the
+        caller, and the curves' stretches are counted from 0 for this tail.
     """
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
     whole, sliding_pairs = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, SLIDING_PAIR_REALS))
@@ -86,7 +83,7 @@ def tail_curves(
             if d > apart + play + ROUNDING or d < apart - play - ROUNDING:
                 continue
             ranges = chord_intervals(a, b, d)
-            standing = sliding_pairs_between(a, b, d)
+            sliding = sliding_pairs_between(a, b, d)
             for k in range(ranges.shape[0]):
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
@@ -109,14 +106,14 @@ def tail_curves(
                 column, row = steps[step, 0], steps[step, 1]
                 if head == tail and (column < 0 or (column == 0 and row < 0)):
                     continue
-                for k in range(standing.shape[0]):
+                for k in range(sliding.shape[0]):
                     if sliding_pair_count == whole.shape[0]:
                         whole, sliding_pairs = grown_whole(whole), grown(sliding_pairs)
                     write_step(whole[sliding_pair_count], tail, head, column, row, center)
                     for column_of in range(3):
-                        sliding_pairs[sliding_pair_count, column_of] = standing[k, column_of]
+                        sliding_pairs[sliding_pair_count, column_of] = sliding[k, column_of]
                     sliding_pairs[sliding_pair_count, STEP_LENGTH] = d
-                    sliding_pairs[sliding_pair_count, ORIENTATION] = standing[k, DIRECTION] - angles[step]
+                    sliding_pairs[sliding_pair_count, ORIENTATION] = sliding[k, DIRECTION] - angles[step]
                     sliding_pair_count += 1
     return (
         integers[:count],

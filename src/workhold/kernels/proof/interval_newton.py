@@ -6,7 +6,7 @@ of the pegs from their lines and circles, every solution there has, for each k,
 
     0 = (U'F(m))_k + sum_j S_kj s_j,     \|S - U'J(m)V\| <= D,
 
-by the mean value theorem. A part in which this or a rule (``vise_checks``) cannot hold is dropped; one that the step of
+by the mean value theorem. A part in which this or a rule (``contact.rules``) cannot hold is dropped; one that the step of
 Hansen and Sengupta maps into its own inside holds exactly one solution; others are made smaller, or halved.
 
 How much contacts vary over a part, ``variations`` bounds.
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.closure import ROUNDING
 from workhold.kernels.contact.equations import (
     MOVING,
@@ -29,11 +30,10 @@ from workhold.kernels.contact.equations import (
     SLOPES,
     UNKNOWNS,
     WORK_LENGTH,
-    WRENCH_LENGTH,
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.rules import APART, PSI, RADIUS, REACH, TAIL_X, TAIL_Y
+from workhold.kernels.contact.record import PSI, RADIUS, REACH, SEPARATION, TAIL_X, TAIL_Y
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, sizes
 from workhold.kernels.proof.variation import ERROR, FORCE_BAND, MOMENT_BAND, NUMBERS, TILT, is_broken, move_to, spread
 
@@ -148,7 +148,7 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
     for k in range(PSI):
         root[k] = record[k]
     root[PSI], root[TAIL_X] = w[UNKNOWNS, 0], w[UNKNOWNS, 1]
-    root[TAIL_Y], root[APART] = w[UNKNOWNS, 2], w[UNKNOWNS, 3]
+    root[TAIL_Y], root[SEPARATION] = w[UNKNOWNS, 2], w[UNKNOWNS, 3]
     root[REACH] = root[RADIUS] = 0.0
     for j in range(4):
         width = max(-bounds[0, j], bounds[1, j])
@@ -184,7 +184,7 @@ def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: f
 def narrow(
     record: Array,
     features: Array,
-    setting: Array,
+    setting: Setting,
     frame: Array,
     stack: Array,
     w: Array,
@@ -204,10 +204,10 @@ def narrow(
     -------
     How many there are; -1 when the box is given up
     """
-    length = setting[WRENCH_LENGTH]
+    length = setting.limits.wrench_length
     b, slopes = np.empty((NUMBERS, 4)), np.empty((4, 4, 4))
     place, bounds, z = np.empty((2, 4)), np.empty((2, 4)), np.empty(4)
-    take_pegs(record, setting, w)
+    take_pegs(record, setting.lattice, w)
     for j in range(4):
         z[j] = w[UNKNOWNS, j]
     begin(record, frame, length, stack[0])
@@ -248,14 +248,13 @@ def narrow(
 
 
 @compiled
-def interval_newton(records: Array, features: Array, setting: Array, frames: Array) -> tuple[Verdicts, Array]:
+def interval_newton(records: Array, features: Array, setting: Setting, frames: Array) -> tuple[Verdicts, Array]:
     """Narrow boxes one by one.
 
     Parameters
     ----------
-    records : (N, 19), see ``kernels.contact.rules``; where their contacts may be is finite.
+    records : (N, 19), see ``kernels.contact.record``; where their contacts may be is finite.
     features : (F, 10) rows with the slack of their ends.
-    setting : see ``kernels.contact.equations``.
     frames : (N, 2, 4, 4) U and V of each.
 
     Returns
@@ -275,13 +274,13 @@ def interval_newton(records: Array, features: Array, setting: Array, frames: Arr
 
 
 @compiled
-def jacobians(records: Array, features: Array, setting: Array) -> Array:
+def jacobians(records: Array, features: Array, setting: Setting) -> Array:
     """Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     out = np.empty((records.shape[0], 4, 4))
     w, points = np.empty((WORK_LENGTH, 4)), np.empty((4, 2))
     for n in range(records.shape[0]):
-        take_pegs(records[n], setting, w)
-        touch(records[n], features, setting[WRENCH_LENGTH], w, points)
+        take_pegs(records[n], setting.lattice, w)
+        touch(records[n], features, setting.limits.wrench_length, w, points)
         for i in range(4):
             for j in range(4):
                 out[n, i, j] = w[SLOPES + i, j]

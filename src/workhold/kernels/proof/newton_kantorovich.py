@@ -2,7 +2,7 @@ r"""A certificate for every fixture: that its contact equations have exactly one
 the rules hold there.
 
 Theorem (Newton-Kantorovich, in the form of radii polynomials): let F be the four contact equations in the unknowns
-z = (L psi, tail x, tail y, apart), all in mm, A an approximate inverse of the Jacobian J at z, and
+z = (L psi, tail x, tail y, separation), all in mm, A an approximate inverse of the Jacobian J at z, and
 
     Y >= \|A F(z)\|,   Z >= \|I - A J\|,   K >= \|A\| \|second derivatives of F\|      (largest absolute row sums).
 
@@ -29,32 +29,25 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
+from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.equations import (
-    BACKWARD_ERROR,
-    CONTACT_MARGIN,
     INVERSE,
-    MIN_GAP,
     MOVING,
     NEWTON,
-    PEG_RADIUS,
     SLOPES,
     UNKNOWNS,
     WORK_LENGTH,
-    WRENCH_LENGTH,
     invert,
     take_pegs,
     touch,
 )
+from workhold.kernels.contact.record import FEATURES, PSI, RADIUS, REACH
 from workhold.kernels.contact.rules import (
-    FEATURES,
     GAP_SLACK,
     LEAST_CLAMPING,
     LEAST_CLOSURE,
     LEAST_SPAN,
-    PSI,
-    RADIUS,
-    REACH,
 )
 
 Array = NDArray[np.float64]
@@ -172,22 +165,22 @@ def end_slack(record: Array, features: Array, points: Array, margin: float) -> f
 
 @inner
 def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, float]:
-    """How four contacts with forces ``null`` (4,) stand between the jaws.
+    """How four contacts with forces ``null`` (4,) stand between the carriers.
 
     Returns
     -------
-    (x distance in mm from the rightmost left peg to the leftmost right peg, push of the left pegs along the vise's x axis)
+    (gap, the x distance in mm from the rightmost standing to the leftmost moving peg; push of the standing pegs along x)
     """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
-    left, right, push = -inf, inf, 0.0
+    standing, moving, push = -inf, inf, 0.0
     for k in range(4):
         along = points[k, 0] * cosine + points[k, 1] * sine
         if w[MOVING, k] == 0.0:
-            left = max(left, along)
+            standing = max(standing, along)
             push -= null[k] * (normals[k, 0] * cosine + normals[k, 1] * sine)
         else:
-            right = min(right, along)
-    return (right - left, push)
+            moving = min(moving, along)
+    return (moving - standing, push)
 
 
 @inner
@@ -209,7 +202,14 @@ def wrenches(record: Array, features: Array, length: float, pairs: Array, null: 
 
 @inner
 def judged(
-    record: Array, features: Array, setting: Array, radius: float, smallest: float, w: Array, pairs: Array, null: Array
+    record: Array,
+    features: Array,
+    setting: Setting,
+    radius: float,
+    smallest: float,
+    w: Array,
+    pairs: Array,
+    null: Array,
 ) -> int:
     """Decide contacts in place by the signs of enclosures of five numbers that must all be positive: ends, gap, span,
     closure, clamping.
@@ -219,7 +219,7 @@ def judged(
     radius : how far in mm the exact unknowns may be from those in place.
     smallest : radius of the smallest arc touched, infinite for lines.
     """
-    length = setting[WRENCH_LENGTH]
+    length = setting.limits.wrench_length
     size = wrenches(record, features, length, pairs, null)
     gap, push = held(w, pairs[0], pairs[1], null)
     reach = 4.5 * radius
@@ -228,14 +228,14 @@ def judged(
     low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
-    verdict = sign_of(end_slack(record, features, pairs[0], setting[CONTACT_MARGIN]), 1.2 * reach + 1e-12)
+    verdict = sign_of(end_slack(record, features, pairs[0], setting.limits.contact_margin), 1.2 * reach + 1e-12)
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
-    verdict = min(verdict, sign_of(gap - (setting[MIN_GAP] - GAP_SLACK), 1.5 * radius + 1e-12))
+    verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
     # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces push.
     verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
     doubt = 3.1 * band + size * (swing + radius / length)
-    return min(verdict, sign_of(sign * push - LEAST_CLAMPING * size, doubt))
+    return min(verdict, sign_of(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
 
 
 def discs_around(outline: Array, margin: float) -> Array:
@@ -251,10 +251,11 @@ def discs_around(outline: Array, margin: float) -> Array:
 
 
 @inner
-def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
-    """Whether four points are at least so many mm away from all of (S, 8) segments."""
+def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
+    """Whether four pegs, of which some move (4,), are clear of all of (S, 8) segments, to within ``TOUCH``."""
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
+        least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCH
         for n in range(discs.shape[0]):
             dx, dy = x - discs[n, 0], y - discs[n, 1]
             if dx * dx + dy * dy < discs[n, 2] and segment_distance(x, y, outline[n]) < least:
@@ -264,16 +265,15 @@ def is_clear(points: Array, outline: Array, discs: Array, least: float) -> bool:
 
 @compiled
 def certified(
-    records: Array, features: Array, outline: Array, discs: Array, setting: Array, solutions: Array
+    records: Array, features: Array, outline: Array, discs: Array, setting: Setting, solutions: Array
 ) -> Verdicts:
     """Decide records one by one.
 
     Parameters
     ----------
-    records : (N, 19), see ``kernels.contact.rules``; none of them given up.
+    records : (N, 19), see ``kernels.contact.record``; none of them given up.
     features : (F, 10) rows with the slack of their ends.
     outline, discs : (S, 8) the part's faces, and :func:`discs_around` these and the pegs that touch them.
-    setting : see ``kernels.contact.equations``.
     solutions : (N, 4) receives the unknowns.
 
     Returns
@@ -281,24 +281,24 @@ def certified(
     (N,) verdicts; open where another solution may be in the record's box
     """
     verdicts = np.full(records.shape[0], OPEN, np.int8)
-    length = setting[WRENCH_LENGTH]
+    length = setting.limits.wrench_length
     w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
     points = pairs[0]
     for n in range(records.shape[0]):
         record = records[n]
-        take_pegs(record, setting, w)
+        take_pegs(record, setting.lattice, w)
         polish(record, features, length, w, points)
         size, smallest = sizes(record, features, points)
-        radius, unique = certificate(w, size, smallest, length, setting[BACKWARD_ERROR])
+        radius, unique = certificate(w, size, smallest, length, setting.backward_error)
         away = 0.0
         for k in range(4):
             solutions[n, k] = w[UNKNOWNS, k]
             away = max(away, abs(w[UNKNOWNS, k] - record[PSI + k]) * (length if k == 0 else 1.0))
-        # The exact contact may be this far, where apart is the worst known.
+        # The exact contact may be this far, where the separation is the worst known.
         box = 2.0 * (record[RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
         if radius < inf and away + box <= unique:
             verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
             # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
-            if verdicts[n] == PROVEN and not is_clear(points, outline, discs, setting[PEG_RADIUS] - TOUCH):
+            if verdicts[n] == PROVEN and not is_clear(points, w[MOVING], outline, discs, setting):
                 verdicts[n] = DISCARDED
     return verdicts

@@ -1,4 +1,4 @@
-"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see ``narrowing``).
+"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see ``interval_newton``).
 
 How much numbers vary is bounded by norms: a peg's centre moves by at most its ``variation``, its unit normal turns by
 at most variation / (R - variation) on an arc and not at all on a line, and products vary by the sum of what their
@@ -13,20 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.closure import ROUNDING, minors
 from workhold.kernels.contact.equations import (
-    BACKWARD_ERROR,
-    CONTACT_MARGIN,
-    MIN_GAP,
     MOVING,
     NEWTON,
     OFF,
     SLOPES,
     STEP_X,
     UNKNOWNS,
-    WRENCH_LENGTH,
 )
-from workhold.kernels.contact.rules import FEATURES, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.kernels.contact.record import FEATURES
+from workhold.kernels.contact.rules import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, end_slack
 
 Array = NDArray[np.float64]
@@ -36,9 +34,9 @@ HALF_UNIT = 1.2e-16
 HAIR = 1e-12
 
 # Rows of the numbers (10, 4) of a part, one for each peg: how far its centre moves, how much its normal turns, how much its
-# arm from the first peg varies, its moment and how much that varies, its push along the vise's x axis and how much
-# that varies, the error of its contact equation, and how much the minor without it varies. How much the turn and the opening
-# vary comes last.
+# arm from the first peg varies, its moment and how much that varies, its push along x and how much
+# that varies, the error of its contact equation, and how much the minor without it varies. How much the turn and the
+# separation vary comes last.
 VARIATION, TILT, ARM_BAND, MOMENT, MOMENT_BAND, PUSH, FORCE_BAND, ERROR, MINOR_BAND, OTHERS = range(10)
 NUMBERS = 10
 
@@ -63,7 +61,7 @@ def spread(
     record: Array,
     features: Array,
     size: float,
-    setting: Array,
+    setting: Setting,
     place: Array,
     frame: Array,
     w: Array,
@@ -72,7 +70,7 @@ def spread(
 ) -> None:
     """Fill in how much the contacts in place vary over a part: variations, tilts and arms, with the arms and normals
     themselves in ``pairs`` (3, 4, 2) behind the centres."""
-    length, backward_error = setting[WRENCH_LENGTH], setting[BACKWARD_ERROR]
+    length, backward_error = setting.limits.wrench_length, setting.backward_error
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     turn = slide = 0.0
     for j in range(4):
@@ -81,13 +79,13 @@ def spread(
     b[OTHERS, 0], b[OTHERS, 1] = turn, slide
     for k in range(4):
         row = features[int(record[FEATURES + k])]
-        right = w[MOVING, k]
+        moves = w[MOVING, k]
         x, y = pairs[0, k, 0] - w[UNKNOWNS, 1], pairs[0, k, 1] - w[UNKNOWNS, 2]
         arm = sqrt(x * x + y * y)
-        variation = turn * (arm * turn + right * slide) + ROUNDINGS * size
+        variation = turn * (arm * turn + moves * slide) + ROUNDINGS * size
         for j in range(4):
             about = frame[1, 0, j] / length
-            along = right * frame[1, 3, j]
+            along = moves * frame[1, 3, j]
             away_x = frame[1, 1, j] + along * cosine - about * y
             away_y = frame[1, 2, j] + along * sine + about * x
             variation += place[1, j] * sqrt(away_x * away_x + away_y * away_y)
@@ -100,7 +98,7 @@ def spread(
             ray = row[6] + w[OFF, k]
             tilt = variation / (ray - variation) + ROUNDING if 2.0 * variation < ray else 4.0
             sign = row[7]
-        b[VARIATION, k], b[TILT, k], b[ARM_BAND, k] = variation, tilt, arm * turn + right * slide
+        b[VARIATION, k], b[TILT, k], b[ARM_BAND, k] = variation, tilt, arm * turn + moves * slide
         pairs[1, k, 0], pairs[1, k, 1] = x, y
         pairs[2, k, 0], pairs[2, k, 1] = sign * w[SLOPES + k, 1], sign * w[SLOPES + k, 2]
         moment = (x * pairs[2, k, 1] - y * pairs[2, k, 0]) / length
@@ -127,7 +125,7 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
     """How much the cross product of the normals of two arcs varies over a part; infinite for others.
 
     Only the difference of the rays from their centres counts, which depends on the orientation alone where both pegs are on
-    one jaw: parallel normals stay so wherever the part slides.
+    one carrier: parallel normals stay so wherever the part slides.
     """
     one, two = features[int(record[FEATURES + i])], features[int(record[FEATURES + j])]
     if one[0] == 0.0 or two[0] == 0.0:
@@ -139,22 +137,22 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
 
 
 @inner
-def is_broken(record: Array, features: Array, setting: Array, w: Array, pairs: Array, null: Array, b: Array) -> bool:
+def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array) -> bool:
     """Whether some rule is broken everywhere in a part."""
     reach = 0.0
-    right, left = inf, -inf
+    moving, standing = inf, -inf
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         reach = max(reach, b[VARIATION, k] if row[0] == 0.0 else row[6] * b[TILT, k])
         if w[MOVING, k] == 0.0:
-            left = max(left, w[STEP_X, k])
+            standing = max(standing, w[STEP_X, k])
         else:
-            right = min(right, w[STEP_X, k] + w[UNKNOWNS, 3])
-    if right - left + b[OTHERS, 1] + HAIR < setting[MIN_GAP] - GAP_SLACK:
+            moving = min(moving, w[STEP_X, k] + w[UNKNOWNS, 3])
+    if moving - standing + b[OTHERS, 1] + HAIR < setting.limits.gap - GAP_SLACK:
         return True
-    if end_slack(record, features, pairs[0], setting[CONTACT_MARGIN]) + reach + HAIR < 0.0:
+    if end_slack(record, features, pairs[0], setting.limits.contact_margin) + reach + HAIR < 0.0:
         return True
-    size = minors(pairs[1], pairs[2], setting[WRENCH_LENGTH], null)
+    size = minors(pairs[1], pairs[2], setting.limits.wrench_length, null)
     for k in range(4):
         b[MINOR_BAND, k] = 0.0
     for i in range(4):
@@ -168,22 +166,23 @@ def is_broken(record: Array, features: Array, setting: Array, w: Array, pairs: A
     if size + doubt < LEAST_SPAN:
         return True
     size = max(size - doubt, 0.0)
-    return not (may_clamp(1.0, size, w, null, b) or may_clamp(-1.0, size, w, null, b))
+    clamping = setting.limits.clamping
+    return not (may_clamp(1.0, clamping, size, w, null, b) or may_clamp(-1.0, clamping, size, w, null, b))
 
 
 @inner
-def may_clamp(sign: float, size: float, w: Array, null: Array, b: Array) -> bool:
-    """Whether forces of one sign may close, and closing the vise clamp; the force is the left jaw's push, and as well what
-    the right jaw takes up. ``size`` is the least that the sizes of the minors add up to."""
-    left = right = 0.0
+def may_clamp(sign: float, clamping: float, size: float, w: Array, null: Array, b: Array) -> bool:
+    """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well what the
+    moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
+    standing = moving = 0.0
     for k in range(4):
         band = b[MINOR_BAND, k]
         if sign * null[k] + band < LEAST_CLOSURE * size:
             return False
-        push = sign * null[k] * b[PUSH, k]
+        push = sign * clamping * null[k] * b[PUSH, k]
         doubt = abs(null[k]) * b[FORCE_BAND, k] + band * abs(b[PUSH, k]) + band * b[FORCE_BAND, k]
         if w[MOVING, k] == 0.0:
-            left += doubt - push
+            standing += doubt - push
         else:
-            right += doubt + push
-    return left >= LEAST_CLAMPING * size and right >= LEAST_CLAMPING * size
+            moving += doubt + push
+    return standing >= LEAST_CLAMPING * size and moving >= LEAST_CLAMPING * size

@@ -1,19 +1,19 @@
 """Where the four contacts of a fixture are, and the contact matrix that all its figures come from.
 
-With c the centre of the part, L the length of the wrenches and x the direction in which the right jaw moves, the contact
-matrix A (4, 4) has a row for each peg:
+With c the centre of the part, L the length of the wrenches and x the direction against which the moving carrier clamps, the
+contact matrix A (4, 4) has a row for each peg:
 
-    n_x,  n_y,  (q - c) x n / L,  n . x on the right jaw and 0 on the left
+    n_x,  n_y,  (q - c) x n / L,  n . x on the moving carrier and 0 on the other
 
 for a contact at q with outward unit normal n. It answers both questions one asks of a fixture.
 
 - Motion: let peg i stand delta_i too far towards the part. Then to first order A y = -delta, where y holds the part's
-  movement at c (x, y), its turn times L, and how far the jaw closes.
-- Force: pegs press with f >= 0 against the part, a load (g_x, g_y, moment m about c) acts on it, the right jaw is pushed
-  with a force F. Then A^T f = (g_x, g_y, m / L, F).
+  movement at c (x, y), its turn times L, and how far the carrier moves on.
+- Force: pegs press with f >= 0 against the part, a load (g_x, g_y, moment m about c) acts on it, the moving
+  carrier is pushed with a force F. Then A^T f = (g_x, g_y, m / L, F).
 
-So one inverse serves for both; its last row is the peg forces per unit of jaw force, and that row scaled to sum 1 is the
-null vector of the wrenches. The duality of motions and forces is that of virtual work.
+So one inverse serves for both; its last row is the peg forces per unit of clamping force, and that row scaled to sum 1 is
+the null vector of the wrenches. The duality of motions and forces is that of virtual work.
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ def invert(matrix: Array, out: Array) -> bool:
 def contact_matrices_of(
     pegs: Array,
     pose: Array,
-    right: Array,
+    moves: Array,
+    axis: Array,
     faces: IntArray,
     features: Array,
     starts: IntArray,
@@ -95,9 +96,10 @@ def contact_matrices_of(
 
     Parameters
     ----------
-    pegs : (N, 4, 2) peg centres in the vise frame, in mm.
+    pegs : (N, 4, 2) peg centres in the toolkit's frame, in mm.
     pose : (N, 3) orientation in radians and translation in mm.
-    right : (N, 4) 1 for a peg on the right jaw, 0 on the left.
+    moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
+    axis : (2,) the unit vector x in the toolkit's frame.
     faces : (N, 4) number of the face each peg touches.
     features : (F, 8) rows of contact features about c, ordered by face.
     starts : where the features of each face number begin, one more than there are numbers.
@@ -132,7 +134,7 @@ def contact_matrices_of(
             normals[k, i, 0], normals[k, i, 1] = nx, ny
             ends[k, i] = nearest
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
-            matrix[i, 3] = right[k, i] * (nx * cosine - ny * sine)
+            matrix[i, 3] = moves[k, i] * ((nx * cosine - ny * sine) * axis[0] + (nx * sine + ny * cosine) * axis[1])
         if not (invert(matrix, inverses[k]) and known):
             for i in range(4):
                 ends[k, i] = nan

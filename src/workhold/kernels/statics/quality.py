@@ -165,7 +165,7 @@ def figures(
     work = np.empty((8, 3))
     for k in range(len(points)):
         inverse = inverses[k]
-        # The last row of the inverse: peg forces per unit of jaw force, in proportion to the null vector.
+        # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null vector.
         total, least, most = 0.0, inf, 0.0
         nearest = inf
         for i in range(4):
