@@ -167,6 +167,7 @@ def test_strokes_count_however_thin() -> None:
             f'<clipPath id="c"><circle r="9"/></clipPath>{R} clip-path="url(#c)"/>',
             r"rect 'r' has the clip-path 'url\(#c\)'",
         ),
+        (f'<g visibility="hidden">{CLIP}</g>{R} clip-path="url(#c)"/>', "rect 'r' has the clip-path"),
         (f'{R} style="clip-path:inset(5px)"/>', r"rect 'r' has the clip-path 'inset\(5px\)'"),
         (f'<svg id="s" width="30" height="30">{R}/></svg>', "rect 'r' is cut by the edge of svg 's'"),
         (

@@ -46,11 +46,13 @@ class Document:
     root : the <svg>.
     by_id : the first element of each id, as browsers take it.
     places : the number of each element among those of its kind in the file, from 1, and its line.
+    parents : what each element but the root is in.
     """
 
     root: Element
     by_id: dict[str, Element]
     places: dict[Element, tuple[int, int]]
+    parents: dict[Element, Element]
 
     def name(self, element: Element) -> str:
         """How messages call an element: by its id, or else by its number among the elements of its kind."""
@@ -62,6 +64,14 @@ class Document:
     def linked(self, link: str) -> Element | None:
         """The element a link such as ``#id`` points to; None when it is not in the file."""
         return self.by_id.get(link[1:], self.by_id.get(unquote(link[1:]))) if link.startswith("#") else None
+
+    def around(self, element: Element) -> list[Element]:
+        """The elements around one, from the root inward."""
+        found: list[Element] = []
+        while element in self.parents:
+            element = self.parents[element]
+            found.append(element)
+        return found[::-1]
 
     def line(self, element: Element) -> int:
         """The line an element begins on."""
@@ -97,7 +107,7 @@ def read_document(content: bytes) -> Document:
         places[element] = counts[tag], lines[element]
         by_id.setdefault(element.get("id", ""), element)
     by_id.pop("", None)
-    document = Document(root, by_id, places)
+    document = Document(root, by_id, places, {child: parent for parent in root.iter() for child in parent})
     for element in root.iter():
         tag = local_name(element)
         if tag in ANIMATIONS and document.drawn(element):

@@ -283,9 +283,12 @@ class SvgWalk:
             raise error
         shapes = [child for child in clip if local_name(child) not in SILENT]
         placement = nest.placement
+        style = INITIAL
+        for outer in self.document.around(clip):
+            style = computed(self.styles.of(outer), style, self.styles, label)
         for part in (clip, *shapes[:1]):
             values = self.styles.of(part)
-            style = computed(values, INITIAL, self.styles, label)
+            style = computed(values, style, self.styles, label)
             if "clip-path" in values or not (style.displayed and style.shown) or not suits(part, label):
                 raise error
             refuse_effects(values, label)
