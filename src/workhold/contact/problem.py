@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from math import isfinite
 
 import numpy as np
@@ -113,12 +114,12 @@ class Problem:
         center = self.workpiece.center
         return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [1, 2, 6]]).max()))
 
-    @property
+    @cached_property
     def frame(self) -> Frame:
         """The toolkit as the search sees it."""
         return Frame.of(self.vise)
 
-    @property
+    @cached_property
     def limits(self) -> Limits:
         """What bounds a fixture, as kernels take it."""
         frame = self.frame
