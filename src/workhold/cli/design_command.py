@@ -23,7 +23,10 @@ from workhold.cli.options import (
     UnitOption,
     load_part,
 )
+from workhold.cli.outputs import ForceOption, refuse_output, refuse_output_folder
+from workhold.cli.pictures import picture_names
 from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
+from workhold.cli.saying import tell
 from workhold.cli.search_options import (
     AngleOption,
     AvoidOption,
@@ -139,6 +142,7 @@ def design(
             rich_help_panel=OUTPUT,
         ),
     ] = None,
+    force: ForceOption = False,
     list_: Annotated[
         str, typer.Option("--list", metavar="N", help="How many to list on the terminal.", rich_help_panel=OUTPUT)
     ] = "5",
@@ -171,7 +175,10 @@ def design(
     listed = whole_number("--list", list_)
     form = output_format(out, format_)
     folder = None if draw is None else Path(draw)
-    refuse_outputs(out, folder)
+    if out is not None and out != STANDARD_OUTPUT:
+        refuse_output(out, (part, vise, loads), force)
+    if folder is not None:
+        refuse_output_folder(folder, picture_names(), (part, vise, loads), force)
     in_vise, of_vise = vise_words.asked(shown)
     restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
     ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
@@ -226,22 +233,6 @@ def search_of(engine: str, threads: int | None) -> Callable[..., Result]:
     return search
 
 
-def refuse_outputs(out: str | None, draw: Path | None) -> None:
-    """Refuse outputs that could not be written in the end.
-
-    Raises
-    ------
-    InputError
-        Naming the file or folder.
-    """
-    from workhold.files.atomic import refuse_unwritable, refuse_unwritable_folder
-
-    if out is not None and out != STANDARD_OUTPUT:
-        refuse_unwritable(out)
-    if draw is not None:
-        refuse_unwritable_folder(draw)
-
-
 def output_format(out: str | None, asked: str | None) -> str:
     """The form of the result file: the one asked for, or the one that its name suggests.
 
@@ -279,7 +270,7 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
         write_output(result, out, form)
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
-        typer.echo(f"workhold: {note}", err=True)
+        tell(note)
     if len(result) and listed > 0:
         print_tables(result_table(result, listed, unit), stream=stream)
     sentence = counts_sentence(result)
@@ -293,7 +284,7 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
         print_tables(f"Written to {out}.", stream=stream)
     if not result.complete:
         marked = f", and {out} is marked so" if written else ""
-        typer.echo(f"workhold: interrupted: this is a part of the fixtures only{marked}.", err=True)
+        tell(f"interrupted: this is a part of the fixtures only{marked}.")
 
 
 def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:

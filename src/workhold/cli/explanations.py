@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 __all__ = ["explain_none"]
 
 MOST_HELPS = 6
-NEAREST_MISS = "nearest-miss"
 
 
 def explain_none(
@@ -69,7 +68,7 @@ def draw_nearest_miss(explanation: Explanation, result: Result, folder: Path, un
     InputError
         When the folder cannot be written.
     """
-    from workhold.cli.pictures import draw_one
+    from workhold.cli.pictures import NEAREST_MISS, draw_one
     from workhold.cli.tables import print_tables
 
     assert explanation.nearest is not None

@@ -22,7 +22,9 @@ from workhold.cli.options import (
     UnitOption,
     load_part,
 )
+from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
+from workhold.cli.saying import tell
 from workhold.cli.search_options import (
     AngleOption,
     AvoidOption,
@@ -84,6 +86,7 @@ def explore(
     out: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the table to this file, as comma-separated values.")
     ] = None,
+    force: ForceOption = False,
     unit: UnitOption = None,
     layer: LayerOption = None,
     part_number: PartNumberOption = None,
@@ -98,7 +101,7 @@ def explore(
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
-    from workhold.files.atomic import refuse_unwritable, text_file
+    from workhold.files.atomic import text_file
 
     shown = length_unit(unit)
     vises, tolerances = asked_vises(vise, pitch, columns, peg_radius, shown)
@@ -108,7 +111,7 @@ def explore(
     if tolerance is not None:
         tolerances = {}
     if out is not None:
-        refuse_unwritable(out)
+        refuse_output(out, (part, loads, *(name for names in vise or () for name in names.split(","))), force)
     from workhold.kernels.base.compiling import is_first_run
     from workhold.listing.ranking import preference_of
 
@@ -138,9 +141,11 @@ def explore(
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found))
-        typer.echo(f"Written to {out}.")
+        from workhold.cli.tables import print_tables
+
+        print_tables(f"Written to {out}.")
     if len(found) < len(vises):
-        typer.echo(f"workhold: interrupted: {len(vises) - len(found)} vises were not tried.", err=True)
+        tell(f"interrupted: {len(vises) - len(found)} vises were not tried.")
         raise typer.Exit(INTERRUPTED)
 
 

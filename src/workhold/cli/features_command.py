@@ -19,6 +19,7 @@ from workhold.cli.options import (
     UnitOption,
     load_part,
 )
+from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.values import length_unit, optional_length, picture_ending
 from workhold.errors import InputError
 
@@ -30,6 +31,7 @@ def features(
     draw: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
     ] = None,
+    force: ForceOption = False,
     peg_radius: Annotated[
         str | None, typer.Option(metavar="LENGTH", help="Draw also where the centres of pegs of this radius can be.")
     ] = None,
@@ -45,7 +47,7 @@ def features(
 
     Example: workhold features part.dxf --draw faces.svg
     """
-    from workhold.files.atomic import refuse_unwritable, write_bytes
+    from workhold.files.atomic import write_bytes
 
     shown_unit = length_unit(unit)
     radius = optional_length("--peg-radius", peg_radius, shown_unit)
@@ -55,7 +57,7 @@ def features(
     ending = None
     if picture is not None:
         ending = picture_ending(picture)
-        refuse_unwritable(picture)
+        refuse_output(picture, (part,), force)
     loaded = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section)
     workpiece = loaded.workpiece
 

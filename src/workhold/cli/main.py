@@ -23,6 +23,7 @@ from workhold.cli.design_command import design
 from workhold.cli.explore_command import explore
 from workhold.cli.features_command import features
 from workhold.cli.parts_command import parts
+from workhold.cli.saying import tell
 from workhold.cli.serve_command import serve
 from workhold.cli.sheet_command import sheet
 from workhold.cli.show_command import show
@@ -175,8 +176,7 @@ def complain(error: Exception) -> int:
 
 def say(message: str) -> None:
     """One line on stderr, whatever the message holds."""
-    line = " ".join(message.split())
-    typer.echo("workhold: " + "".join(c if c.isprintable() else "?" for c in line), err=True)
+    tell(" ".join(message.split()))
 
 
 def report_fault(error: Exception) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workhold.cli.saying import tell
 from workhold.cli.values import choice, counting_number, length, length_unit, optional_length
 
 if TYPE_CHECKING:
@@ -129,5 +130,5 @@ def load_part(
         section=height,
     )
     for remark in loaded.remarks:
-        typer.echo(f"workhold: {remark}", err=True)
+        tell(remark)
     return loaded

@@ -13,10 +13,22 @@ if TYPE_CHECKING:
     from workhold.model.result import Result
     from workhold.model.units import Unit
 
-__all__ = ["BEST_DRAWN", "draw_best", "draw_one"]
+__all__ = ["BEST_DRAWN", "NEAREST_MISS", "draw_best", "draw_one", "picture_names"]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
+THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
+
+
+def picture_names() -> list[str]:
+    """The files that a design may draw into a folder."""
+    ranked = (picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
+    return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
+
+
+def picture_name(rank: int) -> str:
+    """The name of the picture of the fixture of a rank, without its ending."""
+    return f"fixture-{rank:02d}"
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
@@ -38,16 +50,21 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write pictures, by name, as SVG and PNG; returns the files written."""
+    """Write pictures, by name, as SVG and PNG; returns the files written. Where one cannot be written none is left."""
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
 
     written = []
-    for name, svg in pictures.items():
-        for ending in ENDINGS:
-            path = folder / f"{name}{ending}"
-            write_bytes(path, render(svg, ending))
-            written.append(path)
+    try:
+        for name, svg in pictures.items():
+            for ending in ENDINGS:
+                path = folder / f"{name}{ending}"
+                write_bytes(path, render(svg, ending))
+                written.append(path)
+    except BaseException:
+        for path in written:
+            path.unlink(missing_ok=True)
+        raise
     return written
 
 
@@ -67,9 +84,8 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for old in ["thumbnails", *(f"fixture-{rank:02d}" for rank in range(1, BEST_DRAWN + 1))]:
-            for ending in ENDINGS:
-                (folder / f"{old}{ending}").unlink(missing_ok=True)
+        for old in picture_names():
+            (folder / old).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
     fixtures = result[:BEST_DRAWN]
@@ -78,7 +94,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     pictures = {}
     for rank, fixture in enumerate(fixtures, 1):
         svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=unit)
-        pictures[f"fixture-{rank:02d}"] = svg
+        pictures[picture_name(rank)] = svg
     titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
-    pictures["thumbnails"] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles, unit=unit)
+    pictures[THUMBNAILS] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles, unit=unit)
     return write_pictures(pictures, folder)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from workhold.cli.options import ShownUnitOption
+from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
 from workhold.cli.values import choice, length_unit, positive_number
@@ -37,6 +38,7 @@ def sheet(
             "--out", "-o", metavar="FILE", help="The file to write; its name ends in .pdf, .svg, .png, .dxf or .step."
         ),
     ],
+    force: ForceOption = False,
     paper: Annotated[str, typer.Option(metavar="SIZE", help="a4 or letter.", rich_help_panel=ON_PAPER)] = "a4",
     unit: ShownUnitOption = None,
     part_name: Annotated[
@@ -63,8 +65,6 @@ def sheet(
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
-    from workhold.files.atomic import refuse_unwritable
-
     rank = asked_rank(number)
     path = Path(out)
     ending = path.suffix.lower()
@@ -82,13 +82,15 @@ def sheet(
         "friction": positive_number("--friction", friction),
     }
     given = asked_loads(load, loads, shown_unit)
-    refuse_unwritable(path)
+    refuse_output(path, (result_file, loads), force)
     result = result_with(result_file, rank)
     if ending in MODEL_ENDINGS:
         write_model(path, ending, result, rank)
     else:
         write_paper(path, ending, result, rank, given or result.loads, result_file, settings)
-    typer.echo(f"Written to {path}.")
+    from workhold.cli.tables import print_tables
+
+    print_tables(f"Written to {path}.")
 
 
 def day_of(text: str) -> date:

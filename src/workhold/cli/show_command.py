@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 from workhold.cli.options import ShownUnitOption
+from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.saying import tell
 from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
 from workhold.cli.values import length_unit, picture_ending, positive_number
 
@@ -21,6 +23,7 @@ def show(
     draw: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
     ] = None,
+    force: ForceOption = False,
     load: LoadOption = None,
     loads: LoadsOption = None,
     jaw_force: JawForceOption = None,
@@ -34,18 +37,18 @@ def show(
 
     Example: workhold show part.json 1 --draw setup.png
     """
-    from workhold.files.atomic import refuse_unwritable, write_bytes
+    from workhold.files.atomic import write_bytes
 
     rank = asked_rank(number)
     shown_unit = length_unit(unit)
-    force = positive_number("--jaw-force", jaw_force)
+    closing_force = positive_number("--jaw-force", jaw_force)
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = None if draw is None else Path(draw)
     ending = None
     if picture is not None:
         ending = picture_ending(picture)
-        refuse_unwritable(picture)
+        refuse_output(picture, (result_file, loads), force)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
 
@@ -56,10 +59,10 @@ def show(
     if asked or result.loads:
         from workhold.statics.loads import load_cases
 
-        cases = load_cases(fixture, result.workpiece, result.vise, asked or result.loads, force, coefficient)
+        cases = load_cases(fixture, result.workpiece, result.vise, asked or result.loads, closing_force, coefficient)
         print_tables(*load_tables(cases, fixture, shown_unit))
     if not result.complete:
-        typer.echo("workhold: the search for this result was interrupted; there may be better fixtures.", err=True)
+        tell("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None and ending is not None:
         from workhold.drawing.fixture_picture import draw_fixture
         from workhold.drawing.render import render

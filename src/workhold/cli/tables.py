@@ -10,6 +10,7 @@ import typer
 from attrs import define, field
 
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.plain import plain, shortened
 
 if TYPE_CHECKING:
     from workhold.geometry.face import Face
@@ -71,7 +72,7 @@ def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
     """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal."""
     stream = stream or sys.stdout
     for part in parts:
-        heading, *lines = part.lines() if isinstance(part, Table) else (part,)
+        heading, *lines = map(plain, part.lines() if isinstance(part, Table) else (shortened(part),))
         if lines and stream.isatty():
             heading = typer.style(heading, bold=True)
         stream.write("\n".join([heading, *lines]) + "\n")

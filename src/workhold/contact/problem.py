@@ -16,6 +16,7 @@ from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.given import Limits, Setting
 from workhold.model.diameter import outline_diameter
+from workhold.model.real import real
 from workhold.model.restrictions import Restrictions
 from workhold.model.toolkit import Carrier
 from workhold.model.vise import Vise
@@ -180,7 +181,7 @@ def check_options(
     for name in types:
         if name not in TYPES:
             raise InputError(f"type {name} is unknown: choose I, II or both.")
-    if not (isfinite(contact_margin) and contact_margin >= 0):
+    if not (isfinite(real(contact_margin)) and contact_margin >= 0):
         raise InputError(f"contact margin {contact_margin} is not a length: give 0 or more, in mm.")
     for option, count in (("best", best), ("threads", threads)):
         if count is not None and (count != int(count) or count < 1):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from zlib import crc32
+
 import resvg_py
 
 from workhold.drawing.fonts import font_files
@@ -10,6 +12,10 @@ from workhold.errors import InputError
 __all__ = ["render", "svg_to_png"]
 
 DEFAULT_WIDTH = 2400
+# Bytes of a PNG's signature and first chunk, and the chunk after them that says which program made it.
+HEADER = 33
+SOFTWARE = b"tEXtSoftware\0workhold"
+MARK = (len(SOFTWARE) - 4).to_bytes(4, "big") + SOFTWARE + crc32(SOFTWARE).to_bytes(4, "big")
 
 
 def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
@@ -22,7 +28,7 @@ def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
     """
     if width < 1:
         raise InputError(f"picture width {width} is not a positive number of pixels: give 1 or more.")
-    return bytes(
+    png = bytes(
         resvg_py.svg_to_bytes(
             svg_string=svg,
             width=width,
@@ -34,6 +40,7 @@ def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
             sans_serif_family="DejaVu Sans",
         )
     )
+    return png[:HEADER] + MARK + png[HEADER:]
 
 
 def render(svg: str, ending: str) -> bytes:

@@ -152,9 +152,13 @@ class Scene:
         return scene
 
     def svg(self) -> str:
-        """The page as SVG text."""
+        """The page as SVG text, marked as workhold's own, see ``cli.outputs``."""
         ET.indent(self.element, " ")
-        return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(self.element, encoding="unicode") + "\n"
+        return (
+            '<?xml version="1.0" encoding="UTF-8"?>\n<!-- workhold -->\n'
+            + ET.tostring(self.element, encoding="unicode")
+            + "\n"
+        )
 
     def add(self, tag: str, attributes: Attributes) -> ET.Element:
         """Add any element."""

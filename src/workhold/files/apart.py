@@ -79,7 +79,7 @@ def outcome(told: bytes, code: int, seconds: float, memory: int, what: str) -> A
     InputError
         See :func:`run_apart`.
     """
-    kind, value = "", None
+    kind, value = "", ""
     with suppress(ValueError):
         kind, value = json.loads(told)
     if kind == "done":

@@ -124,7 +124,8 @@ def resolved_file(path: Path) -> Path:
         if target.is_dir():
             raise InputError(f"{path} is a folder: name a file in it.")
         if not target.parent.is_dir():
-            raise InputError(f"{path} cannot be written, there is no folder {path.parent}: create it first.")
+            folder = target.parent if path.is_symlink() else path.parent
+            raise InputError(f"{path} cannot be written, there is no folder {folder}: create it first.")
     return target
 
 

@@ -14,20 +14,21 @@ A file is TOML, or JSON if its name ends in .json, with a table for each load:
 
 from __future__ import annotations
 
-import json
 import re
-import tomllib
 from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from workhold.errors import InputError
+from workhold.files.text import json_value, read_text, toml_table
 from workhold.model.load import ANY_DIRECTION, Load
 from workhold.model.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
 
+# Bytes; a load takes a hundred.
+LARGEST_FILE = 1_000_000
 KEYS = ("name", "force", "at", "path", "direction", "moment")
 # Exact: 0.45359237 kg (international pound, 1959) times 9.80665 m/s^2 (standard gravity, 1901).
 POUND_FORCE = 4.4482216152605
@@ -81,17 +82,10 @@ def parsed(path: Path) -> dict[str, Any]:
         When it cannot be read.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not a loads file: it is not text.") from error
-    try:
-        content = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        kind = "JSON" if path.suffix.lower() == ".json" else "TOML"
-        reason = " ".join(str(error).split()).removesuffix(".")
-        raise InputError(f"{path} is not a loads file: it is broken {kind} ({reason}).") from error
+        text = read_text(path, LARGEST_FILE, "loads")
+        content = json_value(text) if path.suffix.lower() == ".json" else toml_table(text)
+    except InputError as error:
+        raise InputError(f"{path} is not a loads file: {error}") from error
     if not isinstance(content, dict):
         raise InputError(f"{path} is not a loads file: it must have a list of loads under the key load.")
     return content

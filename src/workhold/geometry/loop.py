@@ -24,6 +24,7 @@ from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bu
 from workhold.kernels.base.distance import turns_around
 
 __all__ = [
+    "LARGEST",
     "LoopShape",
     "checked_vertices",
     "encloses",
@@ -37,6 +38,9 @@ __all__ = [
 ]
 
 Place = Callable[[int], str]
+
+# Coordinates beyond this, in mm, leave no digits for a fixture; the unit is wrong, or the file.
+LARGEST = 1e9
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -88,7 +92,7 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
     """
     try:
         array = np.array(vertices, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
         ) from error
@@ -97,6 +101,9 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if bad.size:
         raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it.")
+    bad = np.flatnonzero((np.abs(array) > LARGEST).any(axis=1))
+    if bad.size:
+        raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge beyond 1e9: check the numbers and the unit.")
     if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
         raise InputError(
             f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import radians
 from typing import Any
 
-from attrs import frozen
+from attrs import field, frozen
 
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
@@ -101,4 +101,4 @@ class Fixture:
     pegs: tuple[Peg, ...]
     pose: Pose
     jaw_separation: float
-    quality: Mapping[str, float]
+    quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))

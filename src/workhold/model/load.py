@@ -8,6 +8,7 @@ from math import hypot, isfinite
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.model.real import real
 
 __all__ = ["ANY_DIRECTION", "Load"]
 
@@ -16,13 +17,13 @@ ANY_DIRECTION = (0.0, 360.0)
 
 def point_pairs(points: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
     """Points as pairs of floats."""
-    return tuple((float(x), float(y)) for x, y in points)
+    return tuple((real(x), real(y)) for x, y in points)
 
 
 def direction_range(directions: Iterable[float]) -> tuple[float, float]:
     """A range of directions in degrees, from ``low`` counter-clockwise to ``high``, with low in [0, 360) and
     low <= high <= low + 360."""
-    low, high = (float(value) for value in directions)
+    low, high = (real(value) for value in directions)
     if 0.0 <= low < 360.0 and low <= high <= low + 360.0:
         return ANY_DIRECTION if high - low == 360.0 else (low, high)
     if not (isfinite(low) and isfinite(high) and abs(high - low) <= 360.0):
@@ -66,9 +67,9 @@ class Load:
     """
 
     points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
-    force: float = field(default=0.0, converter=float)
+    force: float = field(default=0.0, converter=real)
     directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=direction_range)
-    moment: float = field(default=0.0, converter=float)
+    moment: float = field(default=0.0, converter=real)
     name: str = ""
 
     def __attrs_post_init__(self) -> None:

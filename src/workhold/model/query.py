@@ -11,6 +11,7 @@ from attrs import field, frozen
 from workhold.errors import InputError
 from workhold.model.load import Load
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figure_number
+from workhold.model.real import real
 from workhold.model.restrictions import Restrictions
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
@@ -75,7 +76,7 @@ class Query:
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads))
         margin = self.contact_margin
-        if not (isinstance(margin, int | float) and isfinite(margin) and margin >= 0):
+        if not (isinstance(margin, int | float) and isfinite(real(margin)) and margin >= 0):
             raise InputError(f"contact margin {margin} is not a length: give 0 or more, in mm.")
         object.__setattr__(self, "contact_margin", float(margin))
         object.__setattr__(self, "best", counting_number("best", self.best))

@@ -19,6 +19,7 @@ from workhold.geometry.loop import (
     signed_area,
 )
 from workhold.geometry.segment import Segment
+from workhold.model.real import real
 
 __all__ = ["Restrictions", "Zone", "circle_zone", "polygon_zone"]
 
@@ -50,6 +51,7 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
     InputError
         When it has no size.
     """
+    x, y, radius = real(x), real(y), real(radius)
     if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
         raise InputError(
             f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
@@ -116,7 +118,7 @@ class Restrictions:
     angles: tuple[Angles, ...] = ()
 
     def __attrs_post_init__(self) -> None:
-        for low, high in self.angles:
+        for low, high in ((real(low), real(high)) for low, high in self.angles):
             if not (isfinite(low) and isfinite(high) and low <= high):
                 raise InputError(
                     f"angles {low:g} to {high:g} are not a range in degrees: give the smaller first, such as -10..10."

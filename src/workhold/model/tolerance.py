@@ -7,6 +7,7 @@ from math import isfinite
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.model.real import real
 
 __all__ = ["Tolerance"]
 
@@ -26,8 +27,8 @@ class Tolerance:
         For lengths that are negative or not finite.
     """
 
-    peg: float = field(default=0.01, converter=float)
-    face: float = field(default=0.01, converter=float)
+    peg: float = field(default=0.01, converter=real)
+    face: float = field(default=0.01, converter=real)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (("peg", self.peg), ("face", self.face)):

@@ -11,6 +11,7 @@ from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.model.holes import Holes
+from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 
 __all__ = ["OpeningVise", "Vise"]
@@ -21,17 +22,17 @@ def pair(value: float | Iterable[float]) -> tuple[float, float]:
     numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
     if len(numbers) != 2:
         raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
-    return float(numbers[0]), float(numbers[1])
+    return real(numbers[0]), real(numbers[1])
 
 
-def whole(value: float | None) -> Any:
+def whole(value: Any) -> Any:
     """A whole number as an int; None and anything else as it is, to be looked at later."""
-    return value if value is None or not isfinite(value) or value != int(value) else int(value)
+    return int(value) if isfinite(real(value)) and value == int(value) else value
 
 
 def optional_length(value: float | None) -> float:
     """A length, or NaN (which the vise resolves) for None."""
-    return nan if value is None else float(value) if not isnan(float(value)) else inf
+    return nan if value is None else inf if isnan(real(value)) else real(value)
 
 
 def all_holes(holes: Iterable[Holes]) -> tuple[Holes, ...]:
@@ -76,11 +77,11 @@ class Vise(Toolkit):
 
     pitch: tuple[float, float] = field(converter=pair)
     columns: int = field(converter=whole)
-    peg_radius: float = field(converter=float)
+    peg_radius: float = field(converter=real)
     rows: int | None = field(default=None, converter=whole)
     min_gap: float = field(default=None, converter=optional_length)
-    max_opening: float | None = field(default=None, converter=optional(float))
-    row_offset: float = field(default=0.0, converter=float)
+    max_opening: float | None = field(default=None, converter=optional(real))
+    row_offset: float = field(default=0.0, converter=real)
     body_radius: float = field(default=None, converter=optional_length)
     blocked: tuple[Holes, ...] = field(default=(), converter=all_holes)
 
@@ -172,7 +173,5 @@ def refuse_blocked(vise: Vise) -> None:
         if vise.rows is not None and holes.row is not None and holes.row >= vise.rows:
             raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.rows} rows.")
     for jaw in ("left", "right"):
-        if {holes.column for holes in vise.blocked if holes.jaw == jaw and holes.row is None} == set(
-            range(vise.columns)
-        ):
+        if len({holes.column for holes in vise.blocked if holes.jaw == jaw and holes.row is None}) == vise.columns:
             raise InputError(f"every column of the {jaw} jaw is blocked: leave at least one.")

@@ -30,9 +30,16 @@ from workhold.model.fixture import Pose
 __all__ = ["Workpiece"]
 
 
-@define(frozen=True, slots=False, eq=False)
+def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
+    """What makes loops equal: their numbers, zeros without sign."""
+    return tuple((loop + 0.0).tobytes() for loop in loops)
+
+
+@define(frozen=True, slots=False)
 class Workpiece:
     """A prismatic part, known by its silhouette. Build it with :meth:`from_loops` or :func:`workhold.load`.
+
+    Parts of the same name and the same loops are equal.
 
     Parameters
     ----------
@@ -49,7 +56,7 @@ class Workpiece:
     """
 
     name: str
-    loops: tuple[NDArray[np.float64], ...] = field(repr=lambda loops: f"<{len(loops)} loops>")
+    loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of, repr=lambda loops: f"<{len(loops)} loops>")
 
     @classmethod
     def from_loops(

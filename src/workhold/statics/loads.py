@@ -18,6 +18,7 @@ from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
+from workhold.model.real import real
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
@@ -102,8 +103,8 @@ def load_cases(
         For a jaw force or a coefficient that is negative or not finite.
     """
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
-        if value is not None and not (isfinite(value) and value >= 0):
-            raise InputError(f"{name} {value:g} cannot be used: give 0 or more.")
+        if value is not None and not (isfinite(real(value)) and value >= 0):
+            raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
     touched = Touched.of(workpiece, vise)
     pose = np.array([[radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]])
     right = np.array([[peg.jaw == "right" for peg in fixture.pegs]])

@@ -81,7 +81,7 @@ def test_a_result_file_gives_its_workpiece(tmp_path: Path) -> None:
         ("[1, 2]", "holds no workpiece"),
         ("3", "holds no workpiece"),
         ("[" * 200_000, "nested too deeply|not valid JSON"),
-        ("1" * 5000, "too many digits|holds no workpiece"),
+        ("1" * 5000, "5000 digits"),
         ('{"format": "workhold-result/1"}', "holds no workpiece"),
         ({"loops": PLATE["loops"]}, 'no units.*"units": "mm"'),
         ({**PLATE, "units": "furlong"}, 'units "furlong" are not known'),

@@ -64,6 +64,7 @@ def setup_dxf(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> bytes
         document = new(VERSION)
         document.units = units.MM
         document.header["$MEASUREMENT"] = 1
+        document.header["$LASTSAVEDBY"] = "workhold"
         for name, color in LAYERS.items():
             document.layers.add(name, color=color)
         for carrier in toolkit.carriers:

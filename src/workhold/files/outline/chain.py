@@ -19,12 +19,11 @@ from attrs import frozen
 
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
+from workhold.geometry.loop import LARGEST
 from workhold.geometry.segment import Point
 
 __all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
 
-# Coordinates beyond this, in mm, leave no digits for a fixture; the unit is wrong, or the file.
-LARGEST = 1e9
 # How many places a remark names before it only counts.
 NAMED = 10
 

@@ -5,12 +5,10 @@ A result file is read too: its ``workpiece`` has the same form.
 
 from __future__ import annotations
 
-import json
-from typing import Any, NoReturn
-
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.text import json_value
 from workhold.model.units import unit_named
 
 __all__ = ["JsonWorkpiece", "read_json"]
@@ -37,7 +35,7 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
     InputError
         For text that is not JSON, or not of this shape, naming the place.
     """
-    content = parsed(text)
+    content = json_value(text)
     if isinstance(content, dict) and str(content.get("format", "")).startswith("workhold-result"):
         content = content.get("workpiece")
     if not isinstance(content, dict):
@@ -52,28 +50,3 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
     scale = unit_named(units).millimetres
     loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
     return JsonWorkpiece(content.get("name"), loops)
-
-
-def parsed(text: str) -> Any:
-    """The content of JSON text.
-
-    Raises
-    ------
-    InputError
-        Naming line and column, or the constant JSON does not have.
-    """
-
-    def refuse_constant(name: str) -> NoReturn:
-        raise InputError(f"{name} is not a number a workpiece can have: correct that coordinate or bulge.")
-
-    try:
-        return json.loads(text, parse_constant=refuse_constant)
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"The file is not valid JSON: {error.msg.lower()} at line {error.lineno}, column {error.colno}."
-        ) from error
-    except (RecursionError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        kind = "is nested too deeply" if isinstance(error, RecursionError) else "holds a number with too many digits"
-        raise InputError(f"The file {kind}: it must be a list of loops of [x, y, bulge].") from error

@@ -263,8 +263,6 @@ def from_json(
     name = read.name or path.stem
     rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
     refuse_large(sum(len(loop) for loop in rows))
-    if any(len(loop) and not float(np.abs(loop).max()) <= 1e9 for loop in rows):
-        raise InputError("a coordinate or bulge is beyond 1e9: check the numbers and the units.")
     workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False)
     part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
     chosen_part(part, part_number)

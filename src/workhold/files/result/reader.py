@@ -6,11 +6,10 @@ it, is read line by line; any other layout of the same JSON is read as a whole. 
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
@@ -20,6 +19,7 @@ from pydantic import ValidationError
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.forms import Head, ProofPart
+from workhold.files.text import json_value
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
@@ -33,6 +33,8 @@ __all__ = ["read_result"]
 
 BLOCK = 4096
 LARGEST_NUMBER = 2**31 - 1
+# Bytes of a file of another layout, which takes twenty times as much memory.
+LARGEST_WHOLE = 200_000_000
 
 
 @frozen
@@ -124,7 +126,7 @@ def read_lines(path: Path) -> tuple[Any, Columns]:
     OtherLayoutError
         When the lines are not of that form.
     """
-    with path.open(encoding="utf-8") as stream:
+    with path.open(encoding="utf-8-sig") as stream:
         before: list[str] = []
         for line in stream:
             before.append(line)
@@ -135,7 +137,7 @@ def read_lines(path: Path) -> tuple[Any, Columns]:
         after: list[str] = []
         columns = collected(fixture_lines(stream, after), path)
         try:
-            data = loads("".join(before + after) + stream.read())
+            data = json_value("".join(before + after) + stream.read())
         except ValueError as error:
             raise OtherLayoutError from error
     return data, columns
@@ -153,7 +155,7 @@ def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
             raise OtherLayoutError
         last = not text.endswith(",")
         try:
-            yield loads(text.removesuffix(","))
+            yield json_value(text.removesuffix(","))
         except ValueError as error:
             raise OtherLayoutError from error
     raise OtherLayoutError
@@ -161,29 +163,20 @@ def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
 
 def read_whole(path: Path) -> tuple[Any, Columns]:
     """Head and fixtures of a file of any layout."""
-    text = path.read_text(encoding="utf-8")
+    if path.is_file() and path.stat().st_size > LARGEST_WHOLE:
+        raise InputError(
+            f"{path} is too large a file to be read but with one fixture on every line, as workhold writes it."
+        )
+    text = path.read_text(encoding="utf-8-sig")
     if not text.strip():
         raise InputError(f"{path} is empty: it is not a result file.")
     try:
-        data = loads(text)
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(f"{path} is not a result file: it is broken JSON at {place} ({error.msg}).") from error
-    except ValueError as error:
-        raise InputError(f"{path} is not a result file: {error}.") from error
+        data = json_value(text)
+    except InputError as error:
+        raise InputError(f"{path} is not a result file: {error}") from error
     if not isinstance(data, dict) or not isinstance(data.get("fixtures"), list):
         raise InputError(f"{path} is not a result file: it has no list of fixtures.")
     return data, collected(data.pop("fixtures"), path)
-
-
-def loads(text: str) -> Any:
-    """Parse JSON, refusing the NaN and Infinity that Python would let pass."""
-    return json.loads(text, parse_constant=refuse_constant)
-
-
-def refuse_constant(name: str) -> NoReturn:
-    """Refuse a constant that JSON does not have."""
-    raise ValueError(f"{name} is not a number")
 
 
 def checked_head(data: Any, path: Path) -> Head:

@@ -20,11 +20,13 @@ from workhold.model.fixture import Fixture
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.plain import plain, shortened
 
 __all__ = ["setup_step", "write_setup_step"]
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
+LONGEST_NAME = 120
 
 
 def write_setup_step(
@@ -70,14 +72,15 @@ def setup_step(
         if not (isfinite(value) and value > 0):
             raise InputError(f"{name} {value} is not a positive length: give it in mm.")
     load_step_library()
-    named = [(workpiece.name, part_body(workpiece.placed(fixture.pose), thickness))]
+    name = plain(shortened(workpiece.name, LONGEST_NAME))
+    named = [(name, part_body(workpiece.placed(fixture.pose), thickness))]
     seen = shown(fixture, toolkit, workpiece).carriers
     for each in seen:
         for peg in each.pegs:
             body = peg_body((peg.x, peg.y), each.carrier.peg_radius, -plate_thickness, thickness)
             named.append((f"peg {peg.hole}", body))
     named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen]
-    return assembly(f"{workpiece.name} set-up", named)
+    return assembly(f"{name} set-up", named)
 
 
 def part_body(part: Workpiece, thickness: float) -> Any:

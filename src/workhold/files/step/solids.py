@@ -9,7 +9,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import LARGEST
+from workhold.geometry.loop import LARGEST
 
 __all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "read_solids", "solid_remarks"]
 

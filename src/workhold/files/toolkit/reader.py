@@ -9,7 +9,6 @@ fit : limits of pin and hole and the position of the hole, from which the peg's 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
 from workhold.model.dowel import Limits, peg_error, refuse_limits
 from workhold.model.holes import holes_named
@@ -90,34 +90,9 @@ def read_vise_file(path: Path) -> LoadedVise:
     from workhold.files.toolkit.form import checked
 
     try:
-        return described_vise(path.stem, checked(content_of(path)))
+        return described_vise(path.stem, checked(toml_table(read_text(path, LARGEST_FILE, "a vise"))))
     except InputError as error:
         raise InputError(f"{path.name or path}: {error}") from error
-
-
-def content_of(path: Path) -> dict[str, Any]:
-    """The entries of a TOML file.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read, or is no TOML.
-    """
-    try:
-        if not path.is_file():
-            raise InputError("this is not a file: give a TOML file that describes a vise.")
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError("the file is too large to describe a vise: give a TOML file of a few lines.")
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        reason = str(error).rstrip(".")
-        raise InputError(f"the file is not valid TOML: {reason[:1].lower()}{reason[1:]}.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
-    except RecursionError as error:
-        raise InputError("the file is nested too deeply to describe a vise.") from error
-    except OSError as error:
-        raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
 
 
 def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:

@@ -1,0 +1,146 @@
+"""Text files of a user's, JSON and TOML: read whole within a limit of size, and without a guess at what is meant.
+
+Two things that Python's readers let pass are refused: a key that is given twice, of which the last would count, and a
+whole number of so many digits that it is beyond any length.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any, NoReturn
+
+from workhold.errors import InputError
+
+__all__ = ["json_value", "read_text", "toml_table"]
+
+# Floats end at 1.8e308.
+MOST_DIGITS = 308
+
+
+def read_text(path: Path, largest: int, what: str) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark.
+
+    Parameters
+    ----------
+    largest : bytes that the file may have.
+    what : what it should describe, for the message.
+
+    Raises
+    ------
+    InputError
+        Without the file's name: when it cannot be read, is too large, or is no text.
+    """
+    try:
+        if not path.exists():
+            raise InputError("there is no file of that name.")
+        if not path.is_file():
+            raise InputError(f"this is not a file: give one that describes {what}.")
+        size = path.stat().st_size
+        if size > largest:
+            raise InputError(
+                f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB of a file that describes {what}."
+            )
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"the file cannot be read ({(getattr(error, 'strerror', None) or str(error)).lower()})."
+        ) from error
+
+
+def json_value(text: str) -> Any:
+    """The content of JSON text.
+
+    Raises
+    ------
+    InputError
+        A sentence without the file's name, that gives line and column where the form is broken.
+    """
+    try:
+        return DECODER.decode(text)
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"the file is not valid JSON: {error.msg.lower()} at line {error.lineno}, column {error.colno}."
+        ) from error
+    except RecursionError as error:
+        raise InputError("the file is nested too deeply.") from error
+
+
+def toml_table(text: str) -> dict[str, Any]:
+    """The content of TOML text.
+
+    Raises
+    ------
+    InputError
+        A sentence without the file's name, that gives the line where the form is broken.
+    """
+    try:
+        content = tomllib.loads(text)
+        refuse_long_numbers(content)
+        return content
+    except RecursionError as error:
+        raise InputError("the file is nested too deeply.") from error
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        reason = " ".join(str(error).split()).rstrip(".") or "it is broken"
+        raise InputError(f"the file is not valid TOML: {reason[:1].lower()}{reason[1:]}.") from error
+
+
+def refuse_constant(name: str) -> NoReturn:
+    """Refuse the NaN and the infinities that JSON does not have."""
+    raise InputError(f"{name} is not a number: correct it.")
+
+
+def whole_number(digits: str) -> int:
+    """A whole number that is not beyond all floats.
+
+    Raises
+    ------
+    InputError
+        For one that is.
+    """
+    if len(digits) > MOST_DIGITS:
+        raise InputError(f"the file holds a number with {len(digits)} digits: correct it.")
+    return int(digits)
+
+
+def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object whose keys are given once.
+
+    Raises
+    ------
+    InputError
+        Naming a key that is given twice.
+    """
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for k, key in enumerate(keys) if key in keys[:k])
+        raise InputError(f'the key "{twice[:60]}" is given twice in one place: leave one of them out.')
+    return content
+
+
+def refuse_long_numbers(value: Any) -> None:
+    """Refuse a whole number beyond all floats, wherever in tables and lists it stands.
+
+    Raises
+    ------
+    InputError
+        For the first one.
+    """
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for item in value:
+            refuse_long_numbers(item)
+    elif isinstance(value, int) and abs(value) >= 10**MOST_DIGITS:
+        raise InputError(f"the file holds a number with more than {MOST_DIGITS} digits: correct it.")
+
+
+DECODER = json.JSONDecoder(parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once)
