@@ -156,11 +156,25 @@ def exit_code(command: Callable[[], Any]) -> int:
         forget_output()
         return NO_READER
     except Exception as error:
+        if lacks_memory(error):
+            say("error: this needs more memory than there is: close other programs, or raise the limit.")
+            return BAD_INPUT
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
             say(f"error: the output cannot be written: {error.strerror}.")
             return BAD_INPUT
         report_fault(error)
         return FAULT
+
+
+def lacks_memory(error: BaseException | None) -> bool:
+    """Whether an error comes of too little memory, which libraries that cannot be loaded tell in words of their own."""
+    while error is not None:
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            return True
+        if "failed to map segment" in str(error) or "annot allocate memory" in str(error):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def complain(error: Exception) -> int:
