@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.algebra.conditions import wrench_minors
-from workhold.kernels.contact.rules import LEAST_SPAN
+from workhold.conventions import LEAST_SPAN
 
 Array = NDArray[np.float64]
 

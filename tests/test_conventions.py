@@ -8,9 +8,6 @@ from pathlib import Path
 import pytest
 
 from workhold import conventions
-from workhold.kernels.chord import coincidences, intervals
-from workhold.kernels.contact import rules as kernel_rules
-from workhold.kernels.crossing import sliding_pairs
 from workhold.verification import rules
 
 BELIEF = Path(__file__).parent.parent / "docs" / "belief.md"
@@ -63,17 +60,3 @@ def test_every_number_of_the_claim_has_a_row() -> None:
 
 def test_the_verification_reads_outlines_as_the_geometry_does() -> None:
     assert (rules.STRAIGHT, rules.WHOLE) == (conventions.STRAIGHT, conventions.WHOLE)
-
-
-@pytest.mark.parametrize(
-    ("module", "names"),
-    [
-        (intervals, ("PARALLEL",)),
-        (coincidences, ("EXACT", "SAME_CENTER")),
-        (kernel_rules, ("GAP_SLACK", "LEAST_CLOSURE", "LEAST_CLAMPING", "LEAST_SPAN")),
-        (sliding_pairs, ("SQUARE",)),
-    ],
-)
-def test_kernels_have_the_same_numbers(module: object, names: tuple[str, ...]) -> None:
-    """Compiled code repeats those it decides by."""
-    assert all(getattr(module, name) == getattr(conventions, name) for name in names)

@@ -8,7 +8,7 @@ from attrs import asdict
 
 from workhold import Vise, Workpiece, design
 from workhold.contact.problem import TYPES, Problem
-from workhold.kernels.contact.rules import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.model.vise import OpeningVise
 from workhold.search.explaining import all_contacts
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from closing_forces import clamping_force, null_vectors
+from workhold.conventions import LEAST_SPAN
 from workhold.kernels.contact.closure import minors
-from workhold.kernels.contact.rules import LEAST_SPAN
 from workhold.statics.wrenches import outward_normals
 
 

@@ -14,8 +14,8 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.contact import closure, record
-from workhold.kernels.contact import rules as bound
 from workhold.model.vise import Vise
 from workhold.statics.wrenches import outward_normals
 
@@ -93,7 +93,7 @@ def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float
     held = held.take(np.asarray(inside.all(axis=1)))
     along = (held.center * np.exp(-1j * held.psi)[:, None]).real
     gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(axis=1, initial=-np.inf)
-    apart = np.asarray(gap >= vise.min_gap - bound.GAP_SLACK - 8.0 * length * held.reach)
+    apart = np.asarray(gap >= vise.min_gap - GAP_SLACK - 8.0 * length * held.reach)
     held, along = held.take(apart), along[apart]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :8]
@@ -128,9 +128,9 @@ def may_close(held: Held, held_rows: Array, normals: Array, points: Array, lengt
     facing = normals[..., 0] * np.cos(held.psi)[:, None] + normals[..., 1] * np.sin(held.psi)[:, None]
     clamp = -clamping * (minors * facing)[:, : held.standing].sum(axis=1)
     return np.asarray(
-        (minors.min(axis=1) + band > bound.LEAST_CLOSURE * (size - 4.0 * band))
-        & (size + 4.0 * band > bound.LEAST_SPAN)
-        & (clamp + 4.0 * band + size * (swing + held.reach) > bound.LEAST_CLAMPING * (size - 4.0 * band))
+        (minors.min(axis=1) + band > LEAST_CLOSURE * (size - 4.0 * band))
+        & (size + 4.0 * band > LEAST_SPAN)
+        & (clamp + 4.0 * band + size * (swing + held.reach) > LEAST_CLAMPING * (size - 4.0 * band))
     )
 
 

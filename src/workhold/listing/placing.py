@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_SLACK
-from workhold.kernels.contact.rules import GAP_SLACK
+from workhold.conventions import ANGLE_SLACK, GAP_SLACK
 from workhold.listing.canonical_form import Candidates
 from workhold.model.result import FixtureTable, unknown_quality
 from workhold.proof.deciding import is_standing

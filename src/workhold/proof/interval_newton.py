@@ -21,8 +21,8 @@ from attrs import frozen
 from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.given import Limits
-from workhold.kernels.contact import rules as rule
 
 __all__ = ["Box", "Outcome", "contact_value", "solutions_in"]
 
@@ -119,22 +119,22 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
     along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
     if isfinite(limits.gap):
         for one in along[: box.standing]:
-            out += [other - one - (arb(limits.gap) - rule.GAP_SLACK) for other in along[box.standing :]]
+            out += [other - one - (arb(limits.gap) - GAP_SLACK) for other in along[box.standing :]]
     size = sum((abs(minor) for minor in minors), arb(0))
-    out.append(size - rule.LEAST_SPAN)
+    out.append(size - LEAST_SPAN)
     sign = 1 if sum(float(minor.mid()) for minor in minors) >= 0 else -1
     if any(sign * minor < 0 for minor in minors) and not any(sign * minor > 0 for minor in minors):
         sign = -sign
     for minor in minors:
-        out.append(sign * minor - rule.LEAST_CLOSURE * size)
+        out.append(sign * minor - LEAST_CLOSURE * size)
     sign *= int(limits.clamping)
     push = [
         sign * minor * (n[0] * here.axis[0] + n[1] * here.axis[1])
         for minor, n in zip(minors, here.normals, strict=True)
     ]
     # The force is the push of the standing pegs, and as well what the moving pegs take up.
-    out.append(-sum(push[: box.standing], arb(0)) - rule.LEAST_CLAMPING * size)
-    out.append(sum(push[box.standing :], arb(0)) - rule.LEAST_CLAMPING * size)
+    out.append(-sum(push[: box.standing], arb(0)) - LEAST_CLAMPING * size)
+    out.append(sum(push[box.standing :], arb(0)) - LEAST_CLAMPING * size)
     return out
 
 

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from workhold.contact.features import end_distances
 from workhold.contact.problem import TYPES, Problem
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.kernels.contact import record
-from workhold.kernels.contact import rules as bound
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import arranged, placed
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
@@ -187,12 +187,12 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
     out.append(
         (
             "smallest gap",
-            lambda c: c.candidates.gap >= vise.min_gap - bound.GAP_SLACK,
+            lambda c: c.candidates.gap >= vise.min_gap - GAP_SLACK,
             partial(too_near, vise, unit),
         )
     )
-    out.append(("closure", lambda c: c.margin > bound.LEAST_CLOSURE, open_contact))
-    out.append(("clamping", lambda c: c.clamping > bound.LEAST_CLAMPING, partial(unclamped, vise.clamping)))
+    out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
+    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, vise.clamping)))
     return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
 
 

@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joined, loosened
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_HAIR
+from workhold.conventions import ANGLE_HAIR, GAP_SLACK
 from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.contact.rules import GAP_SLACK
 from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.crossing.three_and_one import three_and_one_cells
 from workhold.kernels.crossing.two_and_two import STATISTICS, two_and_two_cells

@@ -40,6 +40,7 @@ def copy(tmp_path: Path) -> Path:
     for name in (
         "__init__.py",
         "version.py",
+        "conventions.py",
         *(f"kernels/{name}.py" for name in ("__init__", "base/__init__", "base/compiling")),
     ):
         shutil.copy(source / name, package / name)
@@ -106,7 +107,7 @@ def test_a_process_that_belongs_to_no_user_does_without_a_cache(monkeypatch):
 def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
     """Any change of any source, and any new source, changes the hash; the same sources give the same hash."""
     package = tmp_path / "kernels"
-    for name in ("base/compiling.py", "a.py", "other/b.py"):
+    for name in ("base/compiling.py", "a.py", "other/b.py", "../conventions.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(f"# {name}")
     monkeypatch.setattr(compiling, "__file__", str(package / "base" / "compiling.py"))
@@ -118,7 +119,9 @@ def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
     hashes.append(compiling.source_hash())
     (package / "c.py").rename(package / "other" / "c.py")
     hashes.append(compiling.source_hash())
-    assert len(set(hashes)) == 4
+    (tmp_path / "conventions.py").write_text("# another number that decides")
+    hashes.append(compiling.source_hash())
+    assert len(set(hashes)) == 5
 
 
 def test_old_folders_are_dropped_and_the_newest_kept(tmp_path):

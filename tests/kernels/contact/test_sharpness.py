@@ -13,6 +13,7 @@ import pytest
 
 from contact_examples import held, limits
 from sharpness import Constant, changed, check_sharpness
+from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.given import Features
 from workhold.kernels.contact import closure, rules
 from workhold.kernels.crossing import three_and_one
@@ -76,7 +77,7 @@ def at_the_edge(rule: str) -> Callable[[Random, Callable[..., Kernel]], float]:
         if not (edges[rule] > 1e-3 and null.min() > 1e-3) or (rule == "clamp" and edges[rule] > 0.02):
             return 0.0
         names = {**FREE, "LEAST_CLAMPING": edges["clamp"] * (1 - 1e-9)} if rule == "clamp" else FREE
-        least = gap + rules.GAP_SLACK - 1e-12 if rule == "gap" else -1e9
+        least = gap + GAP_SLACK - 1e-12 if rule == "gap" else -1e9
         asked = limits(contacts.length, least, 0.0)
         features = Features(contacts.rows, contacts.rows, (0, 4), (0, 4))
         kernel = changed(form, **names)

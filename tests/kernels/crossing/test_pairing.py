@@ -19,10 +19,11 @@ from curve_examples import sampled
 from strategies import random_outline, seeds
 from workhold import Vise, Workpiece
 from workhold.contact.problem import Problem
+from workhold.conventions import GAP_SLACK
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
 from workhold.kernels.contact.closure import minors, outward_normal
 from workhold.kernels.contact.record import PEG_LENGTH, place_peg
-from workhold.kernels.contact.rules import GAP_SLACK, is_fixture, share_a_carrier
+from workhold.kernels.contact.rules import is_fixture, share_a_carrier
 from workhold.kernels.crossing.roots import (
     MOST_ROOTS,
     ROOT_PSI,

@@ -16,8 +16,8 @@ from contact_examples import RECORD, Held, held, setting
 from exact_chords import exact_solution, exactly
 from rounding import ROUNDED, error_of
 from sharpness import Constant, changed, check_sharpness
+from workhold.conventions import GAP_SLACK
 from workhold.kernels.contact.equations import INVERSE, OFF, UNKNOWNS, touch
-from workhold.kernels.contact.rules import GAP_SLACK
 from workhold.kernels.proof import newton_kantorovich as kantorovich
 from workhold.kernels.proof import variation
 from workhold.kernels.proof.newton_kantorovich import OPEN

@@ -42,8 +42,8 @@ def source_hash() -> str:
     """Hash of the sources of all rooms of the package, of where they are, and of the versions that compile them."""
     package = Path(__file__).resolve().parents[1]
     digest = sha256(f"{sys.version} numba {numba.__version__} {package} {ALL_CALLABLE}".encode())
-    for path in sorted(package.rglob("*.py")):
-        digest.update(path.relative_to(package).as_posix().encode())
+    for path in (package.parent / "conventions.py", *sorted(package.rglob("*.py"))):
+        digest.update(path.relative_to(package.parent).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:20]
 

@@ -24,6 +24,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import EXACT, SAME_CENTER
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.interval import (
     Interval,
@@ -45,13 +46,8 @@ Array = NDArray[np.float64]
 Motion = tuple[float, float, float, float, float, float]
 MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
-# How exactly, in mm, lengths must agree to be a coincidence: the rounding of coordinates. Chords beside it are those of a
-# part in which they agree.
-EXACT = 1e-11
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
-# Centres nearer than this, in mm, make arcs concentric.
-SAME_CENTER = 1e-9
 # Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing shape.
 NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
 TURN = 2.0 * pi

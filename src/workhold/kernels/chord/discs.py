@@ -19,8 +19,9 @@ from math import cos, hypot, inf, isfinite, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.chord.coincidences import CONCENTRIC, EXACT, NONE, TURN, from_coincidence, is_regular
+from workhold.kernels.chord.coincidences import CONCENTRIC, NONE, TURN, from_coincidence, is_regular
 from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error
 from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, LENGTH, MIDDLE, SHIFT
 

@@ -29,16 +29,16 @@ Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, sin, sqrt
+from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.chord.coincidences import (
     ARCS,
     CONCENTRIC,
-    EXACT,
     NONE,
     are_concentric,
     are_one_chord_apart,
@@ -143,6 +143,17 @@ def parameter_on(row: Array, x: float, y: float) -> float:
     if row[0] == 0.0:
         return dx * row[3] + dy * row[4]
     return atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy)
+
+
+@inner
+def distance_to_end(row: Array, s: float) -> float:
+    """Distance in mm along a feature from a parameter to the nearer end; negative beyond it.
+
+    A whole circle has no end: half its circumference is told, the farthest that a contact could be from any point.
+    """
+    if row[0] == 0.0:
+        return row[5] - abs(s)
+    return pi * row[6] if row[5] >= pi else (row[5] - abs(s)) * row[6]
 
 
 @inner

@@ -16,15 +16,14 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import EXACT, PARALLEL
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.chord.coincidences import EXACT, are_concentric, are_one_chord_apart, beyond_line
+from workhold.kernels.chord.coincidences import are_concentric, are_one_chord_apart, beyond_line
 from workhold.kernels.chord.evaluation import chord, parameter_on
 
 Array = NDArray[np.float64]
 
 TURN = 2.0 * pi
-# Lines whose directions' cross product is below this are parallel (within 1e-9 rad).
-PARALLEL = 1e-9
 MOST_EVENTS = 16
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both sides), the chord
 # is a tangency, or ranges are cut for another reason.

@@ -7,10 +7,10 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import LEAST_SPAN
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.equations import WORK_LENGTH, take_pegs, touch
-from workhold.kernels.contact.rules import LEAST_SPAN
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
 
 Array = NDArray[np.float64]

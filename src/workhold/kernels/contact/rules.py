@@ -15,26 +15,16 @@ from math import cos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.evaluation import parameter_on
+from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
 from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y
 from workhold.kernels.curves.columns import COLUMN_STEP, ROW_STEP
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# Moving pegs may stand nearer than the smallest gap by this much, in mm: rounding of a gap that is met exactly.
-GAP_SLACK = 1e-9
-# The smallest entry of the null vector must exceed this (model: condition 4).
-LEAST_CLOSURE = 1e-9
-# The clamping force must exceed this (model: condition 5). At an exact double root the force is 0, and the rounding of the
-# drawing makes it up to 1e-7 or so; the edge stands clear of both.
-LEAST_CLAMPING = 1e-6
-# The sizes of the four minors must sum to more than this: with less, the lines of action meet in one point or are parallel
-# up to the rounding of the drawing, and the wrenches do not span the space.
-LEAST_SPAN = 1e-7
 
 
 @inner
@@ -45,10 +35,9 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
     """
     if row[0] != 0.0 and row[5] >= pi:
         return True
-    scale = 1.0 if row[0] == 0.0 else row[6]
     s = parameter_on(row, x, y)
     slack = row[9] if s > 0.0 else row[8]
-    return (row[5] - abs(s)) * scale >= margin - slack - 1.2 * radius
+    return distance_to_end(row, s) >= margin - slack - 1.2 * radius
 
 
 @inner

@@ -15,12 +15,12 @@ from math import acos, atan2, ceil, cos, floor, hypot, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import PARALLEL, SQUARE
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
 from workhold.kernels.chord.evaluation import backward_error, parameter_on
-from workhold.kernels.chord.intervals import PARALLEL
 from workhold.kernels.contact.record import (
     PEG_LENGTH,
     PEG_RADIUS,
@@ -54,8 +54,6 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 TURN = 2.0 * pi
-# A chord square to its parallel lines, to within rounding of this cosine, has one line of action for both contacts.
-SQUARE = 4e-15
 # Rounding of a sliding pair's orientation, and how far outside a curve's range it still counts as inside, in radians.
 ROUNDING = 4e-15
 INSIDE = 1e-12

@@ -12,6 +12,7 @@ from math import ceil, cos, floor, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.growing import with_room
@@ -28,13 +29,7 @@ from workhold.kernels.contact.record import (
     write_given_up,
     write_record,
 )
-from workhold.kernels.contact.rules import (
-    GAP_SLACK,
-    LEAST_CLAMPING,
-    is_fixture,
-    is_listed,
-    share_a_carrier,
-)
+from workhold.kernels.contact.rules import is_fixture, is_listed, share_a_carrier
 from workhold.kernels.crossing.roots import (
     MOST_ROOTS,
     ROOT_PSI,

@@ -15,13 +15,14 @@ from math import ceil, cos, floor, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.discs import chord_tail
 from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.contact.record import PEG_LENGTH, RECORD_LENGTH, place_peg, write_given_up, write_record
-from workhold.kernels.contact.rules import GAP_SLACK, LEAST_CLAMPING, is_fixture, is_listed
+from workhold.kernels.contact.rules import is_fixture, is_listed
 from workhold.kernels.crossing.roots import (
     MOST_ROOTS,
     MULTIPLE,

@@ -27,6 +27,7 @@ from math import atan2, cos, inf, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.given import Setting
@@ -43,12 +44,6 @@ from workhold.kernels.contact.equations import (
     touch,
 )
 from workhold.kernels.contact.record import FEATURES, PSI, RADIUS, REACH
-from workhold.kernels.contact.rules import (
-    GAP_SLACK,
-    LEAST_CLAMPING,
-    LEAST_CLOSURE,
-    LEAST_SPAN,
-)
 
 Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]

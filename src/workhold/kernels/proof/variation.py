@@ -12,6 +12,7 @@ from math import cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.closure import ROUNDING, minors
@@ -24,7 +25,6 @@ from workhold.kernels.contact.equations import (
     UNKNOWNS,
 )
 from workhold.kernels.contact.record import FEATURES
-from workhold.kernels.contact.rules import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, end_slack
 
 Array = NDArray[np.float64]

@@ -18,29 +18,16 @@ the null vector of the wrenches. The duality of motions and forces is that of vi
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, nan, sin
+from math import cos, hypot, inf, nan, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-
-@inner
-def end_distance(row: Array, x: float, y: float) -> float:
-    """Distance in mm along a feature, an (8,) row, from the foot of a point to the nearer end; negative beyond it.
-
-    A whole circle has no end: half its circumference is told, the farthest that a contact could be from any point.
-    """
-    dx, dy = x - row[1], y - row[2]
-    if row[0] == 0.0:
-        return row[5] - abs(dx * row[3] + dy * row[4])
-    if row[5] >= np.pi:
-        return np.pi * row[6]
-    return (row[5] - abs(atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy))) * row[6]
 
 
 @inner
@@ -120,7 +107,7 @@ def contact_matrices_of(
             # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
             nearest, chosen = -inf, -1
             for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
-                distance = end_distance(features[f], x, y)
+                distance = distance_to_end(features[f], parameter_on(features[f], x, y))
                 if distance > nearest:
                     nearest, chosen = distance, f
             known = known and chosen >= 0
