@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable
+from copy import deepcopy
 from io import StringIO
 from math import cos, radians, sin
 from typing import Any
@@ -62,7 +63,7 @@ def upset(content: Any, chance: random.Random) -> Any:
         container, key = chance.choice(places)
         match chance.randrange(6):
             case 0 | 1:
-                container[key] = chance.choice(EXTREMES)
+                container[key] = deepcopy(chance.choice(EXTREMES))
             case 2:
                 del container[key]
             case 3:
