@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -86,11 +86,14 @@ class RunningServer:
 
 
 @contextmanager
-def running_server(**limits: Any) -> Iterator[RunningServer]:
+def running_server(
+    hosts: Hosts | None = None, proxies: Collection[str] = (), token: str | None = None, **limits: Any
+) -> Iterator[RunningServer]:
     """A server with one worker of each kind, ready for requests."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
-    server = make_server(Limits(**{"searches": 1, "desks": 1, **limits}), Hosts(), listening.set)
+    given = Limits(**{"searches": 1, "desks": 1, **limits})
+    server = make_server(given, hosts or Hosts(), listening.set, proxies, token)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ipaddress import ip_address
+from secrets import token_urlsafe
 from threading import Event
 from typing import Annotated, Any
 
@@ -14,6 +16,11 @@ __all__ = ["serve"]
 
 LIMITS = "Limits"
 HIGHEST_PORT = 65_535
+TOKEN_BYTES = 16
+OPEN_TO_ALL = (
+    "workhold: everybody who reaches this machine can use the page, read what others search for if told its name, and keep "
+    "the processors busy; --ask-token lets in only who has the address."
+)
 FIRST_RUN = "workhold: compiling for this machine, which takes about 20 seconds the first time."
 
 
@@ -35,10 +42,19 @@ def serve(
         list[str] | None,
         typer.Option(metavar="NAME", help="Another name that the server may be called by. May be repeated."),
     ] = None,
+    trust_proxy: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ADDRESS", help="A reverse proxy that says for whom it asks. May be repeated."),
+    ] = None,
+    ask_token: Annotated[
+        bool, typer.Option("--ask-token", help="Let in only who has the address that is printed.")
+    ] = False,
     upload_size: Annotated[str, limit("MB", "UPLOAD_SIZE", "Largest file with a part.")] = "20",
     searches: Annotated[str, limit("N", "SEARCHES", "Searches at the same time.")] = "2",
     seconds: Annotated[str, limit("S", "SECONDS", "Longest search; what was found by then is shown.")] = "120",
-    memory: Annotated[str, limit("MB", "MEMORY", "Most memory of each search.")] = "4096",
+    memory: Annotated[
+        str | None, limit("MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine.")
+    ] = None,
     fixtures: Annotated[str, limit("N", "FIXTURES", "Most fixtures kept of a search, the best ones.")] = "300000",
     life: Annotated[str, limit("MINUTES", "LIFE", "How long a search is kept after its last use.")] = "60",
 ) -> None:
@@ -56,14 +72,19 @@ def serve(
         "upload_bytes": int(1e6 * limit_value("--upload-size", upload_size)),
         "searches": int(limit_value("--searches", searches)),
         "seconds": limit_value("--seconds", seconds),
-        "memory_bytes": int(limit_value("--memory", memory)) << 20,
         "fixtures": int(limit_value("--fixtures", fixtures)),
         "life_seconds": 60 * limit_value("--life", life),
     }
     if figures["searches"] < 1 or figures["fixtures"] < 1:
         raise InputError("--searches and --fixtures are counts: give 1 or more.")
-    from workhold.web.limits import Limits
-    from workhold.web.serve import run_server
+    for proxy in trust_proxy or ():
+        refuse_no_address(proxy)
+    from workhold.web.limits import Limits, usual_memory
+    from workhold.web.serve import is_for_others, run_server
+
+    most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
+    if is_for_others(host) and not ask_token:
+        typer.echo(OPEN_TO_ALL, err=True)
 
     def listening(address: str) -> None:
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
@@ -72,7 +93,23 @@ def serve(
 
             webbrowser.open(address)
 
-    run_server(host, at, Limits(**figures), allow_host or (), listening, prepare)
+    token = token_urlsafe(TOKEN_BYTES) if ask_token else None
+    limits = Limits(memory_bytes=most, **figures)
+    run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare)
+
+
+def refuse_no_address(text: str) -> None:
+    """Refuse what is not the numeric address of a proxy.
+
+    Raises
+    ------
+    InputError
+        Naming it.
+    """
+    try:
+        ip_address(text)
+    except ValueError:
+        raise InputError(f"--trust-proxy {text!r} is no address: give a number such as 10.0.0.2.") from None
 
 
 def limit_value(option: str, text: str) -> float:

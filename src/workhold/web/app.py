@@ -50,16 +50,17 @@ SENTENCES = {
     "Method Not Allowed": "This cannot be done at this address.",
     "There was an error parsing the body": "The request is not valid JSON: send one object.",
 }
-STATUSES = ("400", "404", "408", "409", "413", "429", "500", "503")
+STATUSES = ("400", "401", "404", "408", "409", "413", "429", "500", "503")
 
 
-def create_app(limits: Limits | None = None, hosts: Hosts | None = None) -> FastAPI:
+def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: str | None = None) -> FastAPI:
     """The application.
 
     Parameters
     ----------
     limits : how much it gives.
     hosts : names it may be called by; only those of this machine by default.
+    token : a secret that every request must bring, or None.
     """
     limits = limits or Limits()
 
@@ -87,7 +88,7 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None) -> Fast
     app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
     add_error_handlers(app)
-    app.add_middleware(Guard, hosts=hosts or Hosts(), limits=limits)
+    app.add_middleware(Guard, hosts=hosts or Hosts(), limits=limits, token=token)
     app.openapi = lambda: description(app)  # type: ignore[method-assign]
     return app
 

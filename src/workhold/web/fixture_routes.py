@@ -16,7 +16,7 @@ from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.forms import LoadsForm
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.paper import KINDS, PaperOrder
-from workhold.web.state import state_of
+from workhold.web.state import at_desk
 
 __all__ = ["router"]
 
@@ -54,7 +54,7 @@ async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revisi
     result = result_of_job(found_job(request, name), revision)
     chosen = result[ranked(result, rank)]
     bare = Workpiece(result.workpiece.name, result.workpiece.loops)
-    cases = await state_of(request).at_desk("loads", (chosen, bare, result.vise, form))
+    cases = await at_desk(request, "loads", (chosen, bare, result.vise, form))
     return {"rank": rank, "cases": cases}
 
 
@@ -76,7 +76,7 @@ async def paper(
     result = result_of_job(job, revision, when_over=kind != "picture.svg")
     ranked(result, rank)
     order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), jaw_force, friction, job.result_hash)
-    content, result_hash = await state_of(request).at_desk("paper", order)
+    content, result_hash = await at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:
         job.result_hash = result_hash
     headers = {}

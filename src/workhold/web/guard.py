@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections import Counter
 from collections.abc import Awaitable, Callable, Collection, MutableMapping
+from hmac import compare_digest
 from ipaddress import ip_address
 from typing import Any
+from urllib.parse import parse_qs
 
-from attrs import define
+from attrs import define, field
 from starlette.exceptions import HTTPException
 
 from workhold.web.limits import Limits
@@ -34,6 +37,7 @@ HEADERS = {
 }
 READING = ("GET", "HEAD", "OPTIONS")
 UPLOADS = "/api/parts"
+COOKIE = "workhold-token"
 
 
 @define
@@ -81,12 +85,14 @@ class Guard:
     app : what it stands before.
     hosts : names of the server.
     limits : of bytes and of the time a request may take to arrive.
+    token : a secret that every request must bring, or None.
     """
 
     app: App
     hosts: Hosts
     limits: Limits
-    arriving: int = 0
+    token: str | None = None
+    arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request."""
@@ -109,16 +115,24 @@ class Guard:
         if refusal is not None:
             await answer(send_guarded, *refusal)
             return
+        if self.token is not None and not brings(self.token, headers):
+            await ask_for_token(send_guarded, scope, self.token)
+            return
         uploads = scope["method"] == "POST" and scope["path"] == UPLOADS
-        if uploads and self.arriving >= self.limits.uploads:
+        client = scope["client"][0] if scope.get("client") else ""
+        if uploads and self.arriving[client] >= self.limits.client_uploads:
+            await answer(send_guarded, 429, "Too many of your files are arriving at the same time: send one by one.")
+            return
+        if uploads and self.arriving.total() >= self.limits.uploads:
             await answer(send_guarded, 503, "Too many files are arriving at the same time: try again in a moment.")
             return
-        self.arriving += uploads
+        self.arriving[client] += uploads
         try:
             most = self.limits.upload_bytes if uploads else self.limits.request_bytes
             await self.app(scope, Body(receive, most, self.limits.body_seconds), send_guarded)
         finally:
-            self.arriving -= uploads
+            self.arriving[client] -= uploads
+            self.arriving += Counter()
 
     def refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
         """Status and sentence for a request that is not let through."""
@@ -142,6 +156,30 @@ class Guard:
             if len(length) > 15 or int(length) > most:
                 return 413, too_large(most)
         return None
+
+
+def brings(token: str, headers: dict[str, str]) -> bool:
+    """Whether a request's headers hold the secret, as a cookie or as a bearer's token."""
+    cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
+    offered = [value for name, _, value in cookies if name == COOKIE]
+    kind, _, value = headers.get("authorization", "").partition(" ")
+    if kind.lower() == "bearer":
+        offered.append(value.strip())
+    return any(compare_digest(one.encode(), token.encode()) for one in offered)
+
+
+async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
+    """Answer a request without the secret: one whose address holds it gets a cookie and is led to the page."""
+    query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
+    offered = query.get("token", [""])[0]
+    if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
+        await answer(send, 401, "This server asks for a token: open the page with the address that it printed.")
+        return
+    # Without a path the cookie is for the page's own folder, also behind a proxy that serves the page under a path.
+    cookie = f"{COOKIE}={token}; HttpOnly; SameSite=Strict"
+    headers = [(b"location", b"./"), (b"set-cookie", cookie.encode()), (b"content-length", b"0")]
+    await send({"type": "http.response.start", "status": 303, "headers": headers})
+    await send({"type": "http.response.body", "body": b""})
 
 
 @define

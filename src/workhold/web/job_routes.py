@@ -17,7 +17,7 @@ from workhold.web.asked import plain
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
 from workhold.web.selection import Selection, angle_range
-from workhold.web.state import ServerState, address_of, state_of
+from workhold.web.state import ServerState, address_of, at_desk, state_of
 
 __all__ = ["attachment", "found_job", "result_of_job", "router"]
 
@@ -71,7 +71,7 @@ async def begin(request: Request, form: JobForm | ExploreForm) -> JSONResponse:
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)
-    asked = await state.at_desk("check_job", (form, state.limits.segments))
+    asked = await at_desk(request, "check_job", (form, state.limits.segments))
     job = state.jobs.submit(form.model_dump(), asked, address, isinstance(form, ExploreForm))
     url = f"/api/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
@@ -194,7 +194,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
     """The ten with the least load reaction, in N."""
     job = found_job(request, name)
     result, revision = result_of_job(job), job.revision
-    best = await state_of(request).at_desk("resist", (plain(result), form))
+    best = await at_desk(request, "resist", (plain(result), form))
     rows = [{"rank": rank, "load_reaction": reaction} for rank, reaction in best]
     return {"revision": revision, "best": rows}
 

@@ -170,8 +170,7 @@ class Jobs:
         running = sum(not job.is_over and job.address == address for job in self.by_name.values())
         if running >= self.limits.jobs:
             raise TooManyError(f"{running} of your searches are not over yet: wait for one of them, or cancel one.")
-        if len(self.pool.waiting) >= self.pool.most_waiting:
-            raise BusyError("The server is busy with other searches: try again in a moment.")
+        self.pool.refuse_more(address)
 
     def submit(self, request: Mapping[str, Any], asked: tuple[Asked, ...], address: str, compares: bool) -> Job:
         """Begin a job.
@@ -202,6 +201,7 @@ class Jobs:
             name,
             payload,
             self.limits.seconds,
+            job.address,
             stops_well=True,
             report=lambda value: self.heard(job, value),
             begun=lambda: self.begin(job),
@@ -268,7 +268,7 @@ class Jobs:
             When it could not be; it may be asked again.
         """
         if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
-            task = Task("explanation", job.asked[0], self.limits.seconds)
+            task = Task("explanation", job.asked[0], self.limits.seconds, job.address)
             job.explaining = asyncio.create_task(self.pool.run(task))
         return await asyncio.shield(job.explaining)
 

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
+
 from attrs import frozen
 
-__all__ = ["Limits"]
+__all__ = ["Limits", "usual_memory"]
+
+# Memory of a search in bytes; the least with which one can work; and the share of the machine's that all searches may take.
+MEMORY, LEAST_MEMORY, SHARE = 4 << 30, 1 << 30, 0.7
 
 
 @frozen
@@ -16,7 +21,7 @@ class Limits:
     upload_bytes : of a file with a part.
     request_bytes : of any other request.
     body_seconds : for a request to arrive.
-    uploads : files that may arrive at the same time.
+    uploads, client_uploads : files that may arrive at the same time, in all and from one address.
     segments : of a part.
     searches : searches at the same time, each in a process of its own.
     desks : processes for everything that is quick: reading files, pictures, loads.
@@ -29,13 +34,14 @@ class Limits:
     kept_jobs, kept_bytes : searches and bytes of their fixtures kept; the longest unused go first.
     life_seconds : after the last use of a search until it is forgotten.
     streams : streams of events at the same time.
-    connections : at the same time.
+    connections, client_connections : at the same time, in all and from one address.
     """
 
     upload_bytes: int = 20_000_000
     request_bytes: int = 4_000_000
     body_seconds: float = 60.0
     uploads: int = 16
+    client_uploads: int = 4
     segments: int = 2_000
     searches: int = 2
     desks: int = 2
@@ -43,7 +49,7 @@ class Limits:
     jobs: int = 64
     seconds: float = 120.0
     desk_seconds: float = 20.0
-    memory_bytes: int = 4 << 30
+    memory_bytes: int = MEMORY
     desk_memory_bytes: int = 2 << 30
     fixtures: int = 300_000
     kept_jobs: int = 1_000
@@ -51,3 +57,13 @@ class Limits:
     life_seconds: float = 3600.0
     streams: int = 256
     connections: int = 1_024
+    client_connections: int = 128
+
+
+def usual_memory(searches: int) -> int:
+    """Bytes of address space for each of so many searches at the same time: 4 GiB, or less where the machine has less."""
+    try:
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return MEMORY
+    return min(MEMORY, max(int(SHARE * memory / searches), LEAST_MEMORY))

@@ -12,7 +12,7 @@ from workhold import __version__
 from workhold.web.answers import figures_answer, vise_answer
 from workhold.web.forms import WorkpieceForm
 from workhold.web.paper import has_step
-from workhold.web.state import state_of
+from workhold.web.state import at_desk, state_of
 from workhold.web.tasks import Upload
 
 __all__ = ["router"]
@@ -59,7 +59,7 @@ async def part(request: Request, name: str) -> dict[str, Any]:
     if known is None:
         raise HTTPException(404, "No part of that name comes with the program.")
     if known not in state.builtin:
-        state.builtin[known] = await state.at_desk("builtin_part", known)
+        state.builtin[known] = await at_desk(request, "builtin_part", known)
     return state.builtin[known]
 
 
@@ -87,7 +87,7 @@ async def read_part(
     name = shown_name(request.headers.get("x-filename", ""))
     if axis is not None and name.lower().endswith((".step", ".stp")):
         options["axis"] = axis
-    answer: dict[str, Any] = await state.at_desk("read_part", Upload(content, name, state.limits.segments, options))
+    answer: dict[str, Any] = await at_desk(request, "read_part", Upload(content, name, state.limits.segments, options))
     return answer
 
 
@@ -101,7 +101,7 @@ def shown_name(header: str) -> str:
 async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     """The part, or what is wrong with it and where."""
     state = state_of(request)
-    answer: dict[str, Any] = await state.at_desk("check_part", (form, state.limits.segments))
+    answer: dict[str, Any] = await at_desk(request, "check_part", (form, state.limits.segments))
     return answer
 
 

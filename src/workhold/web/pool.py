@@ -3,6 +3,7 @@
 Glossary
 --------
 task : something a worker does, by name, with a time limit.
+client : who asked for a task; clients take turns, and none has all the workers.
 slot : a place for one worker; a worker that dies is replaced in its slot.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import threading
-from collections import deque
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import count
@@ -32,6 +33,8 @@ TIME_GRACE = 10.0
 # Workers that end before they are ready, one after the other, before waiting tasks are given up; and the pause between.
 MOST_FAILED_STARTS = 3
 START_PAUSE = 1.0
+# Clients whose last turn is remembered.
+MOST_TURNS = 4096
 
 Message = tuple[str, int, Any]
 
@@ -57,6 +60,7 @@ class Task:
     name : see ``web.tasks.TASKS``.
     payload : what it needs; must be picklable.
     seconds : how long it may take once it has begun.
+    client : who asked for it.
     stops_well : whether it gives what it has when told to stop; its worker is ended at once otherwise.
     report : called with what the worker sends before it is done.
     begun : called when a worker begins.
@@ -65,6 +69,7 @@ class Task:
     name: str
     payload: Any
     seconds: float
+    client: str = ""
     stops_well: bool = False
     report: Callable[[Any], None] | None = None
     begun: Callable[[], None] | None = None
@@ -155,14 +160,16 @@ class Pool:
     kind : see ``web.tasks.warm_up``.
     size : how many workers.
     memory_bytes : of each.
-    most_waiting : tasks that may wait.
+    most_waiting : tasks that may wait; a quarter of the places is kept from any single client.
     """
 
     kind: str
     size: int
     memory_bytes: int
     most_waiting: int
-    waiting: deque[Task] = field(factory=deque, init=False)
+    waiting: list[Task] = field(factory=list, init=False)
+    running: Counter[str] = field(factory=Counter, init=False)
+    turns: dict[str, int] = field(factory=dict, init=False)
     bell: asyncio.Event = field(factory=asyncio.Event, init=False)
     slots: list[asyncio.Task[None]] = field(factory=list, init=False)
     workers: dict[int, Worker] = field(factory=dict, init=False)
@@ -183,13 +190,25 @@ class Pool:
             await worker.end()
         self.give_up("The server was stopped.")
 
+    def refuse_more(self, client: str) -> None:
+        """Refuse a further task of a client.
+
+        Raises
+        ------
+        BusyError
+            When too many tasks wait, of this client or of all.
+        """
+        of_client = sum(task.client == client for task in self.waiting)
+        if len(self.waiting) >= self.most_waiting or of_client >= self.most_waiting - self.most_waiting // 4:
+            raise BusyError("The server is busy: try again in a moment.")
+
     def give_up(self, sentence: str) -> None:
         """Fail all tasks that wait."""
         while self.waiting:
-            self.waiting.popleft().settle(error=FailedError(sentence))
+            self.waiting.pop().settle(error=FailedError(sentence))
 
     async def run(self, task: Task) -> Any:
-        """Do a task, after those that came before it; a caller that is cancelled cancels the task.
+        """Do a task when its client has its turn; a caller that is cancelled cancels the task.
 
         Raises
         ------
@@ -202,8 +221,7 @@ class Pool:
         FailedError
             When it came to a bad end.
         """
-        if len(self.waiting) >= self.most_waiting:
-            raise BusyError("The server is busy: try again in a moment.")
+        self.refuse_more(task.client)
         self.waiting.append(task)
         self.bell.set()
         try:
@@ -219,12 +237,31 @@ class Pool:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
+    def turn(self) -> Task | None:
+        """The task whose turn it is: of the client that has the fewest workers, of these the one whose last turn is longest
+        ago. One worker of several is kept from any single client, so that the next one need not wait for its searches."""
+        most = max(self.size - 1, 1)
+        may = [task for task in self.waiting if self.running[task.client] < most]
+        return min(may, key=lambda task: (self.running[task.client], self.turns.get(task.client, 0)), default=None)
+
     async def next_task(self) -> Task:
-        """The task that has waited longest, when there is one."""
-        while not self.waiting:
+        """The task whose turn it is, when there is one; its client has a worker from then on."""
+        while (task := self.turn()) is None:
             self.bell.clear()
             await self.bell.wait()
-        return self.waiting.popleft()
+        self.waiting.remove(task)
+        self.running[task.client] += 1
+        self.turns.pop(task.client, None)
+        self.turns[task.client] = next(self.numbers)
+        while len(self.turns) > MOST_TURNS:
+            self.turns.pop(next(iter(self.turns)))
+        return task
+
+    def free(self, task: Task) -> None:
+        """Note that a worker is no longer its client's."""
+        self.running[task.client] -= 1
+        self.running += Counter()
+        self.bell.set()
 
     async def keep(self, slot: int) -> None:
         """Keep a worker in a slot and give it tasks."""
@@ -252,7 +289,8 @@ class Pool:
             if task is None:
                 return
             if worker.gone.is_set():
-                self.waiting.appendleft(task)
+                self.free(task)
+                self.waiting.insert(0, task)
                 return
             self.busy += 1
             try:
@@ -262,6 +300,7 @@ class Pool:
                 raise
             finally:
                 self.busy -= 1
+                self.free(task)
 
     async def work(self, worker: Worker, task: Task) -> None:
         """Let a worker do a task; afterwards the worker is gone if it had to be ended."""

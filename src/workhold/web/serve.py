@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections import Counter
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from ipaddress import ip_address
@@ -17,7 +18,7 @@ from workhold.web.app import create_app
 from workhold.web.guard import Hosts
 from workhold.web.limits import Limits
 
-__all__ = ["bound_socket", "make_server", "run_server"]
+__all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
 LOCAL = ("localhost", "127.0.0.1", "::1")
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
@@ -26,13 +27,31 @@ STOP_SECONDS = 2
 
 
 class PatientProtocol(H11Protocol):
-    """HTTP that lets go of clients who do not come to the point: their connections would else stay open for ever."""
+    """HTTP that lets go of clients who do not come to the point, or who take all connections: others would find none.
 
+    A server makes a class of its own of it, with these:
+
+    Attributes
+    ----------
+    most : connections of one address at the same time.
+    trusted : proxies, whose connections are those of many.
+    open_connections : by address.
+    """
+
+    most: int
+    trusted: Collection[str]
+    open_connections: Counter[str]
     header_timer: asyncio.TimerHandle | None = None
+    peer: str = ""
 
     def connection_made(self, transport: Any) -> None:
         """A client is there: its request should follow."""
         super().connection_made(transport)
+        self.peer = self.client[0] if self.client else ""
+        self.open_connections[self.peer] += 1
+        if self.open_connections[self.peer] > self.most and self.peer not in self.trusted:
+            transport.close()
+            return
         self.watch()
 
     def data_received(self, data: bytes) -> None:
@@ -44,6 +63,9 @@ class PatientProtocol(H11Protocol):
         """The client is gone."""
         if self.header_timer is not None:
             self.header_timer.cancel()
+        self.open_connections[self.peer] -= 1
+        if not self.open_connections[self.peer]:
+            del self.open_connections[self.peer]
         super().connection_lost(exc)
 
     def watch(self) -> None:
@@ -81,6 +103,8 @@ def run_server(
     port: int,
     limits: Limits,
     more_hosts: Collection[str] = (),
+    proxies: Collection[str] = (),
+    token: str | None = None,
     listening: Callable[[str], None] | None = None,
     prepare: Callable[[], None] | None = None,
 ) -> None:
@@ -91,6 +115,8 @@ def run_server(
     host, port : where to listen; port 0 takes a free one.
     limits : how much to give.
     more_hosts : further names that the server may be called by.
+    proxies : addresses of reverse proxies that are trusted to say whom they ask for.
+    token : a secret that every request must bring, or None.
     listening : called with the page's address once it is there.
     prepare : called before the first worker is started, when the address is known to be free.
 
@@ -101,7 +127,10 @@ def run_server(
     """
     listener = bound_socket(host, port)
     shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
-    server = make_server(limits, hosts_of(host, more_hosts), lambda: None if listening is None else listening(shown))
+    if token is not None:
+        shown += f"?token={token}"
+    hosts = hosts_of(host, more_hosts)
+    server = make_server(limits, hosts, lambda: None if listening is None else listening(shown), proxies, token)
     try:
         if prepare is not None:
             prepare()
@@ -112,17 +141,25 @@ def run_server(
         listener.close()
 
 
-def make_server(limits: Limits, hosts: Hosts, listening: Callable[[], None]) -> Server:
-    """A server that is not running yet; ``listening`` is called once it takes requests."""
+def make_server(
+    limits: Limits,
+    hosts: Hosts,
+    listening: Callable[[], None],
+    proxies: Collection[str] = (),
+    token: str | None = None,
+) -> Server:
+    """A server that is not running yet; ``listening`` is called once it takes requests, the rest see :func:`run_server`."""
+    own = {"most": limits.client_connections, "trusted": frozenset(proxies), "open_connections": Counter()}
     config = uvicorn.Config(
-        create_app(limits, hosts),
-        http=PatientProtocol,
+        create_app(limits, hosts, token),
+        http=type("Protocol", (PatientProtocol,), own),
         ws="none",
         lifespan="on",
         log_level="warning",
         access_log=False,
         server_header=False,
-        proxy_headers=False,
+        proxy_headers=bool(proxies),
+        forwarded_allow_ips=list(proxies),
         limit_concurrency=limits.connections,
         timeout_graceful_shutdown=STOP_SECONDS,
     )
@@ -163,6 +200,18 @@ def is_everywhere(host: str) -> bool:
         return ip_address(host).is_unspecified
     except ValueError:
         return False
+
+
+def is_for_others(host: str) -> bool:
+    """Whether a server that listens at a host can be reached from other machines.
+
+    >>> is_for_others("0.0.0.0"), is_for_others("localhost"), is_for_others("127.0.0.9")
+    (True, False, False)
+    """
+    try:
+        return not ip_address(host).is_loopback
+    except ValueError:
+        return host.lower() != "localhost"
 
 
 def hosts_of(host: str, more: Collection[str]) -> Hosts:

@@ -15,7 +15,7 @@ from workhold.web.limits import Limits
 from workhold.web.pool import Pool, Task
 from workhold.web.static_files import StaticFile, static_files
 
-__all__ = ["ServerState", "address_of", "state_of"]
+__all__ = ["ServerState", "address_of", "at_desk", "state_of"]
 
 
 @define(eq=False)
@@ -58,10 +58,6 @@ class ServerState:
                 await sweeper
             await asyncio.gather(self.searchers.close(), self.desks.close())
 
-    async def at_desk(self, name: str, payload: Any) -> Any:
-        """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises."""
-        return await self.desks.run(Task(name, payload, self.limits.desk_seconds))
-
     def job(self, name: str) -> Job | None:
         """A job by its name."""
         return self.jobs.get(name)
@@ -76,3 +72,9 @@ def state_of(request: Request) -> ServerState:
 def address_of(request: Request) -> str:
     """Where a request comes from."""
     return "" if request.client is None else request.client.host
+
+
+async def at_desk(request: Request, name: str, payload: Any) -> Any:
+    """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises."""
+    state = state_of(request)
+    return await state.desks.run(Task(name, payload, state.limits.desk_seconds, address_of(request)))

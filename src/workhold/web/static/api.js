@@ -25,7 +25,7 @@ export class ApiError extends Error {
 export async function ask(path, options = {}) {
   let response;
   try {
-    response = await fetch(`/api/${path}`, options);
+    response = await fetch(`api/${path}`, options);
   } catch (error) {
     if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new ApiError("The server does not answer: see whether workhold serve still runs.", 0);
@@ -74,5 +74,5 @@ export function sendPart(file, query = {}) {
 export function downloadPath(job, rank, what, query = {}) {
   const search = new URLSearchParams(query).toString();
   const place = rank === null ? what : `fixtures/${rank}/${what}`;
-  return `/api/jobs/${encodeURIComponent(job)}/${place}${search ? `?${search}` : ""}`;
+  return `api/jobs/${encodeURIComponent(job)}/${place}${search ? `?${search}` : ""}`;
 }

@@ -97,7 +97,7 @@ function forget(job) {
  * @param {number} mine the token it runs under
  */
 function follow(job, mine) {
-  const source = new EventSource(`/api/jobs/${encodeURIComponent(job)}/events`);
+  const source = new EventSource(`api/jobs/${encodeURIComponent(job)}/events`);
   events = source;
   source.addEventListener("state", (event) => {
     if (mine !== token) return source.close();
