@@ -30,6 +30,7 @@ COLUMNS = (
 
 def algebra_seconds(part: str, pitch: float, columns: int, peg_radius: float) -> dict[str, Any]:
     """Task: counts and seconds of a design by algebra, and the seconds of its polynomial step."""
+    from workhold import Query
     from workhold.algebra import engine
 
     solve, spent = vars(engine)["orientations"], [0.0]
@@ -44,7 +45,7 @@ def algebra_seconds(part: str, pitch: float, columns: int, peg_radius: float) ->
     vars(engine)["orientations"] = orientations
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
     start = perf_counter()
-    result = engine.design_by_algebra(workpiece, vise)
+    result = engine.answer_by_algebra(Query(workpiece, vise))
     seconds = perf_counter() - start
     found, systems = dict(result.found), result.statistics["systems"]
     return {"found": found, "systems": systems, "seconds": seconds, "polynomials": spent[0]}

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.model.proof import Proof, Undecided
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -39,10 +41,10 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
         quality=fake_quality(null_vector, random),
     )
     counts = vise.arrangements_counted(arrangement)
-    result = Result(plate(), vise, table, counts, {"I": counts["I"] // 2, "II": counts["II"] // 2})
-    for name, value in changes.items():
-        object.__setattr__(result, name, value)
-    return result
+    result = Result(
+        Query(plate(), vise, ranking="closure_margin"), table, counts, {"I": counts["I"] // 2, "II": counts["II"] // 2}
+    )
+    return evolve(result, **changes)  # type: ignore[arg-type]
 
 
 def fake_quality(null_vector: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.float64]:

@@ -15,21 +15,25 @@ if TYPE_CHECKING:
     from workhold.errors import InputError, WorkholdError
     from workhold.files.part.load import load
     from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.query import Query
     from workhold.model.result import Result
-    from workhold.model.vise import Vise
+    from workhold.model.vise import OpeningVise, Vise
     from workhold.model.workpiece import Workpiece
     from workhold.search.contacts import count_contacts
-    from workhold.search.design import design
+    from workhold.search.design import answer, design
 
 __all__ = [
     "Fixture",
     "WorkholdError",
     "InputError",
+    "OpeningVise",
     "Peg",
     "Pose",
+    "Query",
     "Result",
     "Vise",
     "Workpiece",
+    "answer",
     "count_contacts",
     "design",
     "load",
@@ -41,9 +45,12 @@ HOMES = {
     "InputError": "workhold.errors",
     "Peg": "workhold.model.fixture",
     "Pose": "workhold.model.fixture",
+    "Query": "workhold.model.query",
     "Result": "workhold.model.result",
+    "OpeningVise": "workhold.model.vise",
     "Vise": "workhold.model.vise",
     "Workpiece": "workhold.model.workpiece",
+    "answer": "workhold.search.design",
     "count_contacts": "workhold.search.contacts",
     "design": "workhold.search.design",
     "load": "workhold.files.part.load",

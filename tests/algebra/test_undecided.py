@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from workhold import Vise, Workpiece
-from workhold.algebra import design_by_algebra, engine
+from workhold import Query, Vise, Workpiece
+from workhold.algebra import answer_by_algebra, engine
 from workhold.algebra.quartets import Systems
 from workhold.algebra.undecided import MOST_NAMED, undecided_notes
 from workhold.algebra.wedges import SECTORS
@@ -41,7 +41,7 @@ def test_a_long_list_is_cut() -> None:
 
 
 def test_a_result_without_doubt_has_no_note() -> None:
-    result = design_by_algebra(WEDGE, VISE)
+    result = answer_by_algebra(Query(WEDGE, VISE))
     assert result.statistics["undecided"] == 0
     assert result.notes == ()
 
@@ -55,6 +55,6 @@ def test_a_resultant_that_vanishes_is_told(monkeypatch: pytest.MonkeyPatch) -> N
 
     monkeypatch.setattr(engine, "type_one_systems", only_that)
     monkeypatch.setattr(engine, "alike", lambda contacts: np.zeros(len(contacts.rows), np.bool_))
-    result = design_by_algebra(WEDGE, VISE, types=("I",))
+    result = answer_by_algebra(Query(WEDGE, VISE, "I"))
     assert result.statistics["undecided"] == 1
     assert result.notes[-1].startswith("Undecided: pegs in left column +0, row +0 on face 0; left column +0, row +1 on")

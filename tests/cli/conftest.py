@@ -17,6 +17,7 @@ from typer.testing import Result as Outcome
 
 from fakes import fake_result
 from workhold.cli.main import app
+from workhold.model.query import Query
 from workhold.model.result import Result
 
 Run = Callable[..., Outcome]
@@ -34,18 +35,17 @@ def run() -> Run:
 
 @pytest.fixture
 def searched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """Replace the search; set ``result`` to what it shall return, find in ``asked`` what it was asked."""
-    memory: dict[str, Any] = {"result": fake_result(7), "asked": None}
+    """Replace the search; set ``result`` to what it shall return, find in ``asked`` and ``options`` what it was asked."""
+    memory: dict[str, Any] = {"result": fake_result(7), "asked": None, "options": None}
 
-    def design(workpiece: object, vise: object, **options: object) -> Result:
-        memory["asked"] = {"workpiece": workpiece, "vise": vise, **options}
+    def answer(query: Query, **options: object) -> Result:
+        memory["asked"], memory["options"] = query, options
         options["progress"](0.5, 3)  # type: ignore[operator]
         result: Result = memory["result"]
-        best = options["best"]
-        return attrs.evolve(result, table=result.table.take(slice(0, best)))  # type: ignore[arg-type]
+        return attrs.evolve(result, table=result.table.take(slice(0, query.best)))
 
     module = ModuleType("workhold.search.design")
-    module.design = design  # type: ignore[attr-defined]
+    module.answer = answer  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "workhold.search.design", module)
     return memory
 

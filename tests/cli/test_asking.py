@@ -20,14 +20,14 @@ def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> No
     inches = ("design", "widget", "--pitch", "0.4", "--columns", "2", "--peg-radius", "0.1")
     assert run(*inches, *words).exit_code == 0
     asked = searched["asked"]
-    restrictions = asked["restrictions"]
+    restrictions = asked.restrictions
     assert restrictions.avoid == (1, 3, 7)
     assert restrictions.angles == ((-10.0, 20.0), (90.0, 90.0))
     circle, polygon = (zone.loop for zone in restrictions.zones)
     assert circle[:, :2].tolist() == [pytest.approx([-50.8, 50.8]), pytest.approx([101.6, 50.8])]
     assert polygon[2, :2].tolist() == pytest.approx([101.6, 25.4])
-    assert asked["vise"].blocked == (Holes("left", 1, 2), Holes("right", 0, None))
-    assert asked["vise"].body_radius == pytest.approx(3.81)
+    assert asked.toolkit.blocked == (Holes("left", 1, 2), Holes("right", 0, None))
+    assert asked.toolkit.body_radius == pytest.approx(3.81)
 
 
 def test_loads_ranking_and_tolerance_reach_the_search(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
@@ -36,17 +36,17 @@ def test_loads_ranking_and_tolerance_reach_the_search(run: Any, searched: dict[s
     words = ["--load", "force=200 at=10,5 direction=30..60", "--loads", tmp_path / "loads.toml"]
     assert run(*WIDGET, *words, "--rank-by", "load-reaction,end-distance", "--tolerance", "0.02,0.05").exit_code == 0
     asked = searched["asked"]
-    first, second = asked["loads"]
+    first, second = asked.loads
     assert (first.force, first.points, first.directions) == (200.0, ((10.0, 5.0),), (30.0, 60.0))
     assert (second.name, second.moment) == ("drill", 5000.0)
-    assert asked["rank_by"] == ["load-reaction", "end-distance"]
-    assert asked["tolerance"] == Tolerance(0.02, 0.05)
+    assert asked.ranking == ("load_reaction", "end_distance")
+    assert asked.tolerance == Tolerance(0.02, 0.05)
 
 
 def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(run: Any, searched: dict[str, Any]) -> None:
     """What is typed wins over what the vise says."""
     assert run("design", "widget", "--vise", "plate-20mm", "--columns", "3", "--min-opening", "44").exit_code == 0
-    vise, tolerance = searched["asked"]["vise"], searched["asked"]["tolerance"]
+    vise, tolerance = searched["asked"].toolkit, searched["asked"].tolerance
     assert (vise.pitch, vise.columns, vise.min_gap) == ((20.0, 20.0), 3, 44.0)
     assert tolerance != Tolerance()
 

@@ -24,20 +24,21 @@ def test_the_search_is_asked_what_the_user_asked(run: Any, searched: dict[str, A
     )
     assert outcome.exit_code == 0, outcome.stderr
     asked = searched["asked"]
-    vise = asked["vise"]
+    vise = asked.toolkit
     assert (vise.pitch, vise.columns, vise.rows, vise.peg_radius) == ((10, 12.7), 3, 9, 3)
     assert (vise.min_gap, vise.max_opening, vise.row_offset) == (2.5, 80, -1.5)
-    assert (asked["types"], asked["contact_margin"], asked["best"], asked["threads"]) == (("II",), 0.5, 4, 2)
-    assert asked["workpiece"].name == "widget"
-    assert not asked["cancel"].is_set()
+    assert (asked.arrangements, asked.contact_margin, asked.best) == (("II",), 0.5, 4)
+    assert asked.workpiece.name == "widget"
+    assert searched["options"]["threads"] == 2
+    assert not searched["options"]["cancel"].is_set()
 
 
 def test_what_is_not_said_has_the_defaults_of_the_model(run: Any, searched: dict[str, Any]) -> None:
     assert run("design", "widget", "--pitch", 10, "--columns", 1, "--peg-radius", 0).exit_code == 0
     asked = searched["asked"]
-    vise = asked["vise"]
+    vise = asked.toolkit
     assert (vise.pitch, vise.rows, vise.min_gap, vise.max_opening, vise.row_offset) == ((10, 10), None, 10, None, 0)
-    assert (asked["types"], asked["contact_margin"], asked["best"]) == (("I", "II"), 0, None)
+    assert (asked.arrangements, asked.contact_margin, asked.best) == (("I", "II"), 0, None)
 
 
 def test_result_and_table(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
@@ -273,10 +274,10 @@ def test_a_refusal_of_the_search_leaves_the_earlier_output(
 ) -> None:
     import sys
 
-    def design(*_: object, **__: object) -> None:
+    def answer(*_: object, **__: object) -> None:
         raise InputError("the peg fits nowhere.")
 
-    monkeypatch.setattr(sys.modules["workhold.search.design"], "design", design)
+    monkeypatch.setattr(sys.modules["workhold.search.design"], "answer", answer)
     (tmp_path / "r.json").write_text("old")
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
     assert (outcome.exit_code, outcome.stderr) == (2, "workhold: error: the peg fits nowhere.\n")

@@ -22,12 +22,12 @@ import sys, time, types
 sys.path.insert(0, {tests!r})
 from fakes import fake_result
 
-def design(workpiece, vise, *, cancel, **options):
+def answer(query, *, cancel, **options):
     print("searching", flush=True)
     {behaviour}
 
 module = types.ModuleType("workhold.search.design")
-module.design = design
+module.answer = answer
 sys.modules["workhold.search.design"] = module
 from workhold.cli.main import run
 run()

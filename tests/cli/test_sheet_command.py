@@ -15,6 +15,7 @@ from drawing_examples import diamond
 
 from workhold import __version__
 from workhold.files.result.writer import write_result
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, unknown_quality
 
 
@@ -35,7 +36,7 @@ def diamond_result() -> Result:
         quality=unknown_quality(null_vector),
     )
     counts = {"I": 2, "II": 0}
-    return Result(workpiece, vise, table.take(np.array([0, 0])), counts, counts)
+    return Result(Query(workpiece, vise), table.take(np.array([0, 0])), counts, counts)
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ import pytest
 from fakes import fake_result
 from workhold import Result, Vise, Workpiece, design
 from workhold.files.result.writer import write_result
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable, unknown_quality
 
 
@@ -104,7 +105,7 @@ def on_the_edge(hair: float) -> Result:
         quality=unknown_quality(force / force.sum()),
     )
     counts = {"I": 0, "II": 1}
-    return Result(part, vise, table, counts, counts)
+    return Result(Query(part, vise), table, counts, counts)
 
 
 @pytest.mark.parametrize(("hair", "verdict"), [(1e-9, "undecided"), (2e-9, "proven"), (5e-10, "refuted")])

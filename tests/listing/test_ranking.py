@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold import InputError
-from workhold.listing.ranking import DEFAULT_RANKING, best_marked, preference_of, rank
+from workhold.listing.ranking import best_marked, rank
 from workhold.model.load import Load
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
+from workhold.model.query import DEFAULT_RANKING, chosen_ranking
 
 
 def figures(count: int, **columns: list[float]) -> np.ndarray:
@@ -62,9 +63,9 @@ def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, da
 
 def test_names_are_read_as_people_write_them() -> None:
     """With hyphens, underscores or spaces, in any mixture of capitals."""
-    assert preference_of(["Location-Error", "wrench radius"]).ranking == ("location_error", "wrench_radius")
-    assert preference_of(None).ranking == DEFAULT_RANKING
-    assert "load_reaction" in preference_of(None, loads=[Load(moment=1.0)]).ranking
+    assert chosen_ranking(["Location-Error", "wrench radius"], []) == ("location_error", "wrench_radius")
+    assert chosen_ranking(None, []) == DEFAULT_RANKING
+    assert "load_reaction" in chosen_ranking(None, [Load(moment=1.0)])
     assert FIGURES[WRENCH_RADIUS].option == "wrench-radius"
 
 
@@ -80,4 +81,4 @@ def test_names_are_read_as_people_write_them() -> None:
 def test_names_that_cannot_be_ranked_by(names: list[str], words: str) -> None:
     """One sentence with the remedy."""
     with pytest.raises(InputError, match=words):
-        preference_of(names)
+        chosen_ranking(names, [])

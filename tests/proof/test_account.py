@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from workhold import Vise, Workpiece, design, load
-from workhold.algebra.engine import design_by_algebra
+from workhold import Query, Vise, Workpiece, design, load
+from workhold.algebra.engine import answer_by_algebra
 from workhold.model.result import Result
 
 PARTS = [
@@ -73,7 +73,7 @@ def test_what_double_precision_leaves_open_is_decided_by_balls() -> None:
 
 
 def test_the_algebra_has_an_account_without_cells() -> None:
-    result = design_by_algebra(load("oblongPart"), Vise(pitch=12, columns=1, peg_radius=3))
+    result = answer_by_algebra(Query(load("oblongPart"), Vise(pitch=12, columns=1, peg_radius=3)))
     check_account(result)
     assert result.proof is not None
     assert result.proof.cells == 0

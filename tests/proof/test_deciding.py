@@ -10,10 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold import Vise, load
-from workhold.contact.problem import TYPES, Problem
+from workhold.contact.problem import Problem
 from workhold.listing import finish as finish_module
 from workhold.listing.listed import Work, listed_result
-from workhold.listing.ranking import Preference
 from workhold.model.result import Result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
@@ -26,11 +25,9 @@ def found() -> tuple[Problem, list[NDArray[np.float64]], Result]:
     """The oblong part with many nearly double contacts: problem, records and result."""
     kept: list[tuple[Problem, list[NDArray[np.float64]]]] = []
 
-    def keep(
-        problem: Problem, preference: Preference, records: list[NDArray[np.float64]], work: Work, **options: object
-    ) -> Result:
+    def keep(problem: Problem, records: list[NDArray[np.float64]], work: Work, **options: object) -> Result:
         kept.append((problem, records))
-        return listed_result(problem, preference, records, work, **options)  # type: ignore[arg-type]
+        return listed_result(problem, records, work, **options)  # type: ignore[arg-type]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(design_module, "listed_result", keep)
@@ -56,7 +53,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     problem, records, result = found
     cancel = Event()
     cancel.set()
-    part = listed_result(problem, Preference(), records, Work(True, {}), cancel=cancel)
+    part = listed_result(problem, records, Work(True, {}), cancel=cancel)
     assert not part.complete
     assert part.proof is not None and result.proof is not None
     assert part.proof.undecided == ()
@@ -65,7 +62,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     assert part.proof.escalated < result.proof.escalated
     proof = part.proof
     assert proof.candidates == proof.discarded_by_bound + proof.verified
-    everything = listed_result(problem, Preference(), records, Work(True, {}), cancel=Event())
+    everything = listed_result(problem, records, Work(True, {}), cancel=Event())
     assert everything.complete
     assert len(everything) == len(result)
 
@@ -100,13 +97,13 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     """With everything open sent to ball arithmetic the same records are proven."""
     problem, records, result = found
     monkeypatch.setattr(deciding, "interval_newton_in_doubles", lambda block, *_: (block[:0], block))
-    other = listed_result(problem, Preference(), records, Work(True, {}))
+    other = listed_result(problem, records, Work(True, {}))
     assert np.array_equal(other.table.column, result.table.column)
     assert np.array_equal(other.table.row, result.table.row)
     assert np.abs(other.table.theta - result.table.theta).max() < 1e-12
     assert other.proof is not None and result.proof is not None
     assert other.proof.verified == result.proof.verified
-    assert set(TYPES) == set(other.found)
+    assert set(other.query.arrangements) == set(other.found)
 
 
 def test_overlapping_boxes_of_the_same_pegs_are_one(found: tuple[Problem, list[NDArray[np.float64]], Result]) -> None:

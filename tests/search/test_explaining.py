@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Vise, Workpiece, design, load
-from workhold.contact.problem import Problem
+from workhold import Query, Vise, Workpiece, answer, design, load
 from workhold.model.explanation import Explanation
 from workhold.model.holes import holes_named
 from workhold.model.restrictions import Restrictions, circle_zone
@@ -27,7 +26,7 @@ def explained(vise: Vise, **asked: Any) -> Explanation:
     widget, margin = load("widget"), asked.pop("contact_margin", 0.0)
     restrictions = Restrictions(**asked)
     assert len(design(widget, vise, restrictions=restrictions, contact_margin=margin)) == 0
-    return explain(Problem.of(widget, vise, margin, restrictions))
+    return explain(Query(widget, vise, None, margin, restrictions))
 
 
 HOLES = "holes that the jaws do not have, or too near for the bodies"
@@ -74,11 +73,11 @@ def test_a_change_that_takes_long_is_told_as_far_as_it_came(monkeypatch: pytest.
     def interrupted(*arguments: Any, cancel: Event, **options: Any) -> Any:
         events.append(cancel)
         assert cancel.wait(5.0)
-        return evolve(design(*arguments, **options), complete=False)
+        return evolve(answer(*arguments, **options), complete=False)
 
     monkeypatch.setattr(explaining, "HELP_SECONDS", 0.01)
-    monkeypatch.setattr(explaining, "design", interrupted)
-    explanation = explain(Problem.of(load("widget"), evolve(PLAIN, min_gap=200.0)))
+    monkeypatch.setattr(explaining, "answer", interrupted)
+    explanation = explain(Query(load("widget"), evolve(PLAIN, min_gap=200.0)))
     assert len(events) > 1 and len(explanation.helps) > 0
     assert not any(item.complete for item in explanation.helps)
 
@@ -87,7 +86,7 @@ def test_the_nearest_miss_touches_with_all_four_pegs() -> None:
     """It breaks a rule, but the pegs touch their faces: the rectangle between jaws that are too far apart."""
     part = Workpiece.from_loops("rectangle", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
     vise = Vise(pitch=10, columns=2, peg_radius=3, min_gap=100)
-    explanation = explain(Problem.of(part, vise))
+    explanation = explain(Query(part, vise))
     assert explanation.last_rule == "smallest gap"
     assert explanation.nearest is not None and "smallest gap is 100 mm" in explanation.nearest.words
     fixture = explanation.nearest.fixture
@@ -102,7 +101,7 @@ def test_the_nearest_miss_touches_with_all_four_pegs() -> None:
 def test_parts_that_four_pegs_cannot_touch() -> None:
     """Nothing to remove, no nearest miss."""
     part = Workpiece.from_loops("pin", [[[-2, 0, 1], [2, 0, 1]]])
-    explanation = explain(Problem.of(part, Vise(pitch=50, columns=1, peg_radius=3)))
+    explanation = explain(Query(part, Vise(pitch=50, columns=1, peg_radius=3)))
     assert (explanation.contacts, explanation.removals, explanation.nearest) == (0, (), None)
     assert explanation.last_rule is None
 
@@ -110,6 +109,6 @@ def test_parts_that_four_pegs_cannot_touch() -> None:
 def test_contacts_are_among_those_counted() -> None:
     """A count of its own also has sets in which two pegs stand in one place, and those on a joint of two faces twice."""
     part, vise = load("widget"), evolve(PLAIN, min_gap=200.0)
-    explanation = explain(Problem.of(part, vise))
+    explanation = explain(Query(part, vise))
     counted = count_contacts(part, vise)
     assert 0.5 * counted <= explanation.contacts <= counted

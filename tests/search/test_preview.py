@@ -44,7 +44,7 @@ def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best
     for some in shown:
         now = {identity(fixture) for fixture in some}
         assert before <= now <= everything and len(now) == len(some)
-        assert not some.complete and some.ranking == result.ranking
+        assert not some.complete and some.query == result.query
         before = now
     assert text(result) == text(design(widget, vise, best=best))
 

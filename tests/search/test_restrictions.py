@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fixture_sets import Judge, listed
-from workhold import InputError, Result, Vise, Workpiece, design, load
-from workhold.algebra.engine import design_by_algebra
+from workhold import InputError, Query, Result, Vise, Workpiece, answer, design, load
+from workhold.algebra.engine import answer_by_algebra
 from workhold.model.fixture import Fixture
 from workhold.model.holes import holes_named
 from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
@@ -177,7 +177,8 @@ def test_both_engines_agree_under_restrictions() -> None:
     part = triangle()
     limits = Restrictions(zones=(circle_zone(0.0, 0.0, 12.0),), angles=((-30.0, 60.0), (140.0, 170.0)))
     small = Vise(pitch=20, columns=2, peg_radius=3, body_radius=4, blocked=[holes_named("R-A")])
-    one, other = (engine(part, small, restrictions=limits) for engine in (design, design_by_algebra))
+    query = Query(part, small, restrictions=limits)
+    one, other = (engine(query) for engine in (answer, answer_by_algebra))
     assert len(one) > 0 and identities(one) == identities(other)
 
 

@@ -45,16 +45,21 @@ def test_what_a_search_lists_keeps_what_was_asked(limited: Result) -> None:
 )
 def test_a_restriction_that_is_broken_refutes(limited: Result, restrictions: Any, words: str) -> None:
     """The first fixture was found under other restrictions."""
-    outcome = verify(attrs.evolve(limited, restrictions=restrictions(limited)))
+    outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=restrictions(limited))))
     assert any(item.index == 0 and words in item.reason for item in outcome.unproven)
 
 
 def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
     """A vise with a hole blocked that a peg stands in, and one with bodies as wide as the part."""
     hole = limited[0].pegs[3].hole
-    outcome = verify(attrs.evolve(limited, vise=attrs.evolve(limited.vise, blocked=[holes_named(hole)])))
+
+    def verified_in(**changes: Any) -> Verification:
+        vise = attrs.evolve(limited.vise, **changes)
+        return verify(attrs.evolve(limited, query=attrs.evolve(limited.query, toolkit=vise)))
+
+    outcome = verified_in(blocked=[holes_named(hole)])
     assert any(f"stands in {hole}, which is blocked" in item.reason for item in outcome.unproven)
-    outcome = verify(attrs.evolve(limited, vise=attrs.evolve(limited.vise, body_radius=200.0, blocked=[])))
+    outcome = verified_in(body_radius=200.0, blocked=[])
     assert any("overlap" in item.reason or "stands over" in item.reason for item in outcome.unproven)
 
 
@@ -86,7 +91,7 @@ def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, 
     way = (places[0] - complex(*limited.workpiece.center)) / abs(places[0] - complex(*limited.workpiece.center))
     center = places[0] + (gap + 0.5) * way
     zone = circle_zone(center.real, center.imag, 0.5)
-    outcome = verify(attrs.evolve(limited, restrictions=Restrictions(zones=(zone,))))
+    outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=Restrictions(zones=(zone,)))))
     told = any(item.index == 0 and "peg 1 stands over a keep-out zone" in item.reason for item in outcome.unproven)
     assert told == stands_over
 
@@ -97,7 +102,7 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
     order = np.arange(len(limited))
     order[[place, place + 1]] = place + 1, place
     equal = np.array_equal(
-        *np.round(np.array(ranking_keys(limited.table.quality, limited.ranking)).T[order[place:][:2]], 9)
+        *np.round(np.array(ranking_keys(limited.table.quality, limited.query.ranking)).T[order[place:][:2]], 9)
     )
     outcome = verify(attrs.evolve(limited, table=limited.table.take(order)))
     assert (outcome.faults == ()) == equal
@@ -106,7 +111,7 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
 
 def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
     """What is first by one figure is not by another."""
-    for ranking in (("closure_margin",), ("end_distance", "location_error"), tuple(reversed(limited.ranking))):
-        outcome = verify(attrs.evolve(limited, ranking=ranking))
+    for ranking in (("closure_margin",), ("end_distance", "location_error"), tuple(reversed(limited.query.ranking))):
+        outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, ranking=ranking)))
         assert len(outcome.faults) == 1, ranking
         assert ", ".join(ranking) in outcome.faults[0]

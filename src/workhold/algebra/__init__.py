@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from workhold.algebra.engine import design_by_algebra
+from workhold.algebra.engine import answer_by_algebra
 
-__all__ = ["design_by_algebra"]
+__all__ = ["answer_by_algebra"]

@@ -24,18 +24,14 @@ from workhold.algebra.sliding_pairs import (
 )
 from workhold.algebra.undecided import undecided_notes
 from workhold.algebra.wedges import peg_pairs
-from workhold.contact.problem import TYPES, Problem, Progress, check_options
+from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_CENTER
 from workhold.listing.listed import Work, listed_result
-from workhold.listing.ranking import preference_of
-from workhold.model.load import Load
-from workhold.model.restrictions import Restrictions
+from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.tolerance import Tolerance
 from workhold.model.vise import Vise
-from workhold.model.workpiece import Workpiece
 
-__all__ = ["design_by_algebra"]
+__all__ = ["answer_by_algebra"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -182,51 +178,32 @@ def stages(solver: Solver, types: Sequence[str]) -> Iterator[Array]:
             yield solver.fixtures(solver.solve(batch, case))
 
 
-def design_by_algebra(
-    workpiece: Workpiece,
-    vise: Vise,
-    *,
-    types: Sequence[str] = TYPES,
-    contact_margin: float = 0.0,
-    restrictions: Restrictions | None = None,
-    rank_by: Sequence[str] | None = None,
-    tolerance: Tolerance | None = None,
-    loads: Sequence[Load] = (),
-    best: int | None = None,
-    progress: Progress | None = None,
-    cancel: Event | None = None,
-) -> Result:
-    """Find every fixture of a workpiece in a vise as the paper does, by resultants.
+def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel: Event | None = None) -> Result:
+    """Find every fixture that a query asks for as the paper does, by resultants.
 
     Parameters
     ----------
-    workpiece, vise : what to hold and what to hold it in.
-    types : "I" (two pegs on each jaw), "II" (three and one), or both.
-    contact_margin : smallest distance in mm between a contact and the end of its feature.
-    restrictions, rank_by, tolerance, loads : as for ``workhold.design``.
-    best : list only this many, the best ones; None lists all.
+    query : what is asked; all fixtures are found also where only the best are.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
 
     Returns
     -------
     Result
-        As ``workhold.design`` lists them; ``statistics`` counts features, systems solved, orientations, simultaneous
+        As ``workhold.answer`` lists them; ``statistics`` counts features, systems solved, orientations, simultaneous
         contacts, and systems that their resultants leave undecided (none in any part tried). Of these, ``notes`` name
         faces and holes.
 
     Raises
     ------
     InputError
-        As ``workhold.design``.
+        As ``workhold.answer``.
     """
-    check_options(types, contact_margin, best)
-    preference = preference_of(rank_by, tolerance, loads)
-    problem = Problem.of(workpiece, vise, contact_margin, restrictions)
-    solver = Solver(problem.rows, vise, contact_margin, problem.diameter)
+    problem = Problem.of(query)
+    solver = Solver(problem.rows, problem.vise, query.contact_margin, problem.diameter)
     records: list[Array] = []
     complete = True
-    for found in stages(solver, types):
+    for found in stages(solver, query.arrangements):
         records.append(found)
         if progress is not None:
             progress(1.0 - 0.9 ** len(records), sum(map(len, records)))
@@ -234,5 +211,5 @@ def design_by_algebra(
             complete = False
             break
     statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
-    result = listed_result(problem, preference, records, Work(complete, statistics), best=best, cancel=cancel)
+    result = listed_result(problem, records, Work(complete, statistics), cancel=cancel)
     return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -34,13 +33,9 @@ from workhold.cli.search_options import (
     KeepOutOption,
     LoadOption,
     LoadsOption,
+    QueryWords,
     RankByOption,
-    RestrictionWords,
     ToleranceOption,
-    asked_contact_margin,
-    asked_loads,
-    asked_ranking,
-    asked_tolerance,
 )
 from workhold.cli.values import choice, counting_number, length_unit, whole_number
 from workhold.cli.vise_options import (
@@ -54,11 +49,13 @@ from workhold.cli.vise_options import (
     PitchOption,
     RowOffsetOption,
     RowsOption,
+    ToolkitOption,
     ViseOption,
     ViseWords,
 )
 
 if TYPE_CHECKING:
+    from workhold.model.query import Query
     from workhold.model.result import Result
     from workhold.model.units import Unit
 
@@ -66,9 +63,7 @@ __all__ = ["design"]
 
 SEARCH, OUTPUT = "The search", "Results"
 STANDARD_OUTPUT = "-"
-
-
-TYPES: dict[str, tuple[Literal["I", "II"], ...]] = {"I": ("I",), "II": ("II",), "both": ("I", "II")}
+TYPES, BOTH = ("I", "II"), "both"
 FORMATS = ("json", "csv")
 ENGINES = ("curves", "algebra")
 
@@ -76,6 +71,7 @@ ENGINES = ("curves", "algebra")
 def design(
     part: PartArgument,
     vise: ViseOption = None,
+    toolkit: ToolkitOption = None,
     pitch: PitchOption = None,
     columns: ColumnsOption = None,
     peg_radius: PegRadiusOption = None,
@@ -164,14 +160,24 @@ def design(
     # Everything cheap is checked before anything is read, and everything is checked before the search.
     shown = length_unit(unit)
     vise_words = ViseWords(
-        vise, pitch, columns, peg_radius, body_radius, rows, blocked, min_gap, min_opening, max_opening, row_offset
+        vise,
+        toolkit,
+        pitch,
+        columns,
+        peg_radius,
+        body_radius,
+        rows,
+        blocked,
+        min_gap,
+        min_opening,
+        max_opening,
+        row_offset,
     )
-    margin = asked_contact_margin(contact_margin, shown)
+    words = QueryWords(avoid, keep_out, angle, contact_margin, load, loads, rank_by, tolerance)
     kept = counting_number("--best", best, "fixtures to keep")
     workers = counting_number("--threads", threads, "threads")
     engine = choice("--engine", engine, ENGINES)
-    find_fixtures = search_of(engine, workers)
-    types = TYPES[choice("--type", type_, tuple(TYPES))]
+    type_ = choice("--type", type_, (*TYPES, BOTH))
     listed = whole_number("--list", list_)
     form = output_format(out, format_)
     folder = None if draw is None else Path(draw)
@@ -179,15 +185,14 @@ def design(
         refuse_output(out, (part, vise, loads), force)
     if folder is not None:
         refuse_output_folder(folder, picture_names(), (part, vise, loads), force)
-    in_vise, of_vise = vise_words.asked(shown)
-    restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
-    ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
-    off = asked_tolerance(tolerance, shown, of_vise)
+    in_toolkit, of_vise = vise_words.asked(shown)
+    asked = words.asked(shown)
+    asked["tolerance"] = asked["tolerance"] or of_vise
     from workhold.kernels.base.compiling import is_first_run
-    from workhold.listing.ranking import preference_of
+    from workhold.model.query import Query
 
-    preference_of(ranking, off, forces)
     workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
+    query = Query(workpiece, in_toolkit, None if type_ == BOTH else type_, best=kept, **asked)
     first_run = is_first_run()
     start = perf_counter()
     with ask_to_stop() as cancel, search_progress(first_run) as progress:
@@ -195,42 +200,26 @@ def design(
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        result = find_fixtures(
-            workpiece,
-            in_vise,
-            types=types,
-            contact_margin=margin,
-            restrictions=restrictions,
-            rank_by=ranking,
-            tolerance=off,
-            loads=forces,
-            best=kept,
-            progress=progress,
-            cancel=cancel,
-        )
+        result = answered(query, engine, threads=workers, progress=progress, cancel=cancel)
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
     report(result, spent, out, form, listed, shown)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
-        explain_none(result, types, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
+        explain_none(result, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
     elif folder is not None:
         draw_pictures(result, folder, out, shown)
 
 
-def search_of(engine: str, threads: int | None) -> Callable[..., Result]:
-    """The search of an engine; it is imported only when it is called."""
+def answered(query: Query, engine: str, threads: int | None, **watching: Any) -> Result:
+    """The answer of an engine, which is imported only now."""
+    if engine == "algebra":
+        from workhold.algebra.engine import answer_by_algebra
 
-    def search(*arguments: Any, **options: Any) -> Result:
-        if engine == "algebra":
-            from workhold.algebra.engine import design_by_algebra
+        return answer_by_algebra(query, **watching)
+    from workhold.search.design import answer
 
-            return design_by_algebra(*arguments, **options)
-        from workhold.search.design import design
-
-        return design(*arguments, threads=threads, **options)
-
-    return search
+    return answer(query, threads=threads, **watching)
 
 
 def output_format(out: str | None, asked: str | None) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -16,20 +15,16 @@ __all__ = ["explain_none"]
 MOST_HELPS = 6
 
 
-def explain_none(
-    result: Result, types: Sequence[str], threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
-) -> None:
+def explain_none(result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO) -> None:
     """Say what each rule took away, what came nearest, and what would help.
 
     Parameters
     ----------
     folder : where the nearest miss is drawn, if anywhere.
     """
-    from workhold.contact.problem import Problem
     from workhold.search.explaining import explain
 
-    problem = Problem.of(result.workpiece, result.vise, result.contact_margin, result.restrictions)
-    explanation = explain(problem, types, threads, unit)
+    explanation = explain(result.query, threads, unit)
     print_explanation(explanation, unit, stream)
     if folder is not None and explanation.nearest is not None:
         draw_nearest_miss(explanation, result, folder, unit, stream)

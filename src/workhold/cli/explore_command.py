@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import frozen
 
 from workhold.cli.options import (
     JOIN_TOLERANCE,
@@ -32,25 +33,26 @@ from workhold.cli.search_options import (
     KeepOutOption,
     LoadOption,
     LoadsOption,
+    QueryWords,
     RankByOption,
-    RestrictionWords,
     ToleranceOption,
-    asked_contact_margin,
-    asked_loads,
-    asked_ranking,
-    asked_tolerance,
 )
-from workhold.cli.values import length, length_unit, whole_number
+from workhold.cli.values import choice, length, length_unit, whole_number
+from workhold.cli.vise_options import ToolkitOption
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
 if TYPE_CHECKING:
+    from workhold.model.query import Query
+    from workhold.model.restrictions import Restrictions
     from workhold.model.tolerance import Tolerance
+    from workhold.model.workpiece import Workpiece
     from workhold.search.exploring import Explored
 
 __all__ = ["explore"]
 
 SWEEP = "Vises to try"
+TYPES = ("I", "II")
 # More vises than this are more likely a slip than a wish.
 MOST_VISES = 1000
 
@@ -66,6 +68,7 @@ def explore(
             rich_help_panel=SWEEP,
         ),
     ] = None,
+    toolkit: ToolkitOption = None,
     pitch: Annotated[
         str | None, typer.Option(metavar="LIST", help="Pitches, such as 8,10,12.5 or 10x12.5.", rich_help_panel=SWEEP)
     ] = None,
@@ -102,22 +105,19 @@ def explore(
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
     from workhold.files.atomic import text_file
+    from workhold.model.kinds import KINDS
 
     shown = length_unit(unit)
-    vises, tolerances = asked_vises(vise, pitch, columns, peg_radius, shown)
-    margin = asked_contact_margin(contact_margin, shown)
-    restrictions = RestrictionWords(avoid, keep_out, angle).asked(shown)
-    ranking, forces = asked_ranking(rank_by), asked_loads(load, loads, shown)
-    if tolerance is not None:
-        tolerances = {}
+    kind = None if toolkit is None else choice("--toolkit", toolkit, tuple(KINDS))
+    vises = asked_vises(vise, kind, pitch, columns, peg_radius, shown)
+    asked = QueryWords(avoid, keep_out, angle, contact_margin, load, loads, rank_by, tolerance).asked(shown)
     if out is not None:
         refuse_output(out, (part, loads, *(name for names in vise or () for name in names.split(","))), force)
     from workhold.kernels.base.compiling import is_first_run
-    from workhold.listing.ranking import preference_of
 
-    preference = preference_of(ranking, asked_tolerance(tolerance, shown, None), forces)
     workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
-    refuse_unknown_faces(workpiece, restrictions)
+    refuse_unknown_faces(workpiece, asked["restrictions"])
+    queries = [(one.name, query_of(workpiece, one, asked)) for one in vises]
     first_run = is_first_run()
     from workhold.search.exploring import explore as try_all
 
@@ -127,17 +127,10 @@ def explore(
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        options: dict[str, Any] = {
-            "contact_margin": margin,
-            "restrictions": restrictions,
-            "rank_by": preference.ranking,
-            "tolerance": preference.tolerance,
-            "loads": preference.loads,
-        }
-        for item in try_all(workpiece, vises, tolerances=tolerances, cancel=cancel, **options):
+        for item in try_all(queries, cancel):
             found.append(item)
             progress(len(found) / len(vises), sum(one.fixtures for one in found))
-    print_explored(found, preference.ranking, shown)
+    print_explored(found, asked["ranking"], shown)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found))
@@ -149,17 +142,54 @@ def explore(
         raise typer.Exit(INTERRUPTED)
 
 
+@frozen
+class Named:
+    """A vise to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
+
+    name: str
+    kind: str
+    fields: dict[str, Any]
+    tolerance: Tolerance | None = None
+
+    def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
+        """The vise after changes, each of which has a name."""
+        name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
+        fields = {key: value for _, change in changes for key, value in change.items()}
+        return Named(name, self.kind, self.fields | fields, self.tolerance)
+
+
+def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
+    """The query for a vise, or why there is no such vise."""
+    from workhold.model.kinds import toolkit_of
+    from workhold.model.query import Query
+
+    try:
+        return Query(
+            workpiece,
+            toolkit_of(named.kind, named.fields),
+            **asked | {"tolerance": asked["tolerance"] or named.tolerance},
+        )
+    except InputError as error:
+        return error
+
+
 def asked_vises(
-    names: list[str] | None, pitch: str | None, columns: str | None, peg_radius: str | None, unit: Unit
-) -> tuple[list[tuple[str, dict[str, Any]]], dict[str, Tolerance]]:
-    """Names and keyword arguments of the vises to try, and the tolerances of those that have one.
+    names: list[str] | None,
+    kind: str | None,
+    pitch: str | None,
+    columns: str | None,
+    peg_radius: str | None,
+    unit: Unit,
+) -> list[Named]:
+    """The vises to try.
 
     Raises
     ------
     InputError
-        For words that mean nothing, and lists that do not make a vise.
+        For words that mean nothing, lists that do not make a vise, and more than a thousand vises.
     """
     from workhold.files.toolkit.presets import load_vise, preset_names
+    from workhold.model.kinds import USUAL
 
     lists: list[list[tuple[str, dict[str, Any]]]] = []
     if pitch is not None:
@@ -170,42 +200,19 @@ def asked_vises(
     if peg_radius is not None:
         radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
         lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
-    combined = [
-        (", ".join(name for name, _ in choice), {key: value for _, fields in choice for key, value in fields.items()})
-        for choice in product(*lists)
-    ]
     if names is None and pitch is not None:
         if columns is None or peg_radius is None:
             raise InputError("a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise.")
-        bases: list[tuple[str, dict[str, Any]]] = [("", {})]
-        tolerances: dict[str, Tolerance] = {}
-        return limited([one for base in bases for one in merged(base, combined)]), tolerances
-    asked = preset_names() if names is None else [name for words in names for name in words_of("--vise", words)]
-    loaded = [load_vise(name) for name in asked]
-    vises = [one for item in loaded for one in merged((item.name, item.fields), combined)]
-    tolerances = {name: item.tolerance for item in loaded for name, _ in merged((item.name, item.fields), combined)}
-    return limited(vises), tolerances
-
-
-def limited(vises: list[tuple[str, dict[str, Any]]]) -> list[tuple[str, dict[str, Any]]]:
-    """The vises, unless there are far too many.
-
-    Raises
-    ------
-    InputError
-        For more than a thousand.
-    """
+        bases = [Named("", kind or USUAL, {})]
+    else:
+        asked = preset_names() if names is None else [name for words in names for name in words_of("--vise", words)]
+        bases = [
+            Named(loaded.name, kind or loaded.kind, loaded.fields, loaded.tolerance) for loaded in map(load_vise, asked)
+        ]
+    vises = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
     if len(vises) > MOST_VISES:
         raise InputError(f"the lists combine to {len(vises)} vises: give lists that combine to {MOST_VISES} or fewer.")
     return vises
-
-
-def merged(
-    base: tuple[str, dict[str, Any]], changes: list[tuple[str, dict[str, Any]]]
-) -> list[tuple[str, dict[str, Any]]]:
-    """A vise with each of some changes."""
-    name, fields = base
-    return [(", ".join(filter(None, (name, words))), fields | change) for words, change in changes]
 
 
 def words_of(option: str, text: str) -> list[str]:
@@ -228,7 +235,7 @@ def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
     return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)
 
 
-def refuse_unknown_faces(workpiece: Any, restrictions: Any) -> None:
+def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:
     """Refuse faces that do not exist, for which no vise is to blame.
 
     Raises
@@ -250,10 +257,15 @@ def print_explored(found: list[Explored], ranking: tuple[str, ...], unit: Unit) 
 
     figures = [figure for figure in FIGURES if any(figure.key in item.best for item in found)]
     table = Table(
-        ("vise", ">fixtures", ">type I", ">type II", *(f">best {heading(figure, unit)}" for figure in figures))
+        (
+            "vise",
+            ">fixtures",
+            *(f">type {name}" for name in TYPES),
+            *(f">best {heading(figure, unit)}" for figure in figures),
+        )
     )
     for item in found:
-        counts = (f"{count:,}" for count in (item.fixtures, item.found["I"], item.found["II"]))
+        counts = (f"{count:,}" for count in (item.fixtures, *(item.found.get(name, 0) for name in TYPES)))
         values = (figure_text(f, item.best[f.key], unit) if f.key in item.best else "-" for f in figures)
         table.add_row(item.name, *counts, *values)
     print_tables(table)
@@ -276,5 +288,6 @@ def table_text(found: list[Explored]) -> str:
     )
     for item in found:
         values = [f"{item.best[f.key]:.12g}" if f.key in item.best else "" for f in FIGURES]
-        writer.writerow([item.name, item.fixtures, item.found["I"], item.found["II"], *values, item.reason])
+        counts = [item.found.get(name, 0) for name in TYPES]
+        writer.writerow([item.name, item.fixtures, *counts, *values, item.reason])
     return stream.getvalue()

@@ -15,7 +15,7 @@ from workhold.model.units import Unit
 
 if TYPE_CHECKING:
     from workhold.model.load import Load
-    from workhold.model.restrictions import Restrictions, Zone
+    from workhold.model.restrictions import Zone
     from workhold.model.tolerance import Tolerance
 
 __all__ = [
@@ -28,12 +28,9 @@ __all__ = [
     "LoadOption",
     "LoadsOption",
     "RankByOption",
-    "RestrictionWords",
+    "QueryWords",
     "ToleranceOption",
-    "asked_contact_margin",
     "asked_loads",
-    "asked_ranking",
-    "asked_tolerance",
 ]
 
 RULING_OUT, LOADS, RANKING = "Ruling out", "Loads", "Ranking"
@@ -108,28 +105,42 @@ ToleranceOption = Annotated[
 
 
 @frozen
-class RestrictionWords:
-    """What was typed about what is ruled out; None for options not given."""
+class QueryWords:
+    """What was typed about what is asked for; None for options not given."""
 
     avoid: list[str] | None
     keep_out: list[str] | None
     angle: list[str] | None
+    contact_margin: str
+    load: list[str] | None
+    loads: str | None
+    rank_by: str | None
+    tolerance: str | None
 
-    def asked(self, unit: Unit) -> Restrictions:
-        """The restrictions.
+    def asked(self, unit: Unit) -> dict[str, Any]:
+        """Keyword arguments of a query; the tolerance is None where none was typed.
 
         Raises
         ------
         InputError
-            For words that mean nothing.
+            For words that mean nothing, figures that are not known, and a file that cannot be used.
         """
+        from workhold.model.query import chosen_ranking
         from workhold.model.restrictions import Restrictions
 
-        return Restrictions(
-            avoid=tuple(whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")),
-            zones=tuple(zone(text, unit) for text in self.keep_out or ()),
-            angles=tuple(angles(text) for text in self.angle or ()),
-        )
+        loads = asked_loads(self.load, self.loads, unit)
+        names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
+        return {
+            "contact_margin": asked_contact_margin(self.contact_margin, unit),
+            "restrictions": Restrictions(
+                avoid=tuple(whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")),
+                zones=tuple(zone(text, unit) for text in self.keep_out or ()),
+                angles=tuple(angles(text) for text in self.angle or ()),
+            ),
+            "ranking": chosen_ranking(names, loads),
+            "tolerance": asked_tolerance(self.tolerance, unit),
+            "loads": loads,
+        }
 
 
 def zone(text: str, unit: Unit) -> Zone:
@@ -183,8 +194,8 @@ def asked_contact_margin(text: str, unit: Unit) -> float:
     return margin
 
 
-def asked_tolerance(text: str | None, unit: Unit, of_vise: Tolerance | None) -> Tolerance:
-    """The tolerance asked for, else that of the vise, else the usual one.
+def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
+    """The tolerance asked for; None where none was typed.
 
     Raises
     ------
@@ -194,17 +205,12 @@ def asked_tolerance(text: str | None, unit: Unit, of_vise: Tolerance | None) -> 
     from workhold.model.tolerance import Tolerance
 
     if text is None:
-        return of_vise or Tolerance()
+        return None
     words = text.split(",")
     if len(words) > 2:
         raise InputError(f"--tolerance {text!r} has {len(words)} numbers: give one for pegs and faces, or PEG,FACE.")
     lengths = [length("--tolerance", word, unit) for word in words]
     return Tolerance(lengths[0], lengths[-1])
-
-
-def asked_ranking(text: str | None) -> list[str] | None:
-    """Names of the figures to rank by."""
-    return None if text is None else [word for word in text.split(",") if word.strip()]
 
 
 def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:

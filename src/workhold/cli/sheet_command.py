@@ -87,7 +87,7 @@ def sheet(
     if ending in MODEL_ENDINGS:
         write_model(path, ending, result, rank)
     else:
-        write_paper(path, ending, result, rank, given or result.loads, result_file, settings)
+        write_paper(path, ending, result, rank, given or result.query.loads, result_file, settings)
     from workhold.cli.tables import print_tables
 
     print_tables(f"Written to {path}.")

@@ -56,10 +56,12 @@ def show(
     from workhold.cli.tables import fixture_tables, print_tables, quality_table
 
     print_tables(*fixture_tables(fixture, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit))
-    if asked or result.loads:
+    if asked or result.query.loads:
         from workhold.statics.loads import load_cases
 
-        cases = load_cases(fixture, result.workpiece, result.vise, asked or result.loads, closing_force, coefficient)
+        cases = load_cases(
+            fixture, result.workpiece, result.vise, asked or result.query.loads, closing_force, coefficient
+        )
         print_tables(*load_tables(cases, fixture, shown_unit))
     if not result.complete:
         tell("the search for this result was interrupted; there may be better fixtures.")

@@ -173,7 +173,7 @@ def listed_figures(result: Result) -> list[Figure]:
 
     by_key = {figure.key: figure for figure in FIGURES}
     known = result[0].quality if len(result) else {}
-    keys = dict.fromkeys([*result.ranking, "closure_margin"])
+    keys = dict.fromkeys([*result.query.ranking, "closure_margin"])
     return [by_key[key] for key in keys if key in known]
 
 

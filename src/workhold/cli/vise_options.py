@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.values import length, optional_length, pitches, whole_number
+from workhold.cli.values import choice, length, optional_length, pitches, whole_number
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
@@ -26,6 +26,7 @@ __all__ = [
     "PitchOption",
     "RowOffsetOption",
     "RowsOption",
+    "ToolkitOption",
     "ViseOption",
     "ViseWords",
 ]
@@ -43,6 +44,15 @@ ViseOption = Annotated[
     option(
         metavar="NAME|FILE",
         help="A vise by name (see workhold vises) or from a TOML file; the options below change what it says.",
+    ),
+]
+ToolkitOption = Annotated[
+    str | None,
+    option(
+        "--toolkit",
+        metavar="vise|opening-vise",
+        help="vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. "
+        "What --vise says, or else vise, if not given.",
     ),
 ]
 PitchOption = Annotated[
@@ -95,6 +105,7 @@ class ViseWords:
     """What was typed about the vise; None for options not given."""
 
     vise: str | None
+    toolkit: str | None
     pitch: str | None
     columns: str | None
     peg_radius: str | None
@@ -126,9 +137,7 @@ class ViseWords:
             if text is not None:
                 out[name] = length(f"--{name.replace('_', '-')}", text, unit)
         if self.blocked:
-            from workhold.model.holes import holes_named
-
-            out["blocked"] = [holes_named(name) for words in self.blocked for name in words.split(",")]
+            out["blocked"] = [name for words in self.blocked for name in words.split(",")]
         return out
 
     def asked(self, unit: Unit) -> tuple[Vise, Tolerance | None]:
@@ -141,13 +150,16 @@ class ViseWords:
         """
         fields, tolerance = self.fields(unit), None
         opening = optional_length("--min-opening", self.min_opening, unit)
-        from workhold.model.vise import Vise
+        from workhold.model.kinds import KINDS, USUAL, toolkit_of
 
+        kind = USUAL
         if self.vise is not None:
             from workhold.files.toolkit.presets import load_vise
 
             loaded = load_vise(self.vise)
-            fields, tolerance = loaded.fields | fields, loaded.tolerance
+            kind, fields, tolerance = loaded.kind, loaded.fields | fields, loaded.tolerance
+        if self.toolkit is not None:
+            kind = choice("--toolkit", self.toolkit, tuple(KINDS))
         for name, words in (
             ("pitch", "distance between holes"),
             ("columns", "columns"),
@@ -158,8 +170,8 @@ class ViseWords:
                 raise InputError(
                     f"the vise's {words} is not given: add {option_name}, or name a vise with --vise (see workhold vises)."
                 )
-        vise = Vise(**fields)
+        vise = toolkit_of(kind, fields)
         if opening is not None and opening > vise.min_gap:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
-            vise = Vise(**fields | {"min_gap": opening})
+            vise = toolkit_of(kind, fields | {"min_gap": opening})
         return vise, tolerance

@@ -1,10 +1,9 @@
-"""What every engine begins with: a workpiece in a toolkit, made ready for arithmetic."""
+"""What every engine begins with: a query made ready for arithmetic."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cached_property
-from math import isfinite
 
 import numpy as np
 from attrs import define
@@ -16,29 +15,26 @@ from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.given import Limits, Setting
 from workhold.model.diameter import outline_diameter
-from workhold.model.real import real
+from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
 from workhold.model.toolkit import Carrier
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["TYPES", "Problem", "Progress", "check_options"]
+__all__ = ["Problem", "Progress"]
 
 Progress = Callable[[float, int], None]
-TYPES = ("I", "II")
 # Roundings of half a unit in the last place in a feature's row, generously counted.
 ROUNDINGS = 16.0 * 1.2e-16
 
 
 @define(frozen=True, eq=False)
 class Problem:
-    """A workpiece in a toolkit; lengths in mm, everything about the centre of the part's bounding box.
+    """A query made ready; lengths in mm, everything about the centre of the part's bounding box.
 
     Parameters
     ----------
-    workpiece, vise : what to hold and what to hold it in.
-    contact_margin : smallest distance between a contact and the end of its feature.
-    restrictions : what is ruled out.
+    query : what is asked.
     locus : all contact features, also those that are ruled out, ordered by face.
     rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
@@ -48,10 +44,7 @@ class Problem:
     diameter : largest distance between two peg centres that touch the part.
     """
 
-    workpiece: Workpiece
-    vise: Vise
-    contact_margin: float
-    restrictions: Restrictions
+    query: Query
     locus: tuple[ContactFeature, ...]
     rows: NDArray[np.float64]
     faces: NDArray[np.int64]
@@ -61,22 +54,16 @@ class Problem:
     diameter: float
 
     @classmethod
-    def of(
-        cls,
-        workpiece: Workpiece,
-        vise: Vise,
-        contact_margin: float = 0.0,
-        restrictions: Restrictions | None = None,
-    ) -> Problem:
-        """Make a problem ready.
+    def of(cls, query: Query) -> Problem:
+        """Make a query ready.
 
         Raises
         ------
         InputError
             When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
         """
-        restrictions = restrictions or Restrictions()
-        standing, moving = carriers = Frame.of(vise).carriers
+        workpiece, restrictions = query.workpiece, query.restrictions
+        standing, moving = carriers = Frame.of(query.toolkit).carriers
         alike = (standing.peg_radius, standing.body_radius) == (moving.peg_radius, moving.body_radius)
         loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if alike else 2]]
         allowed = loci
@@ -88,10 +75,7 @@ class Problem:
         features = [feature for part in allowed for feature in part]
         center = workpiece.center
         return cls(
-            workpiece,
-            vise,
-            contact_margin,
-            restrictions,
+            query,
             tuple(sorted((feature for locus in loci for feature in locus), key=lambda feature: feature.face)),
             rows=np.concatenate(
                 [centered(feature_rows(features), center), np.concatenate([end_slacks(part) for part in allowed])],
@@ -103,6 +87,27 @@ class Problem:
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
             diameter=outline_diameter(workpiece) + 2 * max(carrier.peg_radius for carrier in carriers),
         )
+
+    @property
+    def workpiece(self) -> Workpiece:
+        """What to hold."""
+        return self.query.workpiece
+
+    @property
+    def vise(self) -> Vise:
+        """What to hold it in, which is a vise."""
+        assert isinstance(self.query.toolkit, Vise)
+        return self.query.toolkit
+
+    @property
+    def contact_margin(self) -> float:
+        """Smallest distance between a contact and the end of its feature."""
+        return self.query.contact_margin
+
+    @property
+    def restrictions(self) -> Restrictions:
+        """What is ruled out."""
+        return self.query.restrictions
 
     @property
     def wrench_length(self) -> float:
@@ -166,23 +171,3 @@ def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[
     out[:, 2] -= center[1]
     out.setflags(write=False)
     return out
-
-
-def check_options(
-    types: Sequence[str], contact_margin: float, best: int | None = None, threads: int | None = None
-) -> None:
-    """Refuse options out of range.
-
-    Raises
-    ------
-    InputError
-        Naming the option.
-    """
-    for name in types:
-        if name not in TYPES:
-            raise InputError(f"type {name} is unknown: choose I, II or both.")
-    if not (isfinite(real(contact_margin)) and contact_margin >= 0):
-        raise InputError(f"contact margin {contact_margin} is not a length: give 0 or more, in mm.")
-    for option, count in (("best", best), ("threads", threads)):
-        if count is not None and (count != int(count) or count < 1):
-            raise InputError(f"{option} {count} is not a positive whole number.")

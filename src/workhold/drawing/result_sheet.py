@@ -44,7 +44,7 @@ def result_sheet(
     InputError
         For a jaw force or a coefficient of friction that cannot be.
     """
-    asked = result.loads if loads is None else loads
+    asked = result.query.loads if loads is None else loads
     fixture, workpiece, vise = measured_fixture(result, rank - 1, asked), result.workpiece, result.vise
     details = SheetDetails(
         number=rank,
@@ -55,7 +55,7 @@ def result_sheet(
         paper=paper,
         unit=unit,
         part_name=part_name,
-        tolerance=result.tolerance,
+        tolerance=result.query.tolerance,
         jaw_force=jaw_force,
         friction=friction,
         loads=load_cases(fixture, workpiece, vise, asked, jaw_force, friction),

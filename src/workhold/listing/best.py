@@ -13,7 +13,7 @@ from workhold.conventions import MARGIN_SLACK
 from workhold.listing.canonical_form import Candidates, joined, listed_once
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
-from workhold.listing.ranking import Preference, best_marked
+from workhold.listing.ranking import best_marked, measured
 from workhold.model.quality import CLOSURE_MARGIN
 from workhold.proof.deciding import Account
 
@@ -25,25 +25,27 @@ WAITING = 64
 
 @define(eq=False)
 class BestFixtures:
-    """The best ``most`` fixtures of those added so far, and those that tie with the last of them.
+    """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last of them.
 
     Parameters
     ----------
     problem : what is searched.
-    preference : what makes one better than another.
-    most : how many to keep.
     cancel : see ``listing.finish.finish``.
     """
 
     problem: Problem
-    preference: Preference
-    most: int
     cancel: Event | None = None
     margin: float = field(default=0.0, init=False)
     has_dropped: bool = field(default=False, init=False)
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
     kept: Candidates | None = field(default=None, init=False)
     accounts: list[Account] = field(factory=list, init=False)
+
+    @property
+    def most(self) -> int:
+        """How many to keep."""
+        assert self.problem.query.best is not None
+        return self.problem.query.best
 
     def add(self, records: NDArray[np.float64]) -> float:
         """Take records (N, 19) from the search; the closure margin that further ones must reach."""
@@ -64,10 +66,10 @@ class BestFixtures:
         """The best ``most`` of fixtures that are listed once, and those that tie with the last."""
         if len(everything.standing) <= self.most:
             return everything
-        table = self.preference.measured(placed(everything, self.problem), self.problem)
-        chosen = best_marked(table.quality, self.preference.ranking, self.most, ties)
+        table = measured(placed(everything, self.problem), self.problem)
+        chosen = best_marked(table.quality, self.problem.query.ranking, self.most, ties)
         self.has_dropped |= not chosen.all()
-        if self.preference.by_margin_alone:
+        if self.problem.query.by_margin_alone:
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
 

@@ -15,7 +15,7 @@ from workhold.listing.canonical_form import Candidates
 from workhold.listing.distinct import count_distinct
 from workhold.listing.finish import finish
 from workhold.listing.placing import placed
-from workhold.listing.ranking import Preference, rank
+from workhold.listing.ranking import measured, rank
 from workhold.model.proof import Proof
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
@@ -43,11 +43,9 @@ class Work:
 
 def listed_result(
     problem: Problem,
-    preference: Preference,
     records: list[NDArray[np.float64]],
     work: Work,
     *,
-    best: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
     threads: int = 1,
@@ -57,16 +55,14 @@ def listed_result(
     Parameters
     ----------
     problem : what was searched.
-    preference : what makes one better than another.
     records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
-    best : list only this many, the best ones.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     threads : how many threads share the deciding.
     """
     candidates, account = finish(records, problem, progress, cancel, threads)
-    result = result_of(problem, preference, candidates, account, work, threads)
-    return result if best is None else evolve(result, table=result.table.take(slice(0, best)))
+    result = result_of(problem, candidates, account, work, threads)
+    return evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
 def best_result(kept: BestFixtures, work: Work) -> Result:
@@ -75,34 +71,26 @@ def best_result(kept: BestFixtures, work: Work) -> Result:
     How many fixtures there are in all is not known: those that could not be among the best were not examined.
     """
     candidates, account = kept.finished()
-    result = result_of(kept.problem, kept.preference, candidates, account, work)
+    result = result_of(kept.problem, candidates, account, work)
     if not (work.complete and kept.has_dropped):
         return result
     note = f"Only the best {kept.most} were sought, so how many fixtures there are in all was not counted."
     return evolve(result, notes=(note, *result.notes))
 
 
-def result_of(
-    problem: Problem, preference: Preference, candidates: Candidates, account: Account, work: Work, threads: int = 1
-) -> Result:
+def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work, threads: int = 1) -> Result:
     """The result of fixtures that are listed once."""
-    everything = preference.measured(placed(candidates, problem), problem, threads)
-    ranked = everything.take(rank(everything.quality, preference.ranking))
+    everything = measured(placed(candidates, problem), problem, threads)
+    ranked = everything.take(rank(everything.quality, problem.query.ranking))
     return Result(
-        workpiece=problem.workpiece,
-        vise=problem.vise,
+        query=problem.query,
         table=ranked,
-        found=problem.vise.arrangements_counted(ranked.arrangement),
+        found=problem.query.toolkit.arrangements_counted(ranked.arrangement),
         distinct=count_distinct(candidates, problem, threads),
         complete=work.complete and account.left == 0,
-        contact_margin=problem.contact_margin,
         notes=notes(len(account.undecided)),
         statistics=work.statistics,
         proof=proof_of(account, work),
-        restrictions=problem.restrictions,
-        ranking=preference.ranking,
-        tolerance=preference.tolerance,
-        loads=preference.loads,
     )
 
 

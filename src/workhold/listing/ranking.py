@@ -9,83 +9,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.errors import InputError
-from workhold.model.load import Load
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figure_number
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, figure_number
 from workhold.model.result import FixtureTable
-from workhold.model.tolerance import Tolerance
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.quality import quality_of
 
-__all__ = ["DEFAULT_RANKING", "Preference", "best_marked", "preference_of", "rank"]
+__all__ = ["best_marked", "measured", "rank"]
 
-# Repeatable first: a fixture that places every part alike; then strong: one that does not press the part out of shape.
-DEFAULT_RANKING = ("location_error", "clamp_amplification", "closure_margin")
-LOADED_RANKING = ("location_error", "load_reaction", "closure_margin")
 FINE_DIGITS = 9
 COARSE_DIGITS = 2
 
 
-@frozen
-class Preference:
-    """What makes one fixture better than another.
-
-    Parameters
-    ----------
-    ranking : keys of figures of quality, the first counting most.
-    tolerance : how far pegs and faces may be off.
-    loads : what the fixture must resist.
-    """
-
-    ranking: tuple[str, ...] = DEFAULT_RANKING
-    tolerance: Tolerance = field(factory=Tolerance)
-    loads: tuple[Load, ...] = ()
-
-    @property
-    def by_margin_alone(self) -> bool:
-        """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
-        return self.ranking == (FIGURES[CLOSURE_MARGIN].key,)
-
-    def measured(self, table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
-        """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
-        part, vise = problem.workpiece, problem.vise
-        touched = Touched.of(part, vise, problem.locus, problem.wrench_length)
-        quality = quality_of(table, part, vise, self.tolerance, self.loads, threads, touched)
-        quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
-        return evolve(table, quality=quality)
-
-
-def preference_of(
-    names: Sequence[str] | None = None, tolerance: Tolerance | None = None, loads: Sequence[Load] = ()
-) -> Preference:
-    """A preference from the names of figures as a user writes them; None is the default ranking.
-
-    Raises
-    ------
-    InputError
-        For a name that is no figure, one given twice, and the load reaction without loads.
-    """
-    tolerance, loads = tolerance or Tolerance(), tuple(loads)
-    if names is None:
-        return Preference(LOADED_RANKING if loads else DEFAULT_RANKING, tolerance, loads)
-    keys = []
-    for name in names:
-        number = figure_number(name)
-        if number is None:
-            known = ", ".join(figure.option for figure in FIGURES)
-            raise InputError(f"{name!r} is no figure to rank by: choose among {known}.")
-        if number == LOAD_REACTION and not loads:
-            raise InputError("there is no load to rank by the load reaction: give one with --load or --loads.")
-        keys.append(FIGURES[number].key)
-    if not keys:
-        raise InputError("there is no figure to rank by: name at least one, such as closure-margin.")
-    if len(set(keys)) < len(keys):
-        raise InputError(f"the figures to rank by, {', '.join(names)}, name one twice: name each once.")
-    return Preference(tuple(keys), tolerance, loads)
+def measured(table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
+    """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
+    part, vise, query = problem.workpiece, problem.vise, problem.query
+    touched = Touched.of(part, vise, problem.locus, problem.wrench_length)
+    quality = quality_of(table, part, vise, query.tolerance, query.loads, threads, touched)
+    quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
+    return evolve(table, quality=quality)
 
 
 def ranking_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:

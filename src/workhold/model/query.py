@@ -39,6 +39,11 @@ def tolerance_of(value: Tolerance | None) -> Tolerance:
     return Tolerance() if value is None else value
 
 
+def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
+    """Loads as a tuple."""
+    return tuple(loads)
+
+
 @frozen
 class Query:
     """What to hold, what to hold it in, and what is asked of the fixtures.
@@ -68,7 +73,7 @@ class Query:
     restrictions: Restrictions = field(default=None, converter=restrictions_of)
     ranking: tuple[str, ...] = field(default=None, converter=words)
     tolerance: Tolerance = field(default=None, converter=tolerance_of)
-    loads: tuple[Load, ...] = field(default=(), converter=tuple)
+    loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     best: int | None = None
 
     def __attrs_post_init__(self) -> None:

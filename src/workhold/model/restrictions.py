@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import isfinite
+from typing import Any
 
 import numpy as np
 from attrs import field, frozen
@@ -26,7 +27,7 @@ __all__ = ["Restrictions", "Zone", "circle_zone", "polygon_zone"]
 Angles = tuple[float, float]
 
 
-@frozen(eq=False)
+@frozen
 class Zone:
     """A keep-out zone: no part of a peg's body may stand over it.
 
@@ -35,7 +36,14 @@ class Zone:
     loop : (N, 3) read-only vertices x, y (mm, in the part's frame) and bulge, counter-clockwise.
     """
 
-    loop: NDArray[np.float64]
+    loop: NDArray[np.float64] = field(eq=lambda loop: loop.tolist(), hash=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.loop.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # So that the array is read-only again on the other side.
+        return Zone, (self.loop,)
 
     @property
     def segments(self) -> tuple[Segment, ...]:
@@ -92,12 +100,22 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
     return Zone(checked)
 
 
+def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
+    """Ranges of angles as pairs of floats."""
+    return tuple((float(low), float(high)) for low, high in ranges)
+
+
+def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
+    """Zones as a tuple."""
+    return tuple(zones)
+
+
 def ascending(numbers: Iterable[int]) -> tuple[int, ...]:
     """Numbers in order, each once."""
     return tuple(sorted(set(numbers)))
 
 
-@frozen(eq=False)
+@frozen
 class Restrictions:
     """What fixtures must keep clear of.
 
@@ -114,8 +132,8 @@ class Restrictions:
     """
 
     avoid: tuple[int, ...] = field(default=(), converter=ascending)
-    zones: tuple[Zone, ...] = ()
-    angles: tuple[Angles, ...] = ()
+    zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
+    angles: tuple[Angles, ...] = field(default=(), converter=angle_pairs)
 
     def __attrs_post_init__(self) -> None:
         for low, high in ((real(low), real(high)) for low, high in self.angles):

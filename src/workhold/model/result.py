@@ -6,15 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any, overload
 
 import numpy as np
-from attrs import define, evolve, field
+from attrs import astuple, define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
-from workhold.model.restrictions import Restrictions
-from workhold.model.tolerance import Tolerance
+from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -54,6 +52,10 @@ class FixtureTable:
         for name in self.__attrs_attrs__:
             getattr(self, name.name).setflags(write=False)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # So that the arrays are read-only again on the other side.
+        return FixtureTable, astuple(self, recurse=False)
+
     def __len__(self) -> int:
         return len(self.arrangement)
 
@@ -88,50 +90,55 @@ def unknown_quality(null_vector: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @define(frozen=True, eq=False)
 class Result:
-    """All fixtures of a workpiece in a vise, best first, or the best of them.
+    """All fixtures that a query asks for, best first, or the best of them.
 
     A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are made when
     asked for; the arrays behind them are in ``table``.
 
     Parameters
     ----------
-    workpiece, vise : what was asked.
+    query : what was asked.
     table : the fixtures listed, ranked.
-    found : how many fixtures of each type were found ("I", "II"); more than are listed when an engine found all and only
-        the best were kept.
+    found : how many fixtures of each arrangement were found, by its name; more than are listed when an engine found all
+        and only the best were kept.
     distinct : how many sets they form when fixtures that a rotation of the part onto itself carries into each other
         count once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
-    contact_margin : smallest distance in mm that was asked for between a contact and the end of its feature.
     notes : remarks a user should read, one sentence each.
     statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
-    restrictions : what the user ruled out.
-    ranking : keys of the figures of quality that the fixtures are ranked by, the first counting most.
-    tolerance : how far pegs and faces may be off, for the location error.
-    loads : what the load reaction was computed for.
     """
 
-    workpiece: Workpiece
-    vise: Vise
+    query: Query
     table: FixtureTable
     found: Mapping[str, int]
     distinct: Mapping[str, int]
     complete: bool = True
-    contact_margin: float = 0.0
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()
     statistics: Mapping[str, int] = field(factory=dict)
     proof: Proof | None = None
-    restrictions: Restrictions = field(factory=Restrictions)
-    ranking: tuple[str, ...] = ("closure_margin",)
-    tolerance: Tolerance = field(factory=Tolerance)
-    loads: tuple[Load, ...] = field(default=())
+
+    @property
+    def workpiece(self) -> Workpiece:
+        """What is held."""
+        return self.query.workpiece
+
+    @property
+    def toolkit(self) -> Toolkit:
+        """What it is held in."""
+        return self.query.toolkit
+
+    @property
+    def vise(self) -> Vise:
+        """The toolkit, which is a vise."""
+        assert isinstance(self.query.toolkit, Vise)
+        return self.query.toolkit
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many fixtures of each type are listed."""
-        return self.vise.arrangements_counted(self.table.arrangement)
+        """How many fixtures of each arrangement are listed."""
+        return self.toolkit.arrangements_counted(self.table.arrangement)
 
     def __len__(self) -> int:
         return len(self.table)
@@ -151,7 +158,7 @@ class Result:
             return [self[k] for k in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
-        return fixture_at(self.table, self.vise, index)
+        return fixture_at(self.table, self.toolkit, index)
 
 
 def whole_turn_degrees(theta: float) -> float:

@@ -10,7 +10,7 @@ from attrs import evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.model.holes import Holes
+from workhold.model.holes import Holes, holes_named
 from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 
@@ -35,9 +35,9 @@ def optional_length(value: float | None) -> float:
     return nan if value is None else inf if isnan(real(value)) else real(value)
 
 
-def all_holes(holes: Iterable[Holes]) -> tuple[Holes, ...]:
-    """Holes as a tuple."""
-    return tuple(holes)
+def all_holes(holes: Iterable[Holes | str]) -> tuple[Holes, ...]:
+    """Holes as a tuple, where they may be given by name."""
+    return tuple(holes_named(one) if isinstance(one, str) else one for one in holes)
 
 
 @frozen
@@ -56,7 +56,7 @@ class Vise(Toolkit):
     row_offset : height in mm of the right jaw's row 0 above the left jaw's.
     body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
         peg radius. Bodies may neither overlap nor stand over a keep-out zone.
-    blocked : holes and columns that no peg can stand in.
+    blocked : holes and columns that no peg can stand in, or their names, such as "L-B3" and "R-A".
 
     Raises
     ------

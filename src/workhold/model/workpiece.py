@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from attrs import define, field
@@ -57,6 +58,14 @@ class Workpiece:
 
     name: str
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of, repr=lambda loops: f"<{len(loops)} loops>")
+
+    def __attrs_post_init__(self) -> None:
+        for loop in self.loops:
+            loop.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What was worked out stays behind, and the arrays are read-only again on the other side.
+        return Workpiece, (self.name, self.loops)
 
     @classmethod
     def from_loops(

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from workhold.contact.problem import TYPES, Problem
+from workhold.contact.problem import Problem
 from workhold.kernels.crossing.two_and_two import CONTACTS
-from workhold.model.vise import Vise
+from workhold.model.query import Query
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.toolkit_search import ToolkitSearch
@@ -14,7 +13,7 @@ from workhold.search.toolkit_search import ToolkitSearch
 __all__ = ["contacts_of", "count_contacts"]
 
 
-def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = None) -> int:
+def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
     """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its feature.
 
     Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest on a chord of
@@ -29,11 +28,11 @@ def count_contacts(workpiece: Workpiece, vise: Vise, *, threads: int | None = No
     InputError
         For a peg that fits nowhere along the part.
     """
-    return contacts_of(Problem.of(workpiece, vise), TYPES, threads)
+    return contacts_of(Problem.of(Query(workpiece, toolkit)), threads)
 
 
-def contacts_of(problem: Problem, types: Sequence[str], threads: int | None) -> int:
+def contacts_of(problem: Problem, threads: int | None) -> int:
     """Simultaneous contacts of a problem, see :func:`count_contacts`."""
     search = ToolkitSearch.of(problem, counting=True)
-    run_blocks(search.blocks(types), thread_count(threads), None, None)
+    run_blocks(search.blocks(problem.query.arrangements), thread_count(threads), None, None)
     return int(search.totals[CONTACTS])

@@ -1,4 +1,4 @@
-"""Design: every fixture of a workpiece in a vise."""
+"""Design: every fixture of a workpiece in a toolkit."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.contact.curves import center_numbers
-from workhold.contact.problem import TYPES, Problem, Progress, check_options
+from workhold.contact.problem import Problem, Progress
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, CROSSED, PAIRS
 from workhold.listing.best import BestFixtures
 from workhold.listing.listed import Work, best_result, listed_result
-from workhold.listing.ranking import preference_of
 from workhold.model.load import Load
+from workhold.model.query import Query, counting_number
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["design"]
+__all__ = ["answer", "design"]
 
 # The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
 SEARCH = 0.9
@@ -34,12 +34,12 @@ SEARCH = 0.9
 
 def design(
     workpiece: Workpiece,
-    vise: Vise,
+    toolkit: Toolkit,
     *,
-    types: Sequence[str] = TYPES,
+    types: str | Sequence[str] | None = None,
     contact_margin: float = 0.0,
     restrictions: Restrictions | None = None,
-    rank_by: Sequence[str] | None = None,
+    rank_by: str | Sequence[str] | None = None,
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
     best: int | None = None,
@@ -48,19 +48,52 @@ def design(
     cancel: Event | None = None,
     preview: Preview | None = None,
 ) -> Result:
-    """Find every fixture of a workpiece in a vise.
+    """Find every fixture of a workpiece in a toolkit, such as a vise.
 
     Parameters
     ----------
-    workpiece, vise : what to hold and what to hold it in.
-    types : "I" (two pegs on each jaw), "II" (three and one), or both.
-    contact_margin : smallest distance in mm between a contact and the end of its feature.
-    restrictions : faces not to touch, places where no peg may stand, angles of the part.
-    rank_by : figures of quality, the first counting most, see ``model.quality``; None is location error, then load
-        reaction or, without loads, clamp amplification, then closure margin.
-    tolerance : how far pegs and faces may be off, for the location error.
-    loads : what the fixture must resist, for the load reaction.
-    best : seek and list only this many, the best ones; None lists all.
+    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best : see :class:`workhold.model.query.Query`.
+    types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None is all.
+    rank_by : the query's ranking.
+    threads, progress, cancel, preview : see :func:`answer`.
+
+    Returns
+    -------
+    Result
+        As of :func:`answer`.
+
+    Raises
+    ------
+    InputError
+        As :class:`workhold.model.query.Query` and :func:`answer`.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> widget = workhold.load("widget")
+    >>> vise = workhold.Vise(pitch=8, columns=1, peg_radius=3)
+    >>> result = workhold.design(widget, vise, rank_by="closure-margin")
+    >>> result.counts
+    {'I': 459, 'II': 46}
+    >>> [peg.hole for peg in result[0].pegs]
+    ['L-A1', 'L-A2', 'R-A1', 'R-A2']
+    """
+    query = Query(workpiece, toolkit, types, contact_margin, restrictions, rank_by, tolerance, loads, best)
+    return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
+
+
+def answer(
+    query: Query,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+    preview: Preview | None = None,
+) -> Result:
+    """Find every fixture that a query asks for, or the best of them.
+
+    Parameters
+    ----------
     threads : how many threads share the work; None for one on each processor. The result does not depend on it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
@@ -70,36 +103,30 @@ def design(
     Returns
     -------
     Result
-        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their holes, pose and
-        faces.
+        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their holes,
+        orientation, faces and place.
 
     Raises
     ------
     InputError
-        For an unknown type or figure, numbers out of range, faces that do not exist, a peg that fits nowhere along the
-        part, and restrictions that leave nothing to touch.
+        For faces that do not exist, a peg that fits nowhere along the part, restrictions that leave nothing to touch, and
+        a number of threads that is none.
 
     Examples
     --------
-    >>> import workhold
-    >>> widget = workhold.load("widget")
-    >>> vise = workhold.Vise(pitch=8, columns=1, peg_radius=3)
-    >>> result = workhold.design(widget, vise, rank_by=["closure-margin"])
-    >>> result.counts
-    {'I': 459, 'II': 46}
-    >>> [peg.hole for peg in result[0].pegs]
-    ['L-A1', 'L-A2', 'R-A1', 'R-A2']
+    >>> from workhold import Query, Vise, answer, load
+    >>> query = Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), arrangements="II", best=3)
+    >>> len(answer(query)), answer(query).query == query
+    (3, True)
     """
-    check_options(types, contact_margin, best, threads)
-    preference = preference_of(rank_by, tolerance, loads)
-    problem = Problem.of(workpiece, vise, contact_margin, restrictions)
+    problem = Problem.of(query)
+    workers = thread_count(counting_number("threads", threads))
     search = ToolkitSearch.of(problem)
     # Smaller blocks learn earlier what margin is to be reached.
-    blocks = search.blocks(types, LEAST_BLOCKS if best is None else 2 * LEAST_BLOCKS)
-    kept = None if best is None else BestFixtures(problem, preference, best, cancel)
-    workers = thread_count(threads)
+    blocks = search.blocks(query.arrangements, LEAST_BLOCKS if query.best is None else 2 * LEAST_BLOCKS)
+    kept = None if query.best is None else BestFixtures(problem, cancel)
     receive = None if kept is None else kept.add
-    look = None if preview is None else Previews(problem, preference, preview).add
+    look = None if preview is None else Previews(problem, preview).add
     records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive, look)
     totals = search.totals
     work = Work(
@@ -112,10 +139,10 @@ def design(
         result = best_result(kept, work)
     else:
         rest = stage(progress, SEARCH, 1.0)
-        result = listed_result(problem, preference, records, work, progress=rest, cancel=cancel, threads=workers)
+        result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=workers)
     if result.complete and not any(result.found.values()) and not result.notes:
         proven = 0 if result.proof is None else result.proof.verified
-        return evolve(result, notes=(why_none(search, types, int(totals[CONTACTS]), proven, threads),))
+        return evolve(result, notes=(why_none(search, int(totals[CONTACTS]), proven, workers),))
     return result
 
 
@@ -126,7 +153,7 @@ def stage(progress: Progress | None, low: float, high: float) -> Progress | None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def why_none(search: ToolkitSearch, types: Sequence[str], contacts: int, proven: int, threads: int | None) -> str:
+def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int) -> str:
     """The reason when a search finds no fixture, in one sentence."""
     problem, table = search.problem, search.table
     arcs = problem.rows[:, 0] != 0.0
@@ -138,7 +165,7 @@ def why_none(search: ToolkitSearch, types: Sequence[str], contacts: int, proven:
     if len(table) + len(table.sliding_pairs.integers) == 0:
         return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
-    if contacts == 0 and contacts_of(problem, types, threads) == 0:
+    if contacts == 0 and contacts_of(problem, threads) == 0:
         return "No four pegs of the two jaws can touch the part at the same time inside their faces."
     if proven:
         return (

@@ -7,16 +7,17 @@ plain numbers; the proof that there is no fixture is the search's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from threading import Event, Timer
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.contact.features import end_distances
-from workhold.contact.problem import TYPES, Problem
+from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
@@ -24,6 +25,7 @@ from workhold.kernels.contact import record
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import arranged, placed
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
+from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import fixture_at
 from workhold.model.units import MILLIMETRE, Unit
@@ -31,7 +33,7 @@ from workhold.model.vise import Vise
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
-from workhold.search.design import design
+from workhold.search.design import answer
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.statics.wrenches import outward_normals
 
@@ -77,20 +79,18 @@ class Contacts:
         return Contacts(self.candidates.take(chosen), *rest)
 
 
-def explain(
-    problem: Problem, types: Sequence[str] = TYPES, threads: int | None = None, unit: Unit = MILLIMETRE
-) -> Explanation:
-    """Explain why a problem has no fixture.
+def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -> Explanation:
+    """Explain why there is no fixture that a query asks for.
 
     Parameters
     ----------
-    problem : what was searched in vain.
-    types : "I", "II" or both.
+    query : what was asked in vain.
     threads : how many threads share the work; None for one on each processor.
     unit : of the lengths in its words.
     """
-    contacts = all_contacts(problem, types, threads)
-    first, removals = restriction_removals(problem, types, threads, len(contacts.margin))
+    problem = Problem.of(query)
+    contacts = all_contacts(problem, threads)
+    first, removals = restriction_removals(problem, threads, len(contacts.margin))
     nearest = None
     for rule, keeps, miss in rules(problem, unit):
         if len(contacts.margin) == 0:
@@ -101,13 +101,13 @@ def explain(
             nearest = nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
     removals = [removal for removal in removals if removal.before > 0]
-    return Explanation(first, tuple(removals), nearest, helps(problem, types, threads, unit))
+    return Explanation(first, tuple(removals), nearest, helps(query, threads, unit))
 
 
-def all_contacts(problem: Problem, types: Sequence[str], threads: int | None) -> Contacts:
+def all_contacts(problem: Problem, threads: int | None) -> Contacts:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
     search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED)
-    records, _ = run_blocks(search.blocks(types), thread_count(threads), None, None)
+    records, _ = run_blocks(search.blocks(problem.query.arrangements), thread_count(threads), None, None)
     swapped = search.frame.swapped
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
@@ -140,9 +140,7 @@ def facing(c: Candidates, swapped: int) -> Candidates:
     return c.take((c.standing != swapped) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
 
 
-def restriction_removals(
-    problem: Problem, types: Sequence[str], threads: int | None, left: int
-) -> tuple[int, list[Removal]]:
+def restriction_removals(problem: Problem, threads: int | None, left: int) -> tuple[int, list[Removal]]:
     """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
 
     Parameters
@@ -163,8 +161,8 @@ def restriction_removals(
         steps.append(("angles of the part", asked, vise))
 
     def count(restrictions: Restrictions, in_vise: Vise) -> int:
-        part = Problem.of(problem.workpiece, in_vise, 0.0, restrictions)
-        return contacts_of(part, types, threads)
+        asked = evolve(problem.query, toolkit=in_vise, restrictions=restrictions, contact_margin=0.0)
+        return contacts_of(Problem.of(asked), threads)
 
     first = before = max(count(Restrictions(), free_vise), left) if steps else left
     removals = []
@@ -203,7 +201,7 @@ def placing_rules(problem: Problem) -> list[Rule]:
     out: list[Rule] = []
 
     def rule(words: str, in_vise: Vise, restrictions: Restrictions) -> None:
-        part = evolve(problem, vise=in_vise, restrictions=restrictions)
+        part = evolve(problem, query=evolve(problem.query, toolkit=in_vise, restrictions=restrictions))
         out.append((words, lambda c: arranged(c.candidates, part).fits, partial(no_place, words)))
 
     if vise.body_radius > vise.peg_radius:
@@ -278,29 +276,21 @@ def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) ->
     """A contact that is no fixture, placed in jaws without ends."""
     index, words = miss
     vise = evolve(problem.vise, rows=None, max_opening=None, blocked=(), min_gap=0.0)
-    part = evolve(problem, vise=vise, restrictions=Restrictions())
+    part = evolve(problem, query=evolve(problem.query, toolkit=vise, restrictions=None))
     table = placed(contacts.candidates.take(np.array([index])), part)
     return NearestMiss(fixture_at(table, vise, 0), words)
 
 
-def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Unit) -> tuple[Help, ...]:
+def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out = []
-    for words, vise, restrictions, margin in changes(problem, unit):
+    for words, change in changes(query, unit):
         enough = Event()
         timer = Timer(HELP_SECONDS, enough.set)
         timer.start()
         try:
-            result = design(
-                problem.workpiece,
-                vise,
-                types=types,
-                contact_margin=margin,
-                restrictions=restrictions,
-                rank_by=["closure_margin"],
-                threads=threads,
-                cancel=enough,
-            )
+            asked = evolve(query, ranking="closure_margin", best=None, **change)
+            result = answer(asked, threads=threads, cancel=enough)
         except InputError:
             continue
         finally:
@@ -310,43 +300,45 @@ def helps(problem: Problem, types: Sequence[str], threads: int | None, unit: Uni
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 
-def changes(problem: Problem, unit: Unit) -> Iterator[tuple[str, Vise, Restrictions, float]]:
-    """Changes to try, one at a time."""
-    vise, asked, margin = problem.vise, problem.restrictions, problem.contact_margin
+def changes(query: Query, unit: Unit) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Changes of a query to try, one at a time: in words, and what then is asked instead."""
+    asked, vise = query.restrictions, query.toolkit
     if asked.avoid:
         if len(asked.avoid) > 1:
             faces = ", ".join(str(number) for number in asked.avoid)
-            yield f"touching faces {faces} too", vise, evolve(asked, avoid=()), margin
+            yield f"touching faces {faces} too", {"restrictions": evolve(asked, avoid=())}
         for face in asked.avoid[:MOST_FACES]:
             rest = tuple(number for number in asked.avoid if number != face)
-            yield f"touching face {face} too", vise, evolve(asked, avoid=rest), margin
+            yield f"touching face {face} too", {"restrictions": evolve(asked, avoid=rest)}
     if asked.zones:
-        yield "without the keep-out zones", vise, evolve(asked, zones=()), margin
+        yield "without the keep-out zones", {"restrictions": evolve(asked, zones=())}
     if asked.angles:
-        yield "at any angle", vise, evolve(asked, angles=()), margin
-    if margin > 0:
-        yield "without a contact margin", vise, asked, 0.0
+        yield "at any angle", {"restrictions": evolve(asked, angles=())}
+    if query.contact_margin > 0:
+        yield "without a contact margin", {"contact_margin": 0.0}
+    assert isinstance(vise, Vise)
+    for words, fields in vise_changes(vise, unit):
+        yield words, {"toolkit": evolve(vise, **fields)}
+
+
+def vise_changes(vise: Vise, unit: Unit) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Changes of a vise to try, one at a time: in words, and what fields then are."""
     if vise.body_radius > vise.peg_radius:
-        yield "with pegs without a shoulder", evolve(vise, body_radius=vise.peg_radius), asked, margin
+        yield "with pegs without a shoulder", {"body_radius": vise.peg_radius}
     if vise.blocked:
-        yield "with no hole blocked", evolve(vise, blocked=()), asked, margin
+        yield "with no hole blocked", {"blocked": ()}
     if vise.rows is not None:
-        yield "with as many rows as needed", evolve(vise, rows=None), asked, margin
+        yield "with as many rows as needed", {"rows": None}
     if vise.max_opening is not None:
-        yield "with a larger opening", evolve(vise, max_opening=None), asked, margin
+        yield "with a larger opening", {"max_opening": None}
     if vise.min_gap > 2 * vise.peg_radius > 0:
-        narrow = evolve(vise, min_gap=2 * vise.peg_radius)
-        yield f"with a smallest gap of {unit.figure(narrow.min_gap)} {unit.abbreviation}", narrow, asked, margin
-    yield "with one more column on each jaw", evolve(vise, columns=vise.columns + 1), asked, margin
+        narrow = 2 * vise.peg_radius
+        yield f"with a smallest gap of {unit.figure(narrow)} {unit.abbreviation}", {"min_gap": narrow}
+    yield "with one more column on each jaw", {"columns": vise.columns + 1}
     if vise.row_offset == 0.0:
         offset = vise.pitch[1] / 2
         words = f"{unit.figure(offset)} {unit.abbreviation}"
-        yield f"with the right jaw's rows offset by {words}", evolve(vise, row_offset=offset), asked, margin
+        yield f"with the right jaw's rows offset by {words}", {"row_offset": offset}
     if min(vise.pitch) >= 4 * vise.peg_radius:
         half = (vise.pitch[0] / 2, vise.pitch[1] / 2)
-        yield (
-            "with half the pitch",
-            evolve(vise, pitch=half, min_gap=min(vise.min_gap, half[0]), blocked=()),
-            asked,
-            margin,
-        )
+        yield "with half the pitch", {"pitch": half, "min_gap": min(vise.min_gap, half[0]), "blocked": ()}

@@ -1,34 +1,32 @@
-"""Which vise to buy: the same part tried in many vises, with the number of fixtures and the best quality in each."""
+"""Which toolkit to buy: the same part tried in many, with the number of fixtures and the best quality in each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from threading import Event
-from typing import Any
 
 import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.model.quality import FIGURES, figure_number
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable
-from workhold.model.vise import Vise
-from workhold.model.workpiece import Workpiece
-from workhold.search.design import design
+from workhold.search.design import answer
 
 __all__ = ["Explored", "best_of", "explore"]
 
 
 @frozen
 class Explored:
-    """What one vise can do for a part.
+    """What one toolkit can do for a part.
 
     Parameters
     ----------
-    name : what the vise is called.
-    found : fixtures of each type.
+    name : what it is called.
+    found : fixtures of each arrangement; empty for a toolkit that cannot be.
     best : the best value of each figure of quality over all fixtures; empty when there is none.
-    reason : why there is no fixture, or why the vise cannot be; empty otherwise.
+    reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
     """
 
     name: str
@@ -42,38 +40,23 @@ class Explored:
         return sum(self.found.values())
 
 
-def explore(
-    workpiece: Workpiece,
-    vises: Iterable[tuple[str, Mapping[str, Any]]],
-    *,
-    tolerances: Mapping[str, Any] | None = None,
-    cancel: Event | None = None,
-    **options: Any,
-) -> Iterator[Explored]:
-    """Try vises one after the other.
+def explore(queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None) -> Iterator[Explored]:
+    """Answer the same query for one toolkit after the other.
 
     Parameters
     ----------
-    vises : names and keyword arguments of each vise.
-    tolerances : what is known of how far pegs and faces may be off, by the vise's name.
-    cancel : when set, no further vise is tried.
-    options : as for ``workhold.design``.
-
-    Raises
-    ------
-    InputError
-        For options that no vise could make good.
+    queries : what each toolkit is called, and the query, or why there is none.
+    cancel : when set, no further query is answered.
     """
-    for name, fields in vises:
+    for name, query in queries:
         if cancel is not None and cancel.is_set():
             return
-        given = dict(options)
-        if tolerances is not None and name in tolerances:
-            given["tolerance"] = tolerances[name]
         try:
-            result = design(workpiece, Vise(**fields), cancel=cancel, **given)
+            if isinstance(query, InputError):
+                raise query
+            result = answer(query, cancel=cancel)
         except InputError as error:
-            yield Explored(name, {"I": 0, "II": 0}, {}, str(error))
+            yield Explored(name, {}, {}, str(error))
             continue
         if not result.complete:
             return
@@ -94,7 +77,7 @@ def best_values(table: FixtureTable) -> dict[str, float]:
 
 
 def best_of(explored: Sequence[Explored], key: str) -> Explored | None:
-    """The vise with the best value of a figure; None when no vise has a fixture."""
+    """The toolkit with the best value of a figure; None when none has a fixture."""
     number = figure_number(key)
     assert number is not None
     figure = FIGURES[number]

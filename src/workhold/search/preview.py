@@ -14,7 +14,6 @@ from workhold.contact.problem import Problem
 from workhold.listing.canonical_form import Candidates, joined, listed_once
 from workhold.listing.finish import finish
 from workhold.listing.listed import Work, result_of
-from workhold.listing.ranking import Preference
 from workhold.model.result import Result
 
 __all__ = ["Preview", "Previews"]
@@ -37,12 +36,11 @@ class Previews:
 
     Parameters
     ----------
-    problem, preference : what is searched, and what makes one fixture better than another.
+    problem : what is searched.
     show : called with a result from the thread that calls :meth:`add`.
     """
 
     problem: Problem
-    preference: Preference
     show: Preview
     newest: NDArray[np.float64] | None = field(default=None, init=False)
     shown: Candidates | None = field(default=None, init=False)
@@ -71,7 +69,7 @@ class Previews:
         if len(fresh.standing):
             self.shown = together
             work = Work(complete=False, statistics={})
-            self.show(result_of(self.problem, self.preference, together, account, work))
+            self.show(result_of(self.problem, together, account, work))
         end = perf_counter()
         self.spent += end - start
         self.next_time = max(end + PAUSE, self.began + SHARE * self.spent)

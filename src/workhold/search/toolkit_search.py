@@ -168,7 +168,7 @@ class ToolkitSearch:
     def of(cls, problem: Problem, counting: bool = False, most_listed: int = 0) -> ToolkitSearch:
         """The search of a problem, with its chord curves; ``counting`` leaves the contact margin out."""
         if counting:
-            problem = evolve(problem, contact_margin=0.0)
+            problem = evolve(problem, query=evolve(problem.query, contact_margin=0.0))
         loose = loosened(problem.rows[:, :8])
         return cls(problem, loose, tables_of(problem, loose), counting, most_listed)
 

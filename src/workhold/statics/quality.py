@@ -96,8 +96,8 @@ def quality_of(
 def measured_fixture(result: Result, index: int, loads: Sequence[Load] | None = None) -> Fixture:
     """One fixture of a result with all figures of quality that can be known, for its own loads or for others."""
     row = result.table.take(slice(index, index + 1))
-    asked = result.loads if loads is None else loads
-    quality = quality_of(row, result.workpiece, result.vise, result.tolerance, asked)
+    asked = result.query.loads if loads is None else loads
+    quality = quality_of(row, result.workpiece, result.vise, result.query.tolerance, asked)
     return fixture_at(evolve(row, quality=quality), result.vise, 0)
 
 

@@ -48,7 +48,8 @@ class Asked:
 
 def asked_of(result: Result) -> Asked:
     """What a result says was asked for."""
-    return Asked(result.restrictions, result.tolerance, result.loads, result.ranking)
+    query = result.query
+    return Asked(query.restrictions, query.tolerance, query.loads, query.ranking)
 
 
 def asked_in(data: Mapping[str, Any]) -> Asked:

@@ -71,7 +71,7 @@ def listing_of(result: Result) -> Listing:
     return Listing(
         result.workpiece,
         result.vise,
-        result.contact_margin,
+        result.query.contact_margin,
         list(result),
         result.counts,
         result.found,

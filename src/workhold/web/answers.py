@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from attrs import evolve
 
-from workhold.files.result.writer import fixture_rows, load_entry, proof_entry, vise_entry
+from workhold.files.result.writer import fixture_rows, load_entry, proof_entry, toolkit_fields
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
@@ -104,7 +104,7 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
 
 def vise_answer(loaded: LoadedVise) -> dict[str, Any]:
     """A vise that comes with the program."""
-    given = vise_entry(loaded.vise)
+    given = toolkit_fields(loaded.vise)
     return {
         "name": loaded.name,
         "title": loaded.title,

@@ -11,7 +11,6 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from workhold.model.result import Result
-from workhold.model.workpiece import Workpiece
 from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.forms import LoadsForm
 from workhold.web.job_routes import attachment, found_job, result_of_job
@@ -53,8 +52,7 @@ async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revisi
     """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
     result = result_of_job(found_job(request, name), revision)
     chosen = result[ranked(result, rank)]
-    bare = Workpiece(result.workpiece.name, result.workpiece.loops)
-    cases = await at_desk(request, "loads", (chosen, bare, result.vise, form))
+    cases = await at_desk(request, "loads", (chosen, result.workpiece, result.vise, form))
     return {"rank": rank, "cases": cases}
 
 

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
+from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
-from workhold.files.result.forms import vise_of
+from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import Load
+from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
-from workhold.web.asked import Asked
 
 __all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "sentence_of"]
 
@@ -76,8 +78,9 @@ def checked_part(name: str, loops: Sequence[Sequence[Sequence[float]]], most_seg
 
 
 class ViseForm(Form):
-    """A vise; lengths in mm."""
+    """A vise, or another toolkit with its fields; lengths in mm."""
 
+    kind: Name = USUAL
     pitch: Point
     columns: int = Field(ge=1, le=MOST_COLUMNS)
     peg_radius: Number
@@ -96,7 +99,7 @@ class ViseForm(Form):
         InputError
             When there is no such vise.
         """
-        return vise_of(self.model_dump())
+        return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
 class RestrictionsForm(Form):
@@ -158,35 +161,31 @@ class SearchForm(Form):
     """What a search in one vise and a comparison of several have in common."""
 
     workpiece: WorkpieceForm
-    types: list[Literal["I", "II"]] = Field(default=["I", "II"], min_length=1, max_length=2)
+    types: list[Name] | None = Field(default=None, max_length=10)
     contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     restrictions: RestrictionsForm = RestrictionsForm()
     ranking: list[Name] | None = Field(default=None, max_length=10)
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
 
-    def common(self, most_segments: int) -> dict[str, Any]:
-        """The values of :class:`Asked` but the vise.
+    def query(self, toolkit: Toolkit, most_segments: int) -> Query:
+        """What is asked of a toolkit.
 
         Raises
         ------
         InputError
-            For the first that cannot be.
+            For the first value that cannot be.
         """
-        from workhold.listing.ranking import preference_of
-
-        off = None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face)
-        loads = tuple(form.load() for form in self.loads)
-        preference_of(self.ranking, off, loads)
-        return {
-            "workpiece": self.workpiece.workpiece(most_segments),
-            "types": tuple(name for name in ("I", "II") if name in self.types),
-            "contact_margin": self.contact_margin,
-            "restrictions": self.restrictions.restrictions(),
-            "ranking": None if self.ranking is None else tuple(self.ranking),
-            "tolerance": off or Tolerance(),
-            "loads": loads,
-        }
+        return Query(
+            self.workpiece.workpiece(most_segments),
+            toolkit,
+            self.types,
+            self.contact_margin,
+            self.restrictions.restrictions(),
+            self.ranking,
+            None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
+            (form.load() for form in self.loads),
+        )
 
 
 class JobForm(SearchForm):
@@ -194,15 +193,15 @@ class JobForm(SearchForm):
 
     vise: ViseForm
 
-    def asked(self, most_segments: int) -> tuple[Asked, ...]:
-        """The search.
+    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+        """The query, which has no name.
 
         Raises
         ------
         InputError
             For the first value that cannot be.
         """
-        return (Asked(vise=self.vise.vise(), **self.common(most_segments)),)
+        return (("", self.query(self.vise.vise(), most_segments)),)
 
 
 class NamedViseForm(ViseForm):
@@ -216,26 +215,25 @@ class ExploreForm(SearchForm):
 
     vises: list[NamedViseForm] | None = Field(default=None, min_length=1, max_length=MOST_VISES)
 
-    def asked(self, most_segments: int) -> tuple[Asked, ...]:
-        """The searches, one for each vise.
+    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+        """The queries, one for each vise, and what the vises are called.
 
         Raises
         ------
         InputError
             For the first value that cannot be.
         """
-        common = self.common(most_segments)
-        if self.vises is not None:
-            named = [(form.title, ViseForm(**form.model_dump(exclude={"title"})).vise()) for form in self.vises]
-            return tuple(Asked(vise=vise, title=title, **common) for title, vise in named)
         from workhold.files.toolkit.presets import preset, preset_names
 
-        asked = []
-        for name in preset_names():
-            loaded = preset(name)
-            off = common["tolerance"] if self.tolerance is not None else loaded.tolerance
-            asked.append(Asked(vise=loaded.vise, title=name, **common | {"tolerance": off}))
-        return tuple(asked)
+        if self.vises is not None:
+            named: list[tuple[str, Vise, Tolerance | None]] = [(form.title, form.vise(), None) for form in self.vises]
+        else:
+            named = [(name, loaded.vise, loaded.tolerance) for name in preset_names() for loaded in [preset(name)]]
+        asked = self.query(named[0][1], most_segments)
+        return tuple(
+            (title, evolve(asked, toolkit=vise, tolerance=asked.tolerance if self.tolerance else tolerance))
+            for title, vise, tolerance in named
+        )
 
 
 def sentence_of(error: dict[str, Any]) -> str:

@@ -13,7 +13,6 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from workhold.model.result import FixtureTable, Result
 from workhold.web.answers import explanation_answer, rows_answer
-from workhold.web.asked import plain
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
 from workhold.web.selection import Selection, angle_range
@@ -71,8 +70,8 @@ async def begin(request: Request, form: JobForm | ExploreForm) -> JSONResponse:
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)
-    asked = await at_desk(request, "check_job", (form, state.limits.segments))
-    job = state.jobs.submit(form.model_dump(), asked, address, isinstance(form, ExploreForm))
+    queries = await at_desk(request, "check_job", (form, state.limits.segments))
+    job = state.jobs.submit(form.model_dump(), queries, address, isinstance(form, ExploreForm))
     url = f"/api/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
 
@@ -169,7 +168,7 @@ async def fixtures(
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is told even then.
-        selection.indices(EMPTY, job.asked[0].vise)
+        selection.indices(EMPTY, job.queries[0][1].toolkit)
         return {"total": 0, "revision": revision, "rows": []}
     indices = await asyncio.to_thread(job.chosen, selection)
     page = indices[offset : offset + limit]
@@ -194,7 +193,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
     """The ten with the least load reaction, in N."""
     job = found_job(request, name)
     result, revision = result_of_job(job), job.revision
-    best = await at_desk(request, "resist", (plain(result), form))
+    best = await at_desk(request, "resist", (result, form))
     rows = [{"rank": rank, "load_reaction": reaction} for rank, reaction in best]
     return {"revision": revision, "best": rows}
 

@@ -22,11 +22,10 @@ from workhold.errors import InputError
 from workhold.model.explanation import Explanation
 from workhold.model.result import Result
 from workhold.web.answers import proof_answer
-from workhold.web.asked import Asked
 from workhold.web.limits import Limits
 from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
 from workhold.web.selection import Selection
-from workhold.web.tasks import Found
+from workhold.web.tasks import Found, NamedQuery
 
 __all__ = ["OVER", "Job", "Jobs", "TooManyError"]
 
@@ -50,14 +49,14 @@ class Job:
     ----------
     name : a random token.
     request : what was asked for, as it came.
-    asked : the search, or the searches of a comparison.
+    queries : the query, or those of a comparison and what their vises are called.
     address : who asked.
     compares : whether it is a comparison of vises.
     """
 
     name: str
     request: Mapping[str, Any]
-    asked: tuple[Asked, ...]
+    queries: tuple[NamedQuery, ...]
     address: str
     compares: bool
     state: str = "queued"
@@ -114,7 +113,7 @@ class Job:
             "counts": None if listed is None else dict(listed.found),
             "distinct": None if listed is None else dict(listed.distinct),
             "listed": 0 if result is None else len(result),
-            "ranking": None if result is None else list(result.ranking),
+            "ranking": None if result is None else list(result.query.ranking),
             "complete": complete,
             "notes": list(self.notes),
             "proof": None if listed is None or listed.proof is None else proof_answer(listed.proof),
@@ -172,7 +171,7 @@ class Jobs:
             raise TooManyError(f"{running} of your searches are not over yet: wait for one of them, or cancel one.")
         self.pool.refuse_more(address)
 
-    def submit(self, request: Mapping[str, Any], asked: tuple[Asked, ...], address: str, compares: bool) -> Job:
+    def submit(self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, compares: bool) -> Job:
         """Begin a job.
 
         Raises
@@ -181,7 +180,7 @@ class Jobs:
             See :meth:`refuse_more`.
         """
         self.refuse_more(address)
-        job = Job(token_urlsafe(NAME_BYTES), request, asked, address, compares)
+        job = Job(token_urlsafe(NAME_BYTES), request, queries, address, compares)
         self.by_name[job.name] = job
         job.runner = asyncio.create_task(self.run(job))
         self.make_room()
@@ -195,7 +194,7 @@ class Jobs:
 
     async def run(self, job: Job) -> None:
         """See a job through."""
-        payload: Any = job.asked if job.compares else (job.asked[0], self.limits.fixtures)
+        payload: Any = job.queries if job.compares else (job.queries[0][1], self.limits.fixtures)
         name = "explore" if job.compares else "search"
         job.task = Task(
             name,
@@ -210,7 +209,7 @@ class Jobs:
             outcome = await self.pool.run(job.task)
             if isinstance(outcome, Found):
                 self.keep(job, outcome)
-            elif len(job.table) < len(job.asked) and not job.task.stop.is_set():
+            elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
                 job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the vises was not tried.",)
             job.state = "cancelled" if job.task.stop.is_set() else "done"
         except StoppedError:
@@ -236,7 +235,7 @@ class Jobs:
                 f"The search was stopped after {self.limits.seconds:g} s, the longest this server allows: this is a part of "
                 "the fixtures only.",
             )
-        job.result = evolve(result, workpiece=job.asked[0].workpiece, notes=tuple(notes))
+        job.result = evolve(result, query=job.queries[0][1], notes=tuple(notes))
         job.notes = tuple(notes)
         job.found = sum(result.found.values())
         job.fraction = 1.0 if result.complete else job.fraction
@@ -251,7 +250,7 @@ class Jobs:
                 if job.fraction >= LISTING and not job.compares:
                     job.state = "listing"
             case ("preview", Result() as result):
-                job.result = evolve(result, workpiece=job.asked[0].workpiece)
+                job.result = evolve(result, query=job.queries[0][1])
                 job.revision += 1
                 job.orders.clear()
             case ("row", row):
@@ -268,7 +267,7 @@ class Jobs:
             When it could not be; it may be asked again.
         """
         if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
-            task = Task("explanation", job.asked[0], self.limits.seconds, job.address)
+            task = Task("explanation", job.queries[0][1], self.limits.seconds, job.address)
             job.explaining = asyncio.create_task(self.pool.run(task))
         return await asyncio.shield(job.explaining)
 

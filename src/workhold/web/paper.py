@@ -13,7 +13,6 @@ from attrs import evolve, frozen
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
-from workhold.web.asked import plain
 from workhold.web.worker import Order
 
 __all__ = ["KINDS", "PaperOrder", "has_step", "make_paper"]
@@ -59,9 +58,9 @@ class PaperOrder:
     @classmethod
     def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
         """An order that carries no more of a result than is needed."""
-        small = plain(result)
+        small = result
         if not kind.startswith("sheet"):
-            small = evolve(small, table=result.table.take(slice(rank - 1, rank)))
+            small = evolve(result, table=result.table.take(slice(rank - 1, rank)))
         return cls(kind, small, rank, len(result), *options)
 
     @property
@@ -125,7 +124,9 @@ def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
 def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as STEP."""
     if not has_step():
-        raise InputError("this server writes no STEP files: take the DXF, or install workhold with the extra step.")
+        from workhold.files.step.library import REQUIREMENT
+
+        raise InputError(f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it.")
     from workhold.files.step.setup import setup_step
 
     result = order.result

@@ -23,7 +23,8 @@ from typing import Any
 from attrs import define, field
 
 from workhold.errors import InputError, WorkholdError
-from workhold.web.worker import CANCEL, worker_main
+from workhold.web.tasks import work
+from workhold.web.worker import CANCEL
 
 __all__ = ["BusyError", "FailedError", "Pool", "StoppedError", "Task"]
 
@@ -103,7 +104,7 @@ class Worker:
         """Start a process; a thread of the server hears what it says."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
-        process = context.Process(target=worker_main, args=(theirs, kind, memory_bytes), daemon=True)
+        process = context.Process(target=work, args=(theirs, kind, memory_bytes), daemon=True)
         with deaf_to_interrupts():
             process.start()
         theirs.close()

@@ -6,7 +6,9 @@ Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import partial
+from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -16,18 +18,21 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.model.explanation import Explanation
+from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.web.asked import Asked, plain, plain_part
 from workhold.web.paper import make_paper
-from workhold.web.worker import Order
+from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.vise import Vise
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
-__all__ = ["TASKS", "Found", "Upload", "warm_up"]
+__all__ = ["TASKS", "Found", "NamedQuery", "Upload", "warm_up", "work"]
+
+# What a toolkit is called, and the query for it.
+NamedQuery = tuple[str, Query]
 
 # Seconds between reports of progress.
 PAUSE = 0.1
@@ -79,11 +84,11 @@ def warm_up(kind: str) -> None:
     import workhold.web.forms  # noqa: F401
 
 
-def search(payload: tuple[Asked, int], order: Order) -> Found:
+def search(payload: tuple[Query, int], order: Order) -> Found:
     """Search; reports are ("progress", fraction, found) and ("preview", result)."""
-    from workhold.search.design import design
+    from workhold.search.design import answer
 
-    asked, most = payload
+    query, most = payload
     last = 0.0
 
     def progress(fraction: float, found: int) -> None:
@@ -93,81 +98,53 @@ def search(payload: tuple[Asked, int], order: Order) -> Found:
             last = now
             order.report(("progress", fraction, found))
 
-    result = design(
-        asked.workpiece,
-        asked.vise,
-        types=asked.types,
-        contact_margin=asked.contact_margin,
-        restrictions=asked.restrictions,
-        rank_by=asked.ranking,
-        tolerance=asked.tolerance,
-        loads=asked.loads,
+    result = answer(
+        query,
         progress=progress,
         cancel=order.cancel,
-        preview=lambda result: order.report(("preview", plain(result))),
+        preview=lambda result: order.report(("preview", result)),
     )
     left_out = max(len(result) - most, 0)
     if left_out:
         result = evolve(result, table=result.table.take(slice(0, most)))
-    return Found(plain(result), left_out)
+    return Found(result, left_out)
 
 
-def explore(payload: tuple[Asked, ...], order: Order) -> None:
-    """Search in one vise after the other; reports are ("row", row) and ("progress", fraction, found)."""
-    from attrs import asdict
-
-    from workhold.files.result.writer import vise_entry
+def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
+    """Answer one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
+    from workhold.files.result.writer import toolkit_fields
     from workhold.search.exploring import explore
 
     total = 0
-    for number, asked in enumerate(payload):
-        rows = explore(
-            asked.workpiece,
-            [(asked.title, asdict(asked.vise, recurse=False))],
-            cancel=order.cancel,
-            types=asked.types,
-            contact_margin=asked.contact_margin,
-            restrictions=asked.restrictions,
-            tolerance=asked.tolerance,
-            loads=asked.loads,
-        )
-        for row in rows:
-            total += row.fixtures
-            order.report(
-                (
-                    "row",
-                    {
-                        "title": row.name,
-                        "vise": vise_entry(asked.vise),
-                        "counts": dict(row.found),
-                        "best": dict(row.best),
-                        "note": row.reason,
-                    },
-                )
-            )
-            order.report(("progress", (number + 1) / len(payload), total))
+    for number, (row, (_, query)) in enumerate(zip(explore(payload, order.cancel), payload, strict=False), 1):
+        total += row.fixtures
+        entry = {
+            "title": row.name,
+            "vise": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
+            "counts": dict(row.found),
+            "best": dict(row.best),
+            "note": row.reason,
+        }
+        order.report(("row", entry))
+        order.report(("progress", number / len(payload), total))
 
 
-def explanation(asked: Asked, order: Order) -> Explanation:
+def explanation(query: Query, order: Order) -> Explanation:
     """Why there is no fixture."""
-    from workhold.contact.problem import Problem
     from workhold.search.explaining import explain
 
-    problem = Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
-    return explain(problem, asked.types)
+    return explain(query)
 
 
-def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple[Asked, ...]:
-    """The searches of a request, after everything that can be known to be wrong with them is asked for."""
+def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple[NamedQuery, ...]:
+    """The queries of a request, after everything that can be known to be wrong with them is asked for."""
     from workhold.contact.problem import Problem
 
     form, most_segments = payload
-    searches = form.asked(most_segments)
-    if len(searches) == 1:
-        asked = searches[0]
-        Problem.of(asked.workpiece, asked.vise, asked.contact_margin, asked.restrictions)
-    clean = plain_part(searches[0].workpiece)
-    return tuple(evolve(asked, workpiece=clean) for asked in searches)
+    queries = form.queries(most_segments)
+    if len(queries) == 1:
+        Problem.of(queries[0][1])
+    return queries
 
 
 def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
@@ -232,12 +209,12 @@ def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, f
 
     result, form = payload
     asked = [load.load() for load in form.loads]
-    reaction = quality_of(result.table, result.workpiece, result.vise, result.tolerance, asked)[:, LOAD_REACTION]
+    reaction = quality_of(result.table, result.workpiece, result.vise, result.query.tolerance, asked)[:, LOAD_REACTION]
     order_of = np.argsort(reaction, kind="stable")[:MOST_RESISTING]
     return [(int(index) + 1, float(reaction[index])) for index in order_of if np.isfinite(reaction[index])]
 
 
-TASKS: dict[str, Callable[[Any, Order], Any]] = {
+TASKS: Tasks = {
     "search": search,
     "explore": explore,
     "explanation": explanation,
@@ -249,3 +226,8 @@ TASKS: dict[str, Callable[[Any, Order], Any]] = {
     "resist": resist,
     "paper": make_paper,
 }
+
+
+def work(connection: Connection, kind: str, memory_bytes: int) -> None:
+    """The main function of a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
+    worker_main(connection, memory_bytes, TASKS, partial(warm_up, kind))

@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -21,7 +21,7 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.apart import limit_memory, limit_processor
 
-__all__ = ["CANCEL", "Order", "worker_main"]
+__all__ = ["CANCEL", "Order", "Tasks", "worker_main"]
 
 # The name of a message that asks a task to stop.
 CANCEL = "cancel"
@@ -45,7 +45,10 @@ class Order:
     seconds: float
 
 
-def worker_main(connection: Connection, kind: str, memory_bytes: int) -> None:
+Tasks = Mapping[str, Callable[[Any, Order], Any]]
+
+
+def worker_main(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]) -> None:
     """Work until the pipe ends; the process's main function.
 
     Parameters
@@ -53,17 +56,16 @@ def worker_main(connection: Connection, kind: str, memory_bytes: int) -> None:
     connection : messages in are (number, name of the task, seconds, payload); out are ("ready", 0, None), and for a task
         ("report", number, value) any number of times, then one of ("done", number, value),
         ("refused", number, sentence) and ("failed", number, sentence).
-    kind : of worker, see :func:`workhold.web.tasks.warm_up`.
     memory_bytes : the most address space the process may take.
+    tasks : what it can do, by name.
+    warm_up : called first, within the limits.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     limit_memory(memory_bytes)
     orders: SimpleQueue[tuple[int, str, float, Any, Event]] = SimpleQueue()
     Thread(target=listen, args=(connection, orders), daemon=True).start()
-    from workhold.web.tasks import TASKS, warm_up
-
-    warm_up(kind)
+    warm_up()
     connection.send(("ready", 0, None))
     while True:
         number, name, seconds, payload, cancel = orders.get()
@@ -74,7 +76,7 @@ def worker_main(connection: Connection, kind: str, memory_bytes: int) -> None:
             connection.send(("report", number, value))
 
         try:
-            answer = ("done", number, TASKS[name](payload, Order(report, cancel, seconds)))
+            answer = ("done", number, tasks[name](payload, Order(report, cancel, seconds)))
         except InputError as error:
             answer = ("refused", number, str(error))
         except MemoryError:

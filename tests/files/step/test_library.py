@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,11 +12,18 @@ import pytest
 from fakes import fake_result
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
+from workhold.files.step.library import REQUIREMENT
 from workhold.files.step.reader import read_step
 from workhold.files.step.setup import write_setup_step
 
 STEP = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"
-NO_EXTRA = "the extra 'step', which is not installed: pip install 'workhold[step]'."
+NO_EXTRA = f"a library that is not installed: pip install '{REQUIREMENT}'."
+PROJECT = Path(__file__).parents[3] / "pyproject.toml"
+
+
+def test_the_advice_names_what_the_extra_asks_for() -> None:
+    """And not this project, whose name on an index may be somebody else's."""
+    assert tomllib.loads(PROJECT.read_text())["project"]["optional-dependencies"]["step"] == [REQUIREMENT]
 
 
 class Blocked:

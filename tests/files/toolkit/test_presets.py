@@ -161,7 +161,7 @@ BAD = [
     ({"title": "3"}, "title is not what it should be: write text in quotes"),
     ({"peg_radius": "11"}, "pegs of radius 11 overlap"),
     ({"colums": "3"}, '"colums" is no entry of a vise: did you mean columns?'),
-    ({"weight": "3"}, '"weight" is no entry of a vise: the entries are unit, pitch'),
+    ({"weight": "3"}, '"weight" is no entry of a vise: the entries are unit, kind, pitch'),
     ({"blocked": '["B3"]'}, "'B3' names no hole"),
     ({"blocked": '["L-C1"]'}, "hole L-C1 is blocked, but each jaw has only 2 columns"),
     ({"blocked": "[3]"}, "blocked is not what it should be"),

@@ -17,7 +17,7 @@ from stress_parts import bracket_with_fillet, disc, lug, ring, two_bumps
 
 from curve_examples import sampled
 from strategies import random_outline, seeds
-from workhold import Vise, Workpiece
+from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
@@ -81,7 +81,7 @@ FARTHEST, VALUES, MEETING, RIGHT_FACE, CLOSES = range(5)
 
 def prepared(part: Workpiece, vise: Vise) -> ToolkitSearch:
     """A search with its table of curves."""
-    return ToolkitSearch.of(Problem.of(part, vise))
+    return ToolkitSearch.of(Problem.of(Query(part, vise)))
 
 
 def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np.ndarray:

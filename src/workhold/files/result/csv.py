@@ -44,9 +44,9 @@ def result_csv_text(result: Result) -> Iterator[str]:
     pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
     yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
     letters = cache(column_letters)
-    arrangements = [(one.name, result.vise.carrier_names(one)) for one in result.vise.arrangements]
+    arrangements = [(one.name, result.toolkit.carrier_names(one)) for one in result.toolkit.arrangements]
     number = 0
-    for kinds, rows in fixture_rows(result.table, result.vise):
+    for kinds, rows in fixture_rows(result.table, result.toolkit):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1

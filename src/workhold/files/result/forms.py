@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
-from workhold.model.holes import holes_named
+from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import ANY_DIRECTION, Load
 from workhold.model.proof import Proof, Undecided
+from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
 
-__all__ = ["Head", "ProofPart", "vise_of"]
+__all__ = ["Head", "ProofPart"]
 
 
 class Part(BaseModel):
@@ -44,28 +46,11 @@ class VisePart(Part):
     body_radius: float | None = None
     blocked: list[str] = []
 
-    def vise(self) -> Vise:
-        """The vise.
 
-        Raises
-        ------
-        InputError
-            When there is no such vise.
-        """
-        return vise_of(self.model_dump())
+class ToolkitPart(VisePart):
+    """The keys of a toolkit that is no vise: its kind, and for now those of the vise."""
 
-
-def vise_of(values: dict[str, Any]) -> Vise:
-    """The vise of the values of a file or a request, whose blocked holes are names.
-
-    Raises
-    ------
-    InputError
-        When there is no such vise.
-    """
-    return Vise(
-        **values | {"pitch": tuple(values["pitch"]), "blocked": [holes_named(name) for name in values["blocked"]]}
-    )
+    kind: str
 
 
 class RestrictionsPart(Part):
@@ -159,9 +144,10 @@ class Head(Part):
 
     format: Literal["workhold-result/1"]
     workpiece: WorkpiecePart
-    vise: VisePart
+    vise: VisePart | None = None
+    toolkit: ToolkitPart | None = None
     counts: Counts
-    contact_margin: float = Field(default=0.0, ge=0)
+    contact_margin: float = 0.0
     found: Counts | None = None
     distinct: Counts | None = None
     complete: bool = True
@@ -169,21 +155,40 @@ class Head(Part):
     statistics: dict[str, int] = {}
     proof: ProofPart | None = None
     restrictions: RestrictionsPart = RestrictionsPart()
-    ranking: list[str] = ["closure_margin"]
+    ranking: list[str] | None = None
     tolerance: TolerancePart | None = None
     loads: list[LoadPart] = []
 
-    def model_parts(self) -> dict[str, Any]:
-        """The keyword arguments of a result that describe what was asked for.
+    def asked_toolkit(self) -> Toolkit:
+        """The toolkit.
 
         Raises
         ------
         InputError
-            When one of them cannot be.
+            When there is no such toolkit, none at all, or two.
         """
-        return {
-            "restrictions": self.restrictions.restrictions(),
-            "ranking": tuple(self.ranking),
-            "tolerance": Tolerance() if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
-            "loads": tuple(part.load() for part in self.loads),
-        }
+        if self.vise is not None and self.toolkit is not None:
+            raise InputError("it has the keys vise and toolkit, of which only one can be.")
+        if self.vise is not None:
+            return toolkit_of(USUAL, self.vise.model_dump())
+        if self.toolkit is None:
+            raise InputError("it is not complete: the key vise is missing.")
+        return toolkit_of(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
+
+    def query(self) -> Query:
+        """What was asked.
+
+        Raises
+        ------
+        InputError
+            When a part of it cannot be.
+        """
+        return Query(
+            Workpiece.from_loops(self.workpiece.name, self.workpiece.loops),
+            self.asked_toolkit(),
+            contact_margin=self.contact_margin,
+            restrictions=self.restrictions.restrictions(),
+            ranking=["closure_margin"] if self.ranking is None else self.ranking,
+            tolerance=None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
+            loads=(part.load() for part in self.loads),
+        )

@@ -20,14 +20,11 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.forms import Head, ProofPart
 from workhold.files.text import json_value
-from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
-from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
-from workhold.model.workpiece import Workpiece
 
 __all__ = ["read_result"]
 
@@ -76,25 +73,19 @@ def read_result(path: str | Path) -> Result:
         raise InputError(f"{path} is not a result file: its brackets are nested too deeply.") from error
     head = checked_head(data, path)
     try:
-        workpiece = Workpiece.from_loops(head.workpiece.name, head.workpiece.loops)
-        vise, asked = head.vise.vise(), head.model_parts()
-        refuse_other_types(head, vise)
+        query = head.query()
+        refuse_other_types(head, query.toolkit)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    table = checked_table(columns, workpiece, vise, path)
-    table = measured(table, workpiece, vise, asked["tolerance"], asked["loads"])
     result = Result(
-        workpiece=workpiece,
-        vise=vise,
-        table=table,
+        query,
+        measured(checked_table(columns, query, path), query),
         found=head.found or head.counts,
         distinct=head.distinct or head.counts,
         complete=head.complete,
-        contact_margin=head.contact_margin,
         notes=tuple(head.notes),
         statistics=head.statistics,
-        proof=None if head.proof is None else checked_proof(head.proof, workpiece, vise, path),
-        **asked,
+        proof=None if head.proof is None else checked_proof(head.proof, query, path),
     )
     for name, listed in result.counts.items():
         if head.counts[name] != listed:
@@ -198,7 +189,7 @@ def checked_head(data: Any, path: Path) -> Head:
         raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
 
 
-def checked_proof(part: ProofPart, workpiece: Workpiece, toolkit: Toolkit, path: Path) -> Proof:
+def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
     """The account of the search.
 
     Raises
@@ -211,8 +202,8 @@ def checked_proof(part: ProofPart, workpiece: Workpiece, toolkit: Toolkit, path:
         raise InputError(
             f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
         )
-    faces = {face.number for face in workpiece.faces}
-    types = [one.name for one in toolkit.arrangements]
+    faces = {face.number for face in query.workpiece.faces}
+    types = [one.name for one in query.toolkit.arrangements]
     for number, item in enumerate(part.undecided, 1):
         if item.type not in types:
             raise InputError(f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}.")
@@ -284,7 +275,7 @@ def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
     return out
 
 
-def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path) -> FixtureTable:
+def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     """The table of the fixtures, pegs in the order of their arrangements.
 
     Raises
@@ -292,7 +283,8 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
     InputError
         Naming the first fixture that contradicts the vise, the workpiece or itself.
     """
-    arrangements, carriers = ([one.name for one in several] for several in (vise.arrangements, vise.carriers))
+    toolkit = query.toolkit
+    arrangements, carriers = ([one.name for one in several] for several in (toolkit.arrangements, toolkit.carriers))
     arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
     order = np.argsort(jaw, axis=1, kind="stable")
     jaw = np.take_along_axis(jaw, order, axis=1)
@@ -309,13 +301,16 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
 
     refuse(arrangement < 0, f"cannot be used: its type is not {' or '.join(arrangements)}")
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
-    refuse(jaw != vise.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
-    refuse(column >= vise.columns, f"has a peg in a column beyond the vise's {vise.columns}")
-    if vise.rows is not None:
-        refuse(row >= vise.rows, f"has a peg in a row beyond the vise's {vise.rows}")
-    faces = [face.number for face in workpiece.faces]
+    refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
+    for number, carrier in enumerate(toolkit.carriers):
+        beyond = (jaw == number) & (column >= carrier.columns)
+        refuse(beyond, f"has a peg in a column beyond the {carrier.columns} of the {carrier.name} jaw")
+        if carrier.rows is not None:
+            beyond = (jaw == number) & (row >= carrier.rows)
+            refuse(beyond, f"has a peg in a row beyond the {carrier.rows} of the {carrier.name} jaw")
+    faces = [face.number for face in query.workpiece.faces]
     refuse(~np.isin(face, faces), "has a peg on a segment that does not name a face of the workpiece")
-    hole_x, hole_y = vise.places(arrangement, column, row, separation)
+    hole_x, hole_y = toolkit.places(arrangement, column, row, separation)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
     refuse(force <= 0, "has a peg whose force is not positive")
@@ -333,18 +328,20 @@ def checked_table(columns: Columns, workpiece: Workpiece, vise: Vise, path: Path
     )
 
 
-def measured(
-    table: FixtureTable, workpiece: Workpiece, vise: Vise, tolerance: Tolerance, loads: tuple[Load, ...]
-) -> FixtureTable:
+def measured(table: FixtureTable, query: Query) -> FixtureTable:
     """The table with the figures of quality that the file does not give."""
     wanted = np.isnan(table.quality)
-    if not loads:
+    if not query.loads:
         wanted[:, LOAD_REACTION] = False
     if not wanted.any():
         return table
+    from workhold.model.vise import Vise
     from workhold.statics.quality import quality_of
 
-    figures = quality_of(table, workpiece, vise, tolerance, loads)
+    vise = query.toolkit
+    assert isinstance(vise, Vise)
+
+    figures = quality_of(table, query.workpiece, vise, query.tolerance, query.loads)
     return evolve(table, quality=np.where(wanted, figures, table.quality))
 
 

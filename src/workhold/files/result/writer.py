@@ -17,15 +17,17 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+from attrs import asdict
 from numpy.typing import NDArray
 
 from workhold.files.atomic import text_file
+from workhold.model.holes import Holes
+from workhold.model.kinds import USUAL
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
 from workhold.model.result import FixtureTable, Result
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
 
 __all__ = [
     "FORMAT",
@@ -34,7 +36,7 @@ __all__ = [
     "load_entry",
     "proof_entry",
     "result_text",
-    "vise_entry",
+    "toolkit_fields",
     "write_result",
     "write_result_to",
 ]
@@ -77,7 +79,7 @@ def result_text(result: Result) -> Iterator[str]:
     """The text of a result file, piece by piece."""
     lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
     yield "{" + "".join(lines) + '"fixtures": ['
-    yield from fixture_lines(result.table, result.vise)
+    yield from fixture_lines(result.table, result.toolkit)
     yield "\n]}\n"
 
 
@@ -93,23 +95,24 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
 
 def head(result: Result) -> dict[str, Any]:
     """Everything in the file but the fixtures, at full precision."""
+    query = result.query
     return {
         "format": FORMAT,
         "workpiece": {
-            "name": result.workpiece.name,
+            "name": query.workpiece.name,
             "units": "mm",
-            "loops": [(loop + 0.0).tolist() for loop in result.workpiece.loops],
+            "loops": [(loop + 0.0).tolist() for loop in query.workpiece.loops],
         },
-        "vise": vise_entry(result.vise),
-        "contact_margin": float(result.contact_margin),
+        **toolkit_entry(query.toolkit),
+        "contact_margin": float(query.contact_margin),
         "restrictions": {
-            "avoid": [int(face) for face in result.restrictions.avoid],
-            "zones": [(zone.loop + 0.0).tolist() for zone in result.restrictions.zones],
-            "angles": [[float(low), float(high)] for low, high in result.restrictions.angles],
+            "avoid": [int(face) for face in query.restrictions.avoid],
+            "zones": [(zone.loop + 0.0).tolist() for zone in query.restrictions.zones],
+            "angles": [[float(low), float(high)] for low, high in query.restrictions.angles],
         },
-        "ranking": list(result.ranking),
-        "tolerance": {"peg": result.tolerance.peg, "face": result.tolerance.face},
-        "loads": [load_entry(load) for load in result.loads],
+        "ranking": list(query.ranking),
+        "tolerance": {"peg": query.tolerance.peg, "face": query.tolerance.face},
+        "loads": [load_entry(load) for load in query.loads],
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
@@ -119,19 +122,24 @@ def head(result: Result) -> dict[str, Any]:
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
 
 
-def vise_entry(vise: Vise) -> dict[str, Any]:
-    """A vise as it is written: lengths in mm."""
-    return {
-        "pitch": list(vise.pitch),
-        "columns": int(vise.columns),
-        "rows": None if vise.rows is None else int(vise.rows),
-        "peg_radius": vise.peg_radius,
-        "min_gap": vise.min_gap,
-        "max_opening": None if vise.max_opening is None else float(vise.max_opening),
-        "row_offset": vise.row_offset,
-        "body_radius": vise.body_radius,
-        "blocked": [holes.name for holes in vise.blocked],
-    }
+def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
+    """The key of a toolkit in a file, and what it holds: of the vise its fields, of others their kind and fields."""
+    if toolkit.kind == USUAL:
+        return {"vise": toolkit_fields(toolkit)}
+    return {"toolkit": {"kind": toolkit.kind, **toolkit_fields(toolkit)}}
+
+
+def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
+    """The fields of a toolkit as they are written: lengths in mm, holes by name; how many holes there are comes first."""
+    fields = {name: written(value) for name, value in asdict(toolkit, recurse=False).items()}  # type: ignore[arg-type]
+    return {name: fields.pop(name) for name in ("pitch", "columns", "rows")} | fields
+
+
+def written(value: Any) -> Any:
+    """A value of a field as it is written."""
+    if isinstance(value, tuple):
+        return [written(one) for one in value]
+    return value.name if isinstance(value, Holes) else value
 
 
 def load_entry(load: Load) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """Open CASCADE (OCCT), the library that reads and writes STEP files: loaded only when one is read or written.
 
-It comes with the extra ``workhold[step]`` as the package ``OCP`` (cadquery-ocp-novtk), which links to the system's
-libGL and libX11.
+It is the package ``OCP`` of the distribution that the extra ``step`` asks for, which links to the system's libGL and libX11.
 """
 
 from __future__ import annotations
@@ -10,7 +9,10 @@ import re
 
 from workhold.errors import InputError
 
-__all__ = ["load_step_library"]
+__all__ = ["REQUIREMENT", "load_step_library"]
+
+# What the extra asks for; nobody else's distribution can be had by its name.
+REQUIREMENT = "cadquery-ocp-novtk>=8"
 
 # Debian's packages of the shared libraries that the wheel expects from the system.
 SYSTEM_PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6"}
@@ -34,11 +36,11 @@ def load_step_library() -> None:
 def remedy(error: ImportError) -> str:
     """What to install, told from why the import failed."""
     if isinstance(error, ModuleNotFoundError):
-        return "STEP files need the extra 'step', which is not installed: pip install 'workhold[step]'."
+        return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))
     if missing:
         name = missing[1]
         package = SYSTEM_PACKAGES.get(name, " ".join(SYSTEM_PACKAGES.values()))
         return f"STEP files need the system library {name}, which is missing: apt install {package}."
     why = " ".join(str(error).split())[:160].rstrip(".")
-    return f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall 'workhold[step]'."
+    return f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall '{REQUIREMENT}'."

@@ -21,6 +21,7 @@ class ViseForm(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid")
 
     unit: str
+    kind: str | None = None
     pitch: FiniteFloat | Pair
     columns: int
     peg_radius: FiniteFloat

@@ -20,6 +20,7 @@ from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
 from workhold.model.dowel import Limits, peg_error, refuse_limits
 from workhold.model.holes import holes_named
+from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.tolerance import Tolerance
 from workhold.model.units import Unit, unit_named
 from workhold.model.vise import Vise
@@ -60,7 +61,8 @@ class LoadedVise:
     title : what it is, in a line; empty where the file gives none.
     source : where the figures are from; empty where the file does not say.
     unit : in which the file gives its lengths.
-    fields : keyword arguments for :class:`workhold.model.vise.Vise`, in mm; those not in the file are left out.
+    kind : of toolkit, see ``model.kinds``.
+    fields : keyword arguments of its class, in mm; those not in the file are left out.
     tolerance : of its pegs and of the faces they touch.
     fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.
     """
@@ -69,6 +71,7 @@ class LoadedVise:
     title: str
     source: str
     unit: Unit
+    kind: str
     fields: dict[str, Any]
     tolerance: Tolerance
     fit: Fit | None
@@ -76,7 +79,7 @@ class LoadedVise:
     @property
     def vise(self) -> Vise:
         """The vise with nothing changed."""
-        return Vise(**self.fields)
+        return toolkit_of(self.kind, self.fields)
 
 
 def read_vise_file(path: Path) -> LoadedVise:
@@ -117,13 +120,15 @@ def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
         fields["rows"] = entries["rows"]
     if "blocked" in entries:
         fields["blocked"] = tuple(holes_named(hole) for hole in entries["blocked"])
-    Vise(**fields)
+    kind = entries.get("kind", USUAL)
+    toolkit_of(kind, fields)
     fit = fit_of(entries, unit, fields["peg_radius"])
     return LoadedVise(
         name=name,
         title=entries.get("title", ""),
         source=entries.get("source", ""),
         unit=unit,
+        kind=kind,
         fields=fields,
         tolerance=tolerance_of(entries, unit, fit, fields["peg_radius"]),
         fit=fit,

@@ -1,0 +1,123 @@
+"""A query is one value: it refuses what cannot be asked, equals its like, and goes from one process to another."""
+
+from __future__ import annotations
+
+import pickle
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+from workhold import InputError, Query, Vise, Workpiece, answer, design
+from workhold.model.load import Load
+from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
+from workhold.model.tolerance import Tolerance
+from workhold.model.vise import OpeningVise
+
+
+def part(corner: float = 9.0) -> Workpiece:
+    """Part of no symmetry with an arc, small enough to be searched at once."""
+    return Workpiece.from_loops("part", [[[0, 0, 0], [41, 0, 0.3], [44, 20, 0], [corner, 37, 0]]])
+
+
+def full(**changes: Any) -> Query:
+    """A query in which everything is asked."""
+    fields: dict[str, Any] = {
+        "workpiece": part(),
+        "toolkit": Vise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B"]),
+        "arrangements": ["II"],
+        "contact_margin": 0.25,
+        "restrictions": Restrictions(
+            [3], [circle_zone(1, 2, 3), polygon_zone([(0, 0), (4, 0), (0, 5)])], [[-10, 40.5]]
+        ),
+        "ranking": ["load-reaction", "closure margin"],
+        "tolerance": Tolerance(0.02, 0.0),
+        "loads": [Load([(1, 2), (3, 4)], force=5, directions=(10, 30), moment=-7, name="drill")],
+        "best": 12,
+    }
+    return Query(**fields | changes)
+
+
+OTHERS: list[dict[str, Any]] = [
+    {"workpiece": part(9.5)},
+    {"toolkit": OpeningVise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B"])},
+    {"toolkit": Vise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B1"])},
+    {"arrangements": None},
+    {"contact_margin": 0.0},
+    {"restrictions": Restrictions([3], [circle_zone(1, 2, 3.5)], [[-10, 40.5]])},
+    {"restrictions": None},
+    {"ranking": None},
+    {"tolerance": None},
+    {"loads": [Load(moment=1.0)]},
+    {"best": None},
+]
+
+
+def test_equal_queries_are_equal() -> None:
+    """Made twice of the same words they are one, and of one hash; any other word makes another."""
+    assert full() == full() and hash(full()) == hash(full())
+    for change in OTHERS:
+        assert full(**change) != full(), change
+
+
+@pytest.mark.parametrize("change", [{}, *OTHERS])
+def test_a_query_survives_pickling(change: dict[str, Any]) -> None:
+    """It comes back equal; its arrays cannot be written to, and what was worked out of the part stays behind."""
+    query = full(**change)
+    assert query.workpiece.faces
+    again = pickle.loads(pickle.dumps(query))
+    assert again == query
+    assert "faces" not in vars(again.workpiece)
+    for loop in (*again.workpiece.loops, *(zone.loop for zone in again.restrictions.zones)):
+        assert not loop.flags.writeable
+
+
+def test_a_result_survives_pickling() -> None:
+    """Every number of every fixture, and what was asked."""
+    result = design(part(), Vise(pitch=10, columns=1, peg_radius=2), loads=[Load(moment=1.0)])
+    again = pickle.loads(pickle.dumps(result))
+    assert len(result) > 0 and list(again) == list(result)
+    for name in ("query", "found", "distinct", "complete", "notes", "statistics", "proof", "counts"):
+        assert getattr(again, name) == getattr(result, name)
+    assert not again.table.theta.flags.writeable
+    assert np.array_equal(again.table.null_vector, result.table.null_vector)
+
+
+def test_a_query_is_answered_in_another_process() -> None:
+    """A process started anew gives the answer that this one gives."""
+    query = full(restrictions=None, arrangements=None)
+    with get_context("spawn").Pool(1) as pool:
+        there = pool.apply(answer, [query])
+    here = answer(query)
+    assert len(here) > 0 and list(there) == list(here) and there.query == here.query == query
+
+
+def test_one_word_is_not_taken_for_its_letters() -> None:
+    """Of types and of figures, by Query and by design."""
+    query = full(arrangements="II", ranking="wrench-radius")
+    assert query.arrangements == ("II",) and query.ranking == ("wrench_radius",)
+    assert set(design(part(), Vise(pitch=10, columns=1, peg_radius=2), types="II").query.arrangements) == {"II"}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"arrangements": ["III"]}, "type III is unknown: choose I or II"),
+        ({"arrangements": []}, "no type to seek"),
+        ({"contact_margin": -1.0}, "contact margin -1.0 is not a length"),
+        ({"contact_margin": "1"}, "contact margin 1 is not a length"),
+        ({"best": 0}, "best 0 is not a positive whole number"),
+        ({"best": 1.5}, "best 1.5 is not a positive whole number"),
+        ({"ranking": ["load-reaction"], "loads": []}, "there is no load to rank by"),
+        ({"ranking": ["beauty"]}, "'beauty' is no figure to rank by"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(change: dict[str, Any], words: str) -> None:
+    """In one sentence that names no command-line flag."""
+    with pytest.raises(InputError, match=words) as caught:
+        full(**change)
+    assert "--" not in str(caught.value)
+    with pytest.raises(InputError, match=words):
+        evolve(full(), **change)
