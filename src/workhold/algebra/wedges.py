@@ -21,6 +21,8 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.errors import InputError
+from workhold.limits import MOST_PEG_PAIRS
 from workhold.model.vise import Vise
 
 __all__ = ["SECTORS", "PegPairs", "Pieces", "facing", "lattice_steps", "peg_pairs", "pieces_of", "sector_of"]
@@ -91,10 +93,11 @@ def lattice_steps(vise: Vise, longest: float) -> list[tuple[int, int]]:
     most_rows = int(longest / vise.pitch[1])
     if vise.rows is not None:
         most_rows = min(most_rows, vise.rows - 1)
+    most_columns = min(vise.columns - 1, int(longest / vise.pitch[0]))
     steps = [
         (column, row)
         for row in range(most_rows + 1)
-        for column in range(1 - vise.columns, vise.columns)
+        for column in range(-most_columns, most_columns + 1)
         if row > 0 or column > 0
     ]
     return [s for s in steps if hypot(s[0] * vise.pitch[0], s[1] * vise.pitch[1]) <= longest]
@@ -176,10 +179,16 @@ def peg_pairs(rows: Array, vise: Vise, diameter: float) -> PegPairs:
     ----------
     rows : (F, 8) contact features about the centre of the part.
     diameter : largest distance in mm between two peg centres.
+
+    Raises
+    ------
+    InputError
+        When there are too many.
     """
     pieces = [pieces_of(row, diameter * PIECE) for row in rows]
     most = max(len(p.middle) for p in pieces)
-    whole, tails, lows, highs = [], [], [], []
+    whole: list[tuple[int, int, int, int]] = []
+    tails, lows, highs = [], [], []
     for column, row in lattice_steps(vise, diameter + SLACK):
         step = complex(column * vise.pitch[0], row * vise.pitch[1])
         for a, one in enumerate(pieces):
@@ -187,6 +196,11 @@ def peg_pairs(rows: Array, vise: Vise, diameter: float) -> PegPairs:
                 found = wedge_sectors(one, two, abs(step), float(np.angle(step)))
                 if found is None:
                     continue
+                if len(whole) == MOST_PEG_PAIRS:
+                    raise InputError(
+                        f"two pegs fit the part in more than {MOST_PEG_PAIRS:,} ways, too many for the paper's algebra: use "
+                        "a larger pitch, or the other engine."
+                    )
                 low, high = tail_bounds(one, found)
                 whole.append((a, b, column, row))
                 tails.append(np.pad(found, ((0, most - len(found)), (0, 0))))

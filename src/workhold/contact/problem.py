@@ -14,6 +14,7 @@ from workhold.contact.frame import Frame
 from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.given import Limits, Setting
+from workhold.limits import refuse_many_steps
 from workhold.model.diameter import outline_diameter
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
@@ -53,6 +54,10 @@ class Problem:
     outline: NDArray[np.float64]
     diameter: float
 
+    def __attrs_post_init__(self) -> None:
+        for carrier in self.vise.carriers:
+            refuse_many_steps(carrier.pitch, carrier.columns, carrier.rows, self.diameter, len(self.rows))
+
     @classmethod
     def of(cls, query: Query) -> Problem:
         """Make a query ready.
@@ -60,7 +65,8 @@ class Problem:
         Raises
         ------
         InputError
-            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
+            When the peg fits nowhere along the part, a face to avoid does not exist, nothing is left to touch, or two pegs
+            can stand in too many ways (``limits``).
         """
         workpiece, restrictions = query.workpiece, query.restrictions
         standing, moving = carriers = Frame.of(query.toolkit).carriers

@@ -22,9 +22,9 @@ from workhold.errors import InputError
 from workhold.geometry.intersect import bounding_box, common_points
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
 from workhold.kernels.base.distance import turns_around
+from workhold.limits import MOST_LENGTH, MOST_RADIUS
 
 __all__ = [
-    "LARGEST",
     "LoopShape",
     "checked_vertices",
     "encloses",
@@ -38,9 +38,6 @@ __all__ = [
 ]
 
 Place = Callable[[int], str]
-
-# Coordinates beyond this, in mm, leave no digits for a fixture; the unit is wrong, or the file.
-LARGEST = 1e9
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -83,12 +80,13 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
 
     Returns
     -------
-    (N, 3) array, read-only.
+    (N, 3) array, read-only; an arc that is nowhere farther from its chord than points that touch is a line in it.
 
     Raises
     ------
     InputError
-        For a wrong shape, NaN or infinite numbers, zero-length segments, or too few segments to enclose anything.
+        For a wrong shape, NaN, infinite and far too large numbers, zero-length segments, or too few segments to enclose
+        anything.
     """
     try:
         array = np.array(vertices, dtype=np.float64)
@@ -101,12 +99,16 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if bad.size:
         raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it.")
-    bad = np.flatnonzero((np.abs(array) > LARGEST).any(axis=1))
-    if bad.size:
-        raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge beyond 1e9: check the numbers and the unit.")
     if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
         raise InputError(
             f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."
+        )
+    far = np.flatnonzero((np.abs(array[:, :2]) > MOST_LENGTH).any(axis=1))
+    if far.size:
+        k = int(far[0])
+        raise InputError(
+            f"{place(k)} has a coordinate beyond {MOST_LENGTH:g} mm, at ({array[k, 0]:g}, {array[k, 1]:g}): check the "
+            "numbers and the unit, and draw the part near the origin."
         )
     steps = np.hypot(*(np.roll(array[:, :2], -1, axis=0) - array[:, :2]).T)
     short = np.flatnonzero(steps < SHORTEST)
@@ -116,8 +118,30 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
             f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled vertex "
             "(a full circle is drawn as two halves)."
         )
+    refuse_out_of_reach(array, steps, place)
+    # The middle of an arc is so far from its chord; an arc as near to it as points that touch is no arc.
+    array[np.abs(array[:, 2]) * steps / 2.0 < TOUCHING, 2] = 0.0
     array.setflags(write=False)
     return array
+
+
+def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
+    """Refuse arcs of (N, 3) vertices with chords (N,) that reach too far, or whose radius is too large to reckon with.
+
+    Raises
+    ------
+    InputError
+        Naming the place of the first.
+    """
+    bulge = np.minimum(np.abs(array[:, 2]), 1e30)
+    curved = bulge * steps / 2.0 >= TOUCHING
+    radius = np.where(curved, steps * (bulge + 1.0 / np.where(curved, bulge, 1.0)) / 4.0, 0.0)
+    for k in np.flatnonzero(radius > np.where(bulge > 1.0, MOST_LENGTH, MOST_RADIUS))[:1]:
+        most = MOST_LENGTH if bulge[k] > 1.0 else MOST_RADIUS
+        raise InputError(
+            f"{place(int(k))} is an arc of radius {radius[k]:.3g} mm (bulge {array[k, 2]:g}), beyond {most:g} mm: check "
+            "the bulge, or draw a line."
+        )
 
 
 def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:

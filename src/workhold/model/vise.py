@@ -10,6 +10,7 @@ from attrs import evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
+from workhold.limits import MOST_BLOCKED, MOST_HOLES, refuse_long
 from workhold.model.holes import Holes, holes_named
 from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
@@ -90,6 +91,7 @@ class Vise(Toolkit):
             object.__setattr__(self, "min_gap", self.pitch[0])
         if isnan(self.body_radius):
             object.__setattr__(self, "body_radius", self.peg_radius)
+        refuse_boundless(self)
         for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
@@ -157,6 +159,32 @@ class OpeningVise(Vise):
 
     kind: ClassVar[str] = "opening-vise"
     clamping: ClassVar[int] = -1
+
+
+def refuse_boundless(vise: Vise) -> None:
+    """Refuse lengths too large to reckon with, and more holes than can be looked through.
+
+    Raises
+    ------
+    InputError
+        Naming the value and the limit.
+    """
+    lengths = {"pitch": max(vise.pitch), "peg radius": vise.peg_radius, "body radius": vise.body_radius}
+    lengths |= {"min gap": vise.min_gap, "max opening": vise.max_opening or 0.0, "row offset": vise.row_offset}
+    for name, value in lengths.items():
+        if isfinite(value):
+            refuse_long(name, value)
+    holes = vise.columns * (vise.rows or 1)
+    if isfinite(holes) and holes > MOST_HOLES:
+        raise InputError(
+            f"a jaw of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer columns or rows, as "
+            "many as the part can reach."
+        )
+    if len(vise.blocked) > MOST_BLOCKED:
+        raise InputError(
+            f"{len(vise.blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block whole "
+            "columns, such as L-B."
+        )
 
 
 def refuse_blocked(vise: Vise) -> None:

@@ -14,6 +14,7 @@ from workhold.errors import InputError
 from workhold.geometry.face import Face, faces_of_loop
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.loop import (
+    TOUCHING,
     LoopShape,
     checked_vertices,
     encloses,
@@ -47,6 +48,7 @@ class Workpiece:
     name : what the user calls it.
     loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then the holes,
         clockwise.
+    remarks : what was changed of the loops given, one sentence each.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Workpiece:
 
     name: str
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of, repr=lambda loops: f"<{len(loops)} loops>")
+    remarks: tuple[str, ...] = field(default=(), eq=False)
 
     def __attrs_post_init__(self) -> None:
         for loop in self.loops:
@@ -93,11 +96,13 @@ class Workpiece:
             label = f" ({labels[loop][k]})" if labels else ""
             return f"{name}: loop {loop}, segment {k}{label}"
 
+        straightened = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
         for index, loop in enumerate(loops):
             place = partial(segment_place, index)
             vertices = checked_vertices(loop, f"{name}: loop {index}", place)
+            straightened += int((np.asarray(loop)[:, 2] != vertices[:, 2]).sum())
             shape = LoopShape.of(loop_segments(vertices))
             refuse_self_crossing(shape, place)
             refuse_no_area(shape, f"{name}: loop {index}")
@@ -110,7 +115,7 @@ class Workpiece:
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
         refuse_misplaced_holes(name, drawn)
-        return cls(name, tuple(used))
+        return cls(name, tuple(used), straightened_remark(straightened))
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
@@ -149,6 +154,12 @@ class Workpiece:
         """Centre of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def straightened_remark(count: int) -> tuple[str, ...]:
+    """What to say of arcs that were taken for lines."""
+    arcs = "1 arc that is nowhere" if count == 1 else f"{count} arcs that are nowhere"
+    return (f"{arcs} farther than {TOUCHING:g} mm from a line taken for {'one' if count == 1 else 'lines'}.",)[:count]
 
 
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:

@@ -51,7 +51,7 @@ def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
     Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never have.
     """
     pitch_x, pitch_y = carriers[0].pitch
-    most_columns = max(carrier.columns for carrier in carriers) - 1
+    most_columns = min(max(carrier.columns for carrier in carriers) - 1, int(longest / pitch_x))
     most_rows = int(longest / pitch_y)
     if all(carrier.rows is not None for carrier in carriers):
         most_rows = min(max(carrier.rows or 0 for carrier in carriers) - 1, most_rows)
@@ -80,23 +80,18 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
     Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a blocked hole.
     """
     rows = 1 if carrier.rows is None else carrier.rows
-    possible = np.zeros((2 * carrier.columns - 1, 2 * rows - 1), np.bool_)
     free = np.ones((carrier.columns, rows), np.bool_)
     for holes in carrier.blocked:
         if holes.row is None:
             free[holes.column] = False
         elif carrier.rows is not None:
             free[holes.column, holes.row] = False
-    places = np.argwhere(free)
-    for place in places:
-        between = places - place + (carrier.columns - 1, rows - 1)
-        possible[between[:, 0], between[:, 1]] = True
-    column_places = steps[:, 0] + carrier.columns - 1
-    row_places = steps[:, 1] + rows - 1 if carrier.rows is not None else np.zeros(len(steps), np.int64)
-    there = (
-        (column_places >= 0) & (column_places < len(possible)) & (row_places >= 0) & (row_places < possible.shape[1])
-    )
-    return there & possible[np.where(there, column_places, 0), np.where(there, row_places, 0)]
+    # So many pairs of free holes have a difference: the correlation of the free holes with themselves.
+    shape = 2 * carrier.columns, 2 * rows
+    pairs = np.fft.irfft2(np.abs(np.fft.rfft2(free, shape)) ** 2, shape)
+    column, row = steps[:, 0], steps[:, 1] * (carrier.rows is not None)
+    there = (np.abs(column) < carrier.columns) & (np.abs(row) < rows)
+    return np.asarray(there & (pairs[column % shape[0], row % shape[1]] > 0.5))
 
 
 def tables_of(problem: Problem, loose: Array) -> CurveTable:

@@ -19,7 +19,7 @@ from attrs import frozen
 
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
-from workhold.geometry.loop import LARGEST
+from workhold.limits import MOST_LENGTH
 from workhold.geometry.segment import Point
 
 __all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
@@ -159,7 +159,7 @@ def refuse_unusable(chain: Chain) -> None:
         label = chain.labels[min(k, len(chain.labels) - 1)]
         if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
             raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
-        if max(abs(x), abs(y)) > LARGEST:
+        if max(abs(x), abs(y)) > MOST_LENGTH:
             raise InputError(
                 f"{label} lies more than 1000 km from the origin: check the drawing's unit, or move it to the origin."
             )

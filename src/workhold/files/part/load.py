@@ -266,7 +266,7 @@ def from_json(
     workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False)
     part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
     chosen_part(part, part_number)
-    return Loaded(workpiece, (), part)
+    return Loaded(workpiece, workpiece.remarks, part)
 
 
 def from_step(
@@ -316,7 +316,7 @@ def from_drawing(path: Path, drawing: Drawing, part_number: int | None, toleranc
         refuse_loops_across(part, [other for other in parts if other is not part])
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
-    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *stray_remarks(joined.strays))
+    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *workpiece.remarks, *stray_remarks(joined.strays))
     return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.geometry.loop import LARGEST
+from workhold.limits import MOST_LENGTH
 
 __all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "read_solids", "solid_remarks"]
 
@@ -153,7 +153,7 @@ def measured(shape: Any) -> Solid:
     BRepGProp.VolumeProperties_s(shape, properties)
     volume = abs(properties.Mass())
     low, high = bounding_box(shape)
-    if not all(isfinite(value) and abs(value) <= LARGEST for value in (*low, *high)):
+    if not all(isfinite(value) and abs(value) <= MOST_LENGTH for value in (*low, *high)):
         raise InputError("a solid lies more than 1000 km from the origin or has no end: check the part's unit.")
     if not (isfinite(volume) and volume > 1e-9):
         raise InputError("a solid has no volume: repair it in the CAD program and export it again.")

@@ -1,0 +1,76 @@
+"""How large what is given may be: a number of a few bytes must not ask for all memory, or for arithmetic that says nothing.
+
+The same hold for files, Python and the page. What a file or a request may be in bytes, segments and seconds is said where
+these are read (``files.part.load``, ``web.limits``).
+"""
+
+from __future__ import annotations
+
+from workhold.errors import InputError
+
+__all__ = [
+    "MOST_BLOCKED",
+    "MOST_CHORDS",
+    "MOST_HOLES",
+    "MOST_LENGTH",
+    "MOST_PEG_PAIRS",
+    "MOST_RADIUS",
+    "MOST_STEPS",
+    "refuse_long",
+    "refuse_many_steps",
+]
+
+# Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's edge.
+MOST_LENGTH = 1e6
+# Radii in mm: the centre of such an arc, and so each point reckoned from it, is known to no better than points that touch.
+MOST_RADIUS = 1e9
+# Holes of one carrier, rows without end counted once: what is drawn, and looked through for pairs of free holes.
+MOST_HOLES = 25_000
+# Holes and columns that are blocked, which every fixture is held against.
+MOST_BLOCKED = 20_000
+# Lattice steps between two pegs of one carrier, and these times the features: from each feature a step reaches some ten, and
+# each chord takes some 200 bytes. The largest search measured (100 faces, 40 columns) has 650,000, and takes under 1 GiB.
+MOST_STEPS = 250_000
+MOST_CHORDS = 5_000_000
+# Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some 6,000 bytes.
+MOST_PEG_PAIRS = 500_000
+
+
+def refuse_long(name: str, value: float) -> None:
+    """Refuse a length in mm that is too large.
+
+    Raises
+    ------
+    InputError
+        With its name, value and limit.
+    """
+    if abs(value) > MOST_LENGTH:
+        raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
+
+
+def refuse_many_steps(
+    pitch: tuple[float, float], columns: int, rows: int | None, diameter: float, features: int
+) -> None:
+    """Refuse a lattice on which two pegs can be placed in too many ways.
+
+    Parameters
+    ----------
+    pitch, columns, rows : of the lattice, see ``model.toolkit.Carrier``.
+    diameter : largest distance in mm between two pegs that touch the part.
+    features : how many features they can touch.
+
+    Raises
+    ------
+    InputError
+        With the number and its limit.
+    """
+    across = min(columns - 1.0, diameter / pitch[0] // 1)
+    along = diameter / pitch[1] // 1 if rows is None else min(rows - 1.0, diameter / pitch[1] // 1)
+    steps = (2.0 * across + 1.0) * (2.0 * along + 1.0)
+    most = min(MOST_STEPS, MOST_CHORDS // features)
+    if steps > most:
+        raise InputError(
+            f"two pegs {diameter:.6g} mm apart or less, on a pitch of {pitch[0]:g} x {pitch[1]:g} mm, can stand in "
+            f"{steps:.3g} ways, more than the {most:,} this program takes for a part of {features} faces: use a larger "
+            "pitch, or fewer columns and rows."
+        )

@@ -1,0 +1,127 @@
+"""A few bytes never ask for all memory: what is too large is refused in one sentence, the same for every way in.
+
+Inputs are tried in a process of its own with little address space and a time limit, so that a failure stays there.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from workhold import Vise, Workpiece, load
+from workhold.errors import InputError
+from workhold.files.part.load import read_workpiece
+
+Loops = list[list[list[float]]]
+PLATE: list[list[float]] = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
+HOLE: list[list[float]] = [[20, 20, 1], [30, 20, 1]]
+VISE: dict[str, object] = {"pitch": 10, "columns": 2, "peg_radius": 2}
+ADDRESS_SPACE = 3 << 30
+SECONDS = 600
+
+
+def with_bulge(bulge: float) -> Loops:
+    """The plate with a hole, one edge of it bent."""
+    return [[[0, 0, bulge], *PLATE[1:]], HOLE]
+
+
+def moved(by: float) -> Loops:
+    """The plate, moved."""
+    return [[[x + by, y, b] for x, y, b in PLATE]]
+
+
+def times(factor: float) -> Loops:
+    """The plate, scaled."""
+    return [[[x * factor, y * factor, b] for x, y, b in PLATE]]
+
+
+TRYING = """
+import json, sys
+from workhold import Workpiece, design
+from workhold.contact.problem import Problem
+from workhold.errors import InputError
+from workhold.files.toolkit.form import checked
+from workhold.files.toolkit.reader import described_vise
+
+for searched, loops, vise in json.load(sys.stdin):
+    try:
+        part, held = Workpiece.from_loops("part", loops), described_vise("vise", checked({"unit": "mm", **vise})).vise
+        print(len(design(part, held)) if searched else Problem.of(part, held))
+    except InputError as error:
+        print(error)
+"""
+REFUSED: list[tuple[Loops, dict[str, object], str]] = [
+    (with_bulge(1e9), {}, "loop 0, segment 0 is an arc of radius 1.5e+10 mm (bulge 1e+09)"),
+    (with_bulge(1e300), {}, "is an arc of radius"),
+    (with_bulge(1e-8), {}, "is an arc of radius 1.5e+09 mm"),
+    (moved(1e9), {}, "has a coordinate beyond 1e+06 mm"),
+    (times(1e300), {}, "has a coordinate beyond 1e+06 mm"),
+    (times(1e-300), {}, "has zero length"),
+    ([PLATE], {"pitch": 1e-9, "peg_radius": 0}, "more than the 250,000"),
+    ([PLATE], {"pitch": 1e-300, "peg_radius": 0}, "more than the 250,000"),
+    ([PLATE], {"pitch": 1e300}, "pitch 1e+300 is beyond 1e+06 mm"),
+    ([PLATE], {"columns": 10**12}, "a jaw of 1,000,000,000,000 holes is beyond the 25,000"),
+    ([PLATE], {"columns": 10, "rows": 10**9}, "a jaw of 10,000,000,000 holes is beyond"),
+    ([PLATE], {"row_offset": 1e300}, "row offset 1e+300 is beyond"),
+    ([PLATE], {"blocked": ["L-A1"] * 20_001}, "20,001 blocked holes are more than the 20,000"),
+]
+
+
+def tried_apart(cases: Sequence[tuple[bool, Loops, dict[str, object]]]) -> list[str]:
+    """What a process says of parts and vises that it makes ready for a search, or searches too."""
+    done = subprocess.run(
+        [sys.executable, "-c", TRYING],
+        input=json.dumps([[searched, loops, VISE | vise] for searched, loops, vise in cases]),
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE)),
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+def test_refused_in_one_sentence() -> None:
+    said = tried_apart([(False, loops, vise) for loops, vise, _ in REFUSED])
+    for (_, _, words), sentence in zip(REFUSED, said, strict=True):
+        assert words in sentence
+
+
+def test_what_lies_within_the_limits_is_designed() -> None:
+    vises: list[dict[str, object]] = [{"columns": 25_000}, {"rows": 12_500}, {"max_opening": 1e6}]
+    said = tried_apart([(True, [PLATE, HOLE], vise) for vise in vises])
+    assert [int(count) > 0 for count in said] == [True] * len(vises)
+
+
+@pytest.mark.parametrize("bulge", [1e-9, 1e-12, -1e-12, 1e-300])
+def test_an_arc_that_is_nowhere_off_its_chord_is_a_line(tmp_path: Path, bulge: float) -> None:
+    """Its middle is bulge times half the chord away from it, here 3e-8 mm at most."""
+    straight, bent = Workpiece.from_loops("plate", with_bulge(0.0)), Workpiece.from_loops("plate", with_bulge(bulge))
+    assert [loop.tolist() for loop in bent.loops] == [loop.tolist() for loop in straight.loops]
+    assert straight.remarks == ()
+    assert bent.remarks == ("1 arc that is nowhere farther than 1e-07 mm from a line taken for one.",)
+    path = tmp_path / "plate.json"
+    path.write_text(json.dumps({"units": "mm", "loops": with_bulge(bulge)}))
+    assert read_workpiece(path).remarks == bent.remarks
+    assert load(path).remarks == bent.remarks
+
+
+def test_an_arc_with_a_sagitta_stays_one() -> None:
+    part = Workpiece.from_loops("plate", with_bulge(1e-6))
+    assert part.loops[0][0, 2] == 1e-6
+    assert part.remarks == ()
+
+
+def test_the_algebra_tells_when_it_is_asked_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    from workhold.algebra import design_by_algebra, wedges
+
+    monkeypatch.setattr(wedges, "MOST_PEG_PAIRS", 10)
+    with pytest.raises(InputError, match="more than 10 ways"):
+        design_by_algebra(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2))
