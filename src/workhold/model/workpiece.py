@@ -10,11 +10,11 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import ArrayLike, NDArray
 
+from workhold.conventions import TOUCHING
 from workhold.errors import InputError
 from workhold.geometry.face import Face, faces_of_loop
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.loop import (
-    TOUCHING,
     LoopShape,
     checked_vertices,
     encloses,

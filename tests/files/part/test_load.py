@@ -99,7 +99,7 @@ def test_a_result_file_gives_its_workpiece(tmp_path: Path) -> None:
         ('{"units": "mm", "loops": [[[0, 0, NaN]]]}', "NaN is not a number"),
         ('{"units": "mm", "loops": [[[0, -Infinity, 0]]]}', "-Infinity is not a number"),
         ('{"units": "mm", "loops": [[[0, 1e999, 0], [1, 0, 0], [0, 1, 0]]]}', "vertex 0 has a y that is not a finite"),
-        ('{"units": "mm", "loops": [[[0, 1e200, 0], [1, 0, 0], [0, 1, 0]]]}', "beyond 1e+06 mm"),
+        ('{"units": "mm", "loops": [[[0, 1e200, 0], [1, 0, 0], [0, 1, 0]]]}', "has a coordinate beyond 1e.06 mm"),
         ({**PLATE, "loops": [[[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0]]]}, "loop 0, segment 1 has zero length"),
         ({**PLATE, "loops": [[[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]]]}, "cross or touch at"),
     ],
