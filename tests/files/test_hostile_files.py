@@ -7,6 +7,7 @@ import random
 import tomllib
 from collections.abc import Callable
 from itertools import pairwise
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -38,9 +39,12 @@ def check_part(path: Path) -> None:
 
 
 def edges_of(loop: list[list[float]]) -> list[tuple[float, ...]]:
-    """Every edge with its bulge, from its smaller end to its larger one."""
-    pairs = zip(loop, loop[1:] + loop[:1], strict=True)
-    return sorted((*a[:2], *b[:2], a[2] + 0.0) if a[:2] < b[:2] else (*b[:2], *a[:2], 0.0 - a[2]) for a, b in pairs)
+    """Every edge with its bulge, from its smaller end to its larger one; an arc nowhere 1e-7 mm off its chord is a line."""
+    edges = []
+    for (x, y, bulge), (to_x, to_y, _) in zip(loop, loop[1:] + loop[:1], strict=True):
+        bulge *= abs(bulge) * hypot(to_x - x, to_y - y) / 2.0 >= 1e-7
+        edges.append((x, y, to_x, to_y, bulge + 0.0) if (x, y) < (to_x, to_y) else (to_x, to_y, x, y, 0.0 - bulge))
+    return sorted(edges)
 
 
 def check_result(path: Path) -> None:

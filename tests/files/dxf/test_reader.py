@@ -290,7 +290,7 @@ def test_absurd_numbers_are_refused(tmp_path: Path) -> None:
     for value in (float("nan"), float("inf")):
         with pytest.raises(InputError, match=r"LINE \w+ "):
             read_dxf(tmp_path, lambda s, v=value: s.add_line((0, 0), (v, 0)))
-    with pytest.raises(InputError, match="1000 km"):
+    with pytest.raises(InputError, match="1 km"):
         read_dxf(tmp_path, lambda s: s.add_line((0, 0), (1e12, 0)))
     with pytest.raises(InputError, match=r"CIRCLE \w+ has the radius -3"):
         read_dxf(tmp_path, lambda s: s.add_circle((0, 0), -3))

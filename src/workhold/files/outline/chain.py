@@ -19,8 +19,8 @@ from attrs import frozen
 
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
-from workhold.limits import MOST_LENGTH
 from workhold.geometry.segment import Point
+from workhold.limits import MOST_LENGTH
 
 __all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
 
@@ -161,7 +161,7 @@ def refuse_unusable(chain: Chain) -> None:
             raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
         if max(abs(x), abs(y)) > MOST_LENGTH:
             raise InputError(
-                f"{label} lies more than 1000 km from the origin: check the drawing's unit, or move it to the origin."
+                f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."
             )
 
 

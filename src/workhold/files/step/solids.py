@@ -154,7 +154,7 @@ def measured(shape: Any) -> Solid:
     volume = abs(properties.Mass())
     low, high = bounding_box(shape)
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for value in (*low, *high)):
-        raise InputError("a solid lies more than 1000 km from the origin or has no end: check the part's unit.")
+        raise InputError("a solid lies more than 1 km from the origin or has no end: check the part's unit.")
     if not (isfinite(volume) and volume > 1e-9):
         raise InputError("a solid has no volume: repair it in the CAD program and export it again.")
     return Solid(0, shape, volume, low, high)
