@@ -17,6 +17,7 @@ import pytest
 from workhold import Vise, Workpiece, load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
+from workhold.model.query import Query
 
 Loops = list[list[list[float]]]
 PLATE: list[list[float]] = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
@@ -46,13 +47,14 @@ import json, sys
 from workhold import Workpiece, design
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
+from workhold.model.query import Query
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.reader import described_vise
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
         part, held = Workpiece.from_loops("part", loops), described_vise("vise", checked({"unit": "mm", **vise})).vise
-        print(len(design(part, held)) if searched else Problem.of(part, held))
+        print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
     except InputError as error:
         print(error)
 """
@@ -120,8 +122,8 @@ def test_an_arc_with_a_sagitta_stays_one() -> None:
 
 
 def test_the_algebra_tells_when_it_is_asked_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
-    from workhold.algebra import design_by_algebra, wedges
+    from workhold.algebra import answer_by_algebra, wedges
 
     monkeypatch.setattr(wedges, "MOST_PEG_PAIRS", 10)
     with pytest.raises(InputError, match="more than 10 ways"):
-        design_by_algebra(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2))
+        answer_by_algebra(Query(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2)))

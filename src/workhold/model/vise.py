@@ -91,7 +91,6 @@ class Vise(Toolkit):
             object.__setattr__(self, "min_gap", self.pitch[0])
         if isnan(self.body_radius):
             object.__setattr__(self, "body_radius", self.peg_radius)
-        refuse_boundless(self)
         for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
@@ -121,6 +120,7 @@ class Vise(Toolkit):
                 f"body radius {self.body_radius:g} is not one of a peg of radius {self.peg_radius:g}: give that or more, "
                 "in mm."
             )
+        refuse_boundless(self)
         refuse_blocked(self)
 
     @property
@@ -172,10 +172,9 @@ def refuse_boundless(vise: Vise) -> None:
     lengths = {"pitch": max(vise.pitch), "peg radius": vise.peg_radius, "body radius": vise.body_radius}
     lengths |= {"min gap": vise.min_gap, "max opening": vise.max_opening or 0.0, "row offset": vise.row_offset}
     for name, value in lengths.items():
-        if isfinite(value):
-            refuse_long(name, value)
+        refuse_long(name, value)
     holes = vise.columns * (vise.rows or 1)
-    if isfinite(holes) and holes > MOST_HOLES:
+    if holes > MOST_HOLES:
         raise InputError(
             f"a jaw of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer columns or rows, as "
             "many as the part can reach."
