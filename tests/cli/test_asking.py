@@ -68,7 +68,7 @@ def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(run: Any, se
         (("--tolerance", "1,2,3"), "has 3 numbers"),
         (("--tolerance", "-1"), "tolerance -1.0 is not a length"),
         (("--load", "force=200"), "load"),
-        (("--loads", "none.toml"), "none.toml cannot be read"),
+        (("--loads", "none.toml"), "there is no file of that name"),
         (("--vise", "plate-21mm"), "plate-20mm"),
     ],
 )

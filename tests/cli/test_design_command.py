@@ -14,6 +14,8 @@ from workhold.cli import design_command
 from workhold.errors import InputError
 from workhold.files.result.reader import read_result
 
+# How an earlier output of the same name begins.
+OURS = '{"format": "workhold-result/1"}'
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 
 
@@ -175,7 +177,7 @@ def test_the_best_twelve_are_drawn(run: Any, searched: dict[str, Any], tmp_path:
 
 
 def test_pictures_of_an_earlier_design_do_not_linger(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
-    (tmp_path / "fixture-09.png").write_text("old")
+    (tmp_path / "fixture-09.png").write_bytes(b"tEXtSoftware\0workhold")
     (tmp_path / "fixture-99.png").write_text("not ours")
     (tmp_path / "notes.txt").write_text("not ours")
     searched["result"] = fake_result(1)
@@ -239,7 +241,7 @@ def test_bad_requests_are_refused_before_the_search(
     message: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("old.json").write_text("old")
+    Path("old.json").write_text(OURS)
     outcome = run("design", "widget", *VISE, "--out", "old.json", *arguments)
     assert outcome.exit_code == 2
     assert message in outcome.stderr
@@ -247,7 +249,7 @@ def test_bad_requests_are_refused_before_the_search(
     assert outcome.stderr.count("\n") == 1
     assert outcome.stdout == ""
     assert searched["asked"] is None
-    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("old.json", "old")]
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("old.json", OURS)]
 
 
 @pytest.mark.parametrize("content", [None, b"", b"\x00\xff" * 300, b"0\nSECTION\n", b'{"name": "x"}'])
@@ -278,10 +280,10 @@ def test_a_refusal_of_the_search_leaves_the_earlier_output(
         raise InputError("the peg fits nowhere.")
 
     monkeypatch.setattr(sys.modules["workhold.search.design"], "answer", answer)
-    (tmp_path / "r.json").write_text("old")
+    (tmp_path / "r.json").write_text(OURS)
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
     assert (outcome.exit_code, outcome.stderr) == (2, "workhold: error: the peg fits nowhere.\n")
-    assert (tmp_path / "r.json").read_text() == "old"
+    assert (tmp_path / "r.json").read_text() == OURS
 
 
 def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:

@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
+# How an earlier output of the same name begins.
+OURS = '{"format": "workhold-result/1"}'
 TESTS = Path(__file__).parents[1]
 
 # Runs the command line with a search that says it has begun and then behaves as the test needs.
@@ -73,7 +75,7 @@ def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
 
 
 def test_a_second_ctrl_c_ends_at_once_and_leaves_no_file(tmp_path: Path) -> None:
-    (tmp_path / "r.json").write_text("old")
+    (tmp_path / "r.json").write_text(OURS)
     process = start(STUBBORN, tmp_path, "--out", "r.json")
     wait_for_search(process)
     process.send_signal(signal.SIGINT)
@@ -86,7 +88,7 @@ def test_a_second_ctrl_c_ends_at_once_and_leaves_no_file(tmp_path: Path) -> None
     assert time.monotonic() - begun < 5
     assert process.returncode == 130
     assert "Traceback" not in err
-    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("r.json", "old")]
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("r.json", OURS)]
 
 
 def test_a_polite_kill_leaves_no_file(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
 from workhold.model.holes import Holes
+from workhold.model.query import Query
 from workhold.model.toolkit import Carrier, Travel
 
 PART = Workpiece.from_loops(
@@ -133,15 +134,15 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
     asked = {"pitch": 14, "columns": 1, "peg_radius": 3}
     alike, apart = (Uneven(**asked, moving_radius=radius) for radius in (3.0, 3.0 + 1e-12))
     one, other = design(PART, alike), design(PART, apart)
-    assert Problem.of(PART, alike).standing == Problem.of(PART, alike).moving
-    assert Problem.of(PART, apart).standing[1] == Problem.of(PART, apart).moving[0]
+    assert Problem.of(Query(PART, alike)).standing == Problem.of(Query(PART, alike)).moving
+    assert Problem.of(Query(PART, apart)).standing[1] == Problem.of(Query(PART, apart)).moving[0]
     assert len(one) == len(other) > 0
     for name in ("column", "row", "face"):
         assert np.array_equal(getattr(one.table, name), getattr(other.table, name))
     # Without the half turn each fixture of two and two pegs is another one with the jaws swapped.
     assert one.found["I"] == 2 * design(PART, Vise(**asked)).found["I"]
     thin = design(PART, Uneven(**asked, moving_radius=1.0))
-    problem = Problem.of(PART, thin.vise)
+    problem = Problem.of(thin.query)
     assert len(thin) > 0
     turn = np.exp(-1j * thin.table.theta)[:, None]
     place = (pegs_of(thin) - (thin.table.position @ (1, 1j))[:, None]) * turn - complex(*PART.center)

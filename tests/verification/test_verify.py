@@ -77,7 +77,8 @@ def test_a_margin_that_was_not_asked_for(loops: list[list[list[float]]] | None, 
     where features end because the peg comes to touch another face."""
     part = load("widget") if loops is None else Workpiece.from_loops("notched", loops)
     vise = Vise(pitch=8, columns=1, peg_radius=3)
-    outcome = verify(attrs.evolve(design(part, vise), contact_margin=wide))
+    result = design(part, vise)
+    outcome = verify(attrs.evolve(result, query=attrs.evolve(result.query, contact_margin=wide)))
     assert outcome.undecided == 0
     assert outcome.refuted > 0
     assert outcome.proven == len(design(part, vise, contact_margin=wide))

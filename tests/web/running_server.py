@@ -49,6 +49,11 @@ class RunningServer:
         """What the routes share."""
         return self.server.config.app.state.server  # type: ignore[union-attr]
 
+    def client_from(self, address: str) -> httpx.Client:
+        """A client with another address of this machine."""
+        transport = httpx.HTTPTransport(local_address=address)
+        return httpx.Client(base_url=self.client.base_url, transport=transport, timeout=PATIENCE)
+
     def submit(self, asked: dict[str, Any], path: str = "/api/jobs") -> str:
         """Begin a job; its address."""
         answer = self.client.post(path, json=asked)

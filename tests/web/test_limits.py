@@ -71,7 +71,7 @@ def arriving(server: RunningServer) -> int:
     app = server.server.config.app.middleware_stack  # type: ignore[union-attr]
     while not hasattr(app, "arriving"):
         app = app.app
-    return int(app.arriving)
+    return int(app.arriving.total())
 
 
 def test_too_many_searches_of_one_address_are_refused(small: RunningServer) -> None:
@@ -122,7 +122,7 @@ def strict() -> Iterator[RunningServer]:
 
 
 def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: RunningServer) -> None:
-    huge = {"pitch": [0.0001, 0.0001], "columns": 200, "peg_radius": 0.00001}
+    huge = {"pitch": [0.2, 0.2], "columns": 200, "peg_radius": 0.01}
     state = strict.outcome(strict.submit(request(vise=huge, workpiece={"name": "s", "loops": [SQUARE]})))
     assert state["state"] == "failed" and "memory" in state["error"]
     assert strict.outcome(strict.submit(request()))["state"] == "done"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import socket
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import httpx
 import pytest
@@ -20,8 +21,15 @@ from workhold.web.guard import Hosts
 from workhold.web.limits import Limits, usual_memory
 from workhold.web.pool import BusyError, Pool, Task
 
+T = TypeVar("T")
 OTHER = "127.0.0.2"
 FEW = {"client_uploads": 2, "uploads": 6, "connections": 40, "client_connections": 12, "body_seconds": 5.0}
+
+
+def alone(play: Coroutine[Any, Any, T]) -> T:
+    """What a coroutine returns; in a thread of its own, since the browser's tests keep a loop running in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, play).result()
 
 
 def order_of_turns(clients: list[str], size: int) -> list[str]:
@@ -42,7 +50,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
                 pool.free(running.pop(0))
         return order
 
-    return asyncio.run(play())
+    return alone(play())
 
 
 @given(st.lists(st.sampled_from("abc"), min_size=1, max_size=30), st.integers(1, 4))
@@ -73,7 +81,7 @@ def test_nobody_has_all_workers() -> None:
         pool.free(mine[0])
         assert (await pool.next_task()).client == "greedy"
 
-    asyncio.run(play())
+    alone(play())
 
 
 def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
@@ -88,7 +96,7 @@ def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
             pool.refuse_more("greedy")
         pool.refuse_more("other")
 
-    asyncio.run(play())
+    alone(play())
 
 
 @pytest.fixture(scope="module")
@@ -101,8 +109,7 @@ def shared() -> Iterator[RunningServer]:
 @pytest.fixture
 def other(shared: RunningServer) -> Iterator[httpx.Client]:
     """A client with another address."""
-    transport = httpx.HTTPTransport(local_address=OTHER)
-    with httpx.Client(base_url=shared.client.base_url, transport=transport, timeout=PATIENCE) as client:
+    with shared.client_from(OTHER) as client:
         yield client
 
 
@@ -209,7 +216,12 @@ def test_whoever_lets_others_in_is_told_what_that_means(monkeypatch: pytest.Monk
     import workhold.web.serve as serve
 
     asked: list[Any] = []
-    monkeypatch.setattr(serve, "run_server", lambda *arguments: asked.append(arguments))
+
+    def run_server(*arguments: Any) -> None:
+        asked.append(arguments)
+        arguments[6]("http://127.0.0.1:8000/")
+
+    monkeypatch.setattr(serve, "run_server", run_server)
     said = {}
     for arguments in ([], ["--host", "0.0.0.0"], ["--host", "0.0.0.0", "--ask-token"]):
         outcome = CliRunner().invoke(app, ["serve", *arguments])

@@ -31,19 +31,22 @@ def tell(pid: int, what: signal.Signals) -> None:
 
 
 def test_a_killed_worker_fails_its_search_only(pair: RunningServer) -> None:
-    first, second = pair.submit(LONG), pair.submit(LONG)
-    for url in (first, second):
-        pair.state_when(url, lambda state: state["state"] == "running")
-    tell(pids(pair)[0], signal.SIGKILL)
-    pair.wait_until(lambda: any(job.is_over for job in pair.state.jobs.by_name.values()))
-    states = [pair.client.get(url).json() for url in (first, second)]
-    (failed,) = [state for state in states if state["state"] == "failed"]
-    assert failed["error"].endswith(".")
-    (alive,) = [url for url, state in zip((first, second), states, strict=True) if state["state"] == "running"]
-    # A new worker takes the place of the dead one while the other still works.
-    assert pair.outcome(pair.submit(request()))["state"] == "done"
-    assert pair.client.get(alive).json()["state"] == "running"
-    pair.client.delete(alive)
+    # One client never has all workers.
+    with pair.client_from("127.0.0.2") as other:
+        clients = {client.post("/api/jobs", json=LONG).json()["url"]: client for client in (pair.client, other)}
+        for url in clients:
+            pair.state_when(url, lambda state: state["state"] == "running")
+        tell(pids(pair)[0], signal.SIGKILL)
+        pair.wait_until(lambda: any(job.is_over for job in pair.state.jobs.by_name.values()))
+        states = {url: pair.client.get(url).json() for url in clients}
+        (failed,) = [url for url, state in states.items() if state["state"] == "failed"]
+        assert states[failed]["error"].endswith(".")
+        (alive,) = [url for url, state in states.items() if state["state"] == "running"]
+        # A new worker takes the place of the dead one while the other still works.
+        again = clients[failed].post("/api/jobs", json=request()).json()["url"]
+        assert pair.outcome(again)["state"] == "done"
+        assert pair.client.get(alive).json()["state"] == "running"
+        pair.client.delete(alive)
 
 
 def test_a_worker_that_dies_in_its_sleep_is_replaced(pair: RunningServer) -> None:

@@ -83,11 +83,11 @@ def serve(
     from workhold.web.serve import is_for_others, run_server
 
     most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
-    if is_for_others(host) and not ask_token:
-        typer.echo(OPEN_TO_ALL, err=True)
 
     def listening(address: str) -> None:
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
+        if is_for_others(host) and not ask_token:
+            typer.echo(OPEN_TO_ALL, err=True)
         if open_:
             import webbrowser
 

@@ -114,10 +114,9 @@ def all_contacts(problem: Problem, threads: int | None) -> Contacts:
     c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
     rows = problem.rows[c.feature]
     normals = outward_normals(rows[..., :8], c.point)
-    # Null vectors come scaled to sum 1, all -1 where the wrenches do not span the space.
-    spans = c.null.sum(axis=1) > 0.0
-    null = c.null / np.abs(c.null).sum(axis=1, keepdims=True)
-    null *= np.where(null.min(axis=1) >= -null.max(axis=1), 1.0, -1.0)[:, None]
+    # All entries are -1 where the wrenches do not span the space.
+    spans = (c.null > -1.0).any(axis=1)
+    null = c.null * np.where(c.null.min(axis=1) >= -c.null.max(axis=1), 1.0, -1.0)[:, None]
     along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
     return Contacts(
         evolve(c, force=null),

@@ -19,14 +19,14 @@ from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
-    HIGH,
+    LARGEST_CROSS,
     LEAST_CUBE,
     PART_A,
     PART_B,
     PARTS,
     SPEED,
+    STRETCH_HIGH,
     STRETCH_LENGTH,
-    TURN,
     X_HIGH,
     X_LOW,
     Y_HIGH,
@@ -47,8 +47,8 @@ def stretches_of(a, b, curve) -> tuple[np.ndarray, np.ndarray]:
     while k < count:
         after = k + 1 + int(out[k, PARTS])
         lows[k : k + 2] = at
-        lows[k + 2 : after] = out[k + 1 : after - 1, HIGH]
-        at, k = out[k, HIGH], after
+        lows[k + 2 : after] = out[k + 1 : after - 1, STRETCH_HIGH]
+        at, k = out[k, STRETCH_HIGH], after
     return lows, out[:count]
 
 
@@ -75,7 +75,7 @@ def check_stretch(a, b, curve, low, row, random: Random) -> int:
     detail = (a.tolist(), b.tolist(), d, branch, low, row.tolist())
     checked = 0
     with exactly():
-        for alpha in places(random, float(low), float(row[HIGH])):
+        for alpha in places(random, float(low), float(row[STRETCH_HIGH])):
             chord, speed = exact_chord(a, b, d, arb(alpha), branch), exact_speed(a, b, d, arb(alpha), branch)
             if chord is None or speed is None or not chord.turn() ** 2 > 0:
                 continue
@@ -84,10 +84,10 @@ def check_stretch(a, b, curve, low, row, random: Random) -> int:
             if row[SPEED] < inf:
                 assert not exceeds(size, -1.0, row[SPEED]), ("speed", alpha, detail)
             # Near a coincidence it is P' itself that is enclosed.
-            regular = curve[COINCIDENCE] != NONE and row[TURN] == 1.0 and row[LEAST_CUBE] == 1.0
+            regular = curve[COINCIDENCE] != NONE and row[LARGEST_CROSS] == 1.0 and row[LEAST_CUBE] == 1.0
             turn = arb(1) if regular else chord.turn()
-            assert row[TURN] != 0.0 and bool(turn * row[TURN] > 0), ("sign", alpha, detail)
-            assert not exceeds(abs(turn), 0.0, abs(row[TURN])), ("turn", alpha, detail)
+            assert row[LARGEST_CROSS] != 0.0 and bool(turn * row[LARGEST_CROSS] > 0), ("sign", alpha, detail)
+            assert not exceeds(abs(turn), 0.0, abs(row[LARGEST_CROSS])), ("turn", alpha, detail)
             cube = turn**3
             assert not exceeds(abs(cube), row[LEAST_CUBE], inf), ("cube", alpha, detail)
             assert not exceeds(cube * speed[0], row[X_LOW], row[X_HIGH]), ("x", alpha, detail)
@@ -141,16 +141,16 @@ def test_stretches_follow_each_other_without_a_gap(seed):
         sign = 1.0 if turn_at(a, b, d, (curve[FROM] + curve[TO]) / 2, curve[BRANCH]) > 0.0 else -1.0
         told = np.empty(STRETCH_LENGTH)
         for low, row in zip(lows, rows, strict=True):
-            assert low < row[HIGH]
-            write_stretch(told, a, b, curve, low, row[HIGH], sign)
+            assert low < row[STRETCH_HIGH]
+            write_stretch(told, a, b, curve, low, row[STRETCH_HIGH], sign)
             told[PARTS] = row[PARTS]
             assert np.array_equal(told, row, equal_nan=True)
         k = 0
         while k < len(rows):
             parts = rows[k + 1 : k + 1 + int(rows[k, PARTS])]
             assert not parts[:, PARTS].any()
-            assert len(parts) == 0 or parts[-1, HIGH] == rows[k, HIGH]
-            at = rows[k, HIGH]
+            assert len(parts) == 0 or parts[-1, STRETCH_HIGH] == rows[k, STRETCH_HIGH]
+            at = rows[k, STRETCH_HIGH]
             k += len(parts) + 1
         assert at == curve[TO]
 
@@ -162,15 +162,15 @@ def test_stretches_tell_something(seed):
     a, b, d, ranges = random_ranges(random, ("line", "arc"), 1e-2)
     for curve in curves_of(a, b, d, ranges):
         lows, rows = stretches_of(a, b, curve)
-        inside = (lows >= curve[FROM] + 1e-2) & (rows[:, HIGH] <= curve[TO] - 1e-2)
+        inside = (lows >= curve[FROM] + 1e-2) & (rows[:, STRETCH_HIGH] <= curve[TO] - 1e-2)
         for low, row in zip(lows[inside], rows[inside], strict=True):
             with exactly():
                 speeds = [
-                    exact_speed(a, b, d, arb(float(low + part * (row[HIGH] - low))), curve[BRANCH])
+                    exact_speed(a, b, d, arb(float(low + part * (row[STRETCH_HIGH] - low))), curve[BRANCH])
                     for part in (0.0, 0.5, 1.0)
                 ]
                 most = max(float(dot(speed, speed).sqrt()) for speed in speeds if speed is not None)
-            assert row[SPEED] <= 100 * (most + 2 * d / (row[HIGH] - low))
+            assert row[SPEED] <= 100 * (most + 2 * d / (row[STRETCH_HIGH] - low))
 
 
 @given(seeds)
@@ -209,4 +209,4 @@ def test_the_speed_between_square_lines_is_known():
     curve = curve_row(wall, floor, 10.0, 1.0, 0.0, (0.2, pi / 2 - 0.2))
     for row in stretches_of(wall, floor, curve)[1]:
         assert 10.0 <= row[SPEED] < 15.0
-        assert abs(row[TURN]) == pytest.approx(1.0)
+        assert abs(row[LARGEST_CROSS]) == pytest.approx(1.0)

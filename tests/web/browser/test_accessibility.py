@@ -84,7 +84,7 @@ def test_the_page_asks_for_all_its_modules_at_once() -> None:
     """index.html preloads every module, so none waits for another, and holds nothing inline that the policy refuses."""
     html = (STATIC / "index.html").read_text(encoding="utf-8")
     modules = {entry.name for entry in STATIC.iterdir() if entry.name.endswith(".js")}
-    assert set(re.findall(r'modulepreload" href="/static/([\w.-]+)"', html)) == modules - {"main.js"}
+    assert set(re.findall(r'modulepreload" href="static/([\w.-]+)"', html)) == modules - {"main.js"}
     assert not re.search(r"\sstyle=|\son\w+=|<style|javascript:|<script(?![^>]*src=)", html)
     assert not re.search(r"https?://", html)
 

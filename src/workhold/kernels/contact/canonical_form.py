@@ -29,7 +29,8 @@ def contacts_of(
     rows : (F, 10) of the features.
     points : (N, 4, 2) receives the pegs' centres in mm.
     gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
-    nulls : (N, 4) receives the null vectors scaled to sum 1, all -1 where the wrenches do not span the space.
+    nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where the wrenches do
+        not span the space.
     forces : (N, 4) receives the forces per unit of clamping force.
     """
     length = setting.limits.wrench_length
@@ -39,8 +40,10 @@ def contacts_of(
         touch(records[n], rows, length, w, pairs[0])
         wrenches(records[n], rows, length, pairs, null)
         total = null[0] + null[1] + null[2] + null[3]
+        size = abs(null[0]) + abs(null[1]) + abs(null[2]) + abs(null[3])
+        sign = 1.0 if total >= 0.0 else -1.0
         for k in range(4):
-            null[k] = null[k] / total if abs(total) > LEAST_SPAN else -1.0
+            null[k] = sign * null[k] / size if size > LEAST_SPAN else -1.0
         gaps[n], push = held(w, pairs[0], pairs[1], null)
         push *= setting.limits.clamping
         for k in range(4):
