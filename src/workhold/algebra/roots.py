@@ -69,11 +69,11 @@ def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArr
     waves = np.exp(1j * CENTERS[None, :] * exponents[:, None])
     value = np.abs((values @ waves).real)
     slope = np.abs(((values * (1j * exponents)) @ waves).real) * HALF_SECTOR
-    bend = np.abs(((values * exponents**2) @ waves).real) * HALF_SECTOR**2 / 2.0
+    second = np.abs(((values * exponents**2) @ waves).real) * HALF_SECTOR**2 / 2.0
     curve = np.abs(values) @ (exponents**2).astype(np.float64) * HALF_SECTOR**2 / 2.0
     largest = np.abs(values).max(axis=1)
     possible = value <= slope + curve[:, None] + 1e-9 * largest[:, None]
-    crowded = value + slope + bend <= np.maximum(CROWDED * largest, NOISE * size)[:, None]
+    crowded = value + slope + second <= np.maximum(CROWDED * largest, NOISE * size)[:, None]
     return possible, possible & crowded
 
 
