@@ -1,4 +1,4 @@
-# make demo | test | check | bench | prove | clean -- the first use makes a Python environment in .venv
+# make demo | wheel | test | check | wheel-test | bench | prove | clean -- the first use makes a Python environment in .venv
 
 PYTHON ?= python3
 VENV := .venv
@@ -8,8 +8,12 @@ INSTALLED := $(VENV)/.installed
 EXTRAS ?= dev
 INSTALLED_DEV := $(VENV)/.installed-$(EXTRAS)
 INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt
+# The compiler comes in the versions of constraints.txt too.
+BUILD := PIP_CONSTRAINT=constraints.txt $(BIN)/python -m pip --disable-pip-version-check
+# What the installed program is made of.
+SOURCES := $(shell find src building -name '*.py' -o -path 'src/workhold/data/*' -type f -o -path 'src/workhold/web/static/*' -type f)
 
-.PHONY: demo test check bench prove clean
+.PHONY: demo wheel test check wheel-test bench prove clean
 
 # Designs for the example bracket, draws the best fixtures and writes the setup sheet of the best.
 demo: $(INSTALLED)
@@ -18,6 +22,13 @@ demo: $(INSTALLED)
 	$(BIN)/workhold sheet demo/bracket.json 1 -o demo/setup.pdf --jaw-force 3000
 	@echo "Look at demo/setup.pdf, demo/drawings/fixture-01.png and demo/drawings/thumbnails.png; all fixtures are in demo/bracket.json."
 	@echo "$(BIN)/workhold serve --open shows the same, and more, as a page in the browser."
+
+# A wheel with compiled kernels for machines of this kind, in dist/: it needs no compiler where it is installed, and starts at
+# once. Building it takes gcc or binutils, half a minute, and an environment with numba that is thrown away afterwards.
+wheel: | $(BIN)/python
+	@echo 'Compiling the kernels into a wheel ...'
+	@rm -rf build dist/workhold-*.whl
+	$(BUILD) wheel -q --no-deps -w dist .
 
 # Every test and every example of the documentation.
 test: $(INSTALLED_DEV)
@@ -31,12 +42,17 @@ check: $(INSTALLED_DEV)
 	$(BIN)/lint-imports
 	$(MAKE) test
 
+# The wheel in an environment without numba against kernels compiled on first use: the same files, byte for byte.
+wheel-test: $(INSTALLED_DEV)
+	$(BIN)/python -m pytest -m wheel
+
 # Every target of speed and memory with pass or short, and docs/benchmarks.md from the figures; BENCH=--quick tries a little.
 bench: $(INSTALLED)
+	$(INSTALL) numba
 	$(BIN)/python benchmarks/bench.py $(BENCH)
 
-# Thousands of planted fixtures, ten thousand random SVG drawings against resvg, the paper's Table 2, then both engines on the
-# complete sets, the paper's parts and random parts.
+# Thousands of planted fixtures, ten thousand random SVG drawings against resvg, signals at every stage, the paper's Table 2, then
+# both engines on the complete sets, the paper's parts and random parts.
 prove: $(INSTALLED_DEV)
 	$(BIN)/python -m pytest -n 2 -m prove
 	$(BIN)/python benchmarks/prove.py
@@ -50,9 +66,15 @@ $(BIN)/python:
 	$(PYTHON) -c 'import sys; sys.exit("workhold needs Python 3.11 or later") if sys.version_info < (3, 11) else None'
 	$(PYTHON) -m venv $(VENV)
 
-$(INSTALLED): pyproject.toml constraints.txt | $(BIN)/python
+# With compiled kernels where there is a linker; they start at once.
+$(INSTALLED): pyproject.toml constraints.txt $(SOURCES) | $(BIN)/python
 	@echo 'Installing workhold and what it needs into $(VENV) ...'
-	$(INSTALL) -e .
+	@if command -v cc >/dev/null || command -v ld >/dev/null; then \
+	    $(MAKE) --no-print-directory wheel && $(INSTALL) --force-reinstall --no-deps dist/workhold-*.whl && $(INSTALL) dist/workhold-*.whl; \
+	else \
+	    echo 'There is no linker (gcc or binutils) here, so kernels are compiled on first use, in half a minute.' && \
+	    $(INSTALL) -e '.[numba]'; \
+	fi
 	@touch $@
 
 $(INSTALLED_DEV): pyproject.toml constraints.txt | $(BIN)/python

@@ -12,6 +12,7 @@ import sys
 import algebra
 import floor
 import growth
+import many
 import memory
 import processes
 import pruning
@@ -38,6 +39,7 @@ def main() -> None:
         processes.run,
         lambda quick: algebra.run(quick, options.budget),
         memory.run,
+        many.run,
         pruning.run,
     ):
         sections.append(run(options.quick))

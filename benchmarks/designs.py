@@ -10,7 +10,19 @@ from attrs import evolve, frozen
 
 from report import measured
 
-__all__ = ["LARGE", "PEG_RADIUS", "ROWS", "Design", "PaperRow", "counted", "grown", "larger_rows", "timed"]
+__all__ = [
+    "LARGE",
+    "PEG_RADIUS",
+    "ROWS",
+    "Design",
+    "PaperRow",
+    "counted",
+    "grown",
+    "larger_rows",
+    "loaded",
+    "timed",
+    "warm",
+]
 
 PEG_RADIUS = 3.0
 # A design is run again while all runs together took less than this many seconds, but not more often than this.

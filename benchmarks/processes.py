@@ -1,7 +1,7 @@
 """Target 5: whole processes, as a person at a terminal waits for them.
 
-Each is run several times and judged by the median; the first run on a machine, compilation included, is run once, with an
-empty cache folder of its own.
+Each is run several times and judged by the median, with the kernels of the wheel where it is installed. The first run on a
+machine is the first with an empty cache folder; where kernels are compiled on first use, that is part of it.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from terminal import WORKHOLD, watch
 
 DESIGN = [*WORKHOLD, "design", "widget", "--pitch", "8", "--columns", "1", "--peg-radius", "3", "--out"]
 RUNS = 7
+FIRST_ANSWER = 1.0
 FIRST_RUN = 12.0
 WORD = "first run"
 
 COLUMNS = (
-    Column("process", 34, right=False),
+    Column("process", 42, right=False),
     Column("fastest s", 9),
     Column("median s", 8),
     Column("at most s", 9),
@@ -40,13 +41,13 @@ def process_seconds(command: list[str], runs: int) -> list[float]:
 
 
 def run(quick: bool) -> Section:
-    """Measure the four processes; a quick trial leaves out the first run on a machine."""
+    """Measure the processes; a quick trial leaves out first runs on a machine."""
     section = Section("processes", "Whole processes", COLUMNS).begin()
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "r.json")
         for name, command, limit in (
-            ("design widget, pitch 8, cache warm", [*DESIGN, out], 1.0),
-            ("workhold --help", [*WORKHOLD, "--help"], 0.25),
+            ("design widget, pitch 8, run before", [*DESIGN, out, "--force"], 0.35),
+            ("workhold --help", [*WORKHOLD, "--help"], 0.1),
             ("import workhold", [sys.executable, "-c", "import workhold"], 0.15),
         ):
             seconds = process_seconds(command, 3 if quick else RUNS)
@@ -55,16 +56,24 @@ def run(quick: bool) -> Section:
             section.target(5, f"{name} under {limit:g} s", f"{middle:.3f} s", middle < limit)
         if not quick:
             cache = str(Path(folder) / "cache")
-            first = watch([*DESIGN, out], WORKHOLD_CACHE_DIR=cache)
-            told = (
-                f"the user is told after {first.first_shown:.1f} s" if WORD in first.shown else "the user is not told"
-            )
-            section.row("the first run on a machine", f"{first.seconds:.1f}", f"{first.seconds:.1f}", f"{FIRST_RUN:g}")
+            first = watch([*DESIGN, out, "--force"], WORKHOLD_CACHE_DIR=cache)
+            name = "the first run on a machine, from the wheel"
+            if WORD in first.shown:
+                section.remark("The wheel is not installed here, so its first run is not measured.")
+            else:
+                section.row(name, f"{first.seconds:.2f}", f"{first.seconds:.2f}", f"{FIRST_ANSWER:g}")
+                met = first.seconds < FIRST_ANSWER and first.code == 0
+                section.target(5, f"{name} under {FIRST_ANSWER:g} s", f"{first.seconds:.2f} s", met)
+            compiling = watch([*DESIGN, out, "--force"], WORKHOLD_CACHE_DIR=cache, WORKHOLD_KERNELS="numba")
+            is_told = WORD in compiling.shown
+            told = f"the user is told after {compiling.first_shown:.1f} s" if is_told else "the user is not told"
+            name = "the first run, compiling on first use"
+            section.row(name, f"{compiling.seconds:.1f}", f"{compiling.seconds:.1f}", f"{FIRST_RUN:g}")
             section.target(
                 5,
-                f"the first run on a machine under {FIRST_RUN:g} s, with a word to the user",
-                f"{first.seconds:.1f} s, {told}",
-                first.seconds < FIRST_RUN and WORD in first.shown and first.code == 0,
+                f"{name} under {FIRST_RUN:g} s, with a word to the user",
+                f"{compiling.seconds:.1f} s, {told}",
+                compiling.seconds < FIRST_RUN and is_told and compiling.code == 0,
             )
     return section
 

@@ -50,7 +50,7 @@ class Target:
 
     Parameters
     ----------
-    number : the target's number, from 1 to 8.
+    number : the target's number, from 1 to 9.
     words : what is asked for.
     value : what was measured, in words.
     met : whether it is met.
@@ -137,6 +137,7 @@ def machine() -> dict[str, str]:
     """What the figures depend on: processor, memory, system, and the versions that compile and compute."""
     return {
         "processor": first_value("/proc/cpuinfo", "model name") or platform.processor() or platform.machine(),
+        "load when it was asked": f"{os.getloadavg()[0]:.1f}",
         "processors used": str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
         "memory": f"{int((first_value('/proc/meminfo', 'MemTotal') or '0').split()[0]) / MIB**2:.1f} GiB",
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",

@@ -46,8 +46,8 @@ class Chords:
     @classmethod
     def of(cls, problem: Problem) -> Chords:
         """All chords of two pegs of one jaw; the two branches of a chord with an arc count as two."""
-        (pitch_x, pitch_y), most = problem.vise.pitch, problem.vise.columns - 1
-        longest = int(problem.diameter / problem.vise.pitch[1])
+        (pitch_x, pitch_y), most = problem.toolkit.pitch, problem.toolkit.columns - 1
+        longest = int(problem.diameter / problem.toolkit.pitch[1])
         steps = [(k, m) for k in range(most + 1) for m in range(-longest, longest + 1) if k > 0 or m > 0]
         arc = problem.rows[:, 0] != 0.0
         pairs = [(a, b) for a in range(len(arc)) for b in range(len(arc)) if not same_lines(problem.rows, a, b)]
@@ -139,7 +139,7 @@ def sampled(problem: Problem, chords: Chords, count: int) -> dict[Key, list[floa
     everything = np.arange(len(chords.length))
     heights = np.stack([chords.heights(everything, np.full(len(everything), p)) for p in psi], axis=1)
     found: dict[Key, list[float]] = {}
-    for one, others, place, target in brackets(heights, problem.vise.pitch[1]):
+    for one, others, place, target in brackets(heights, problem.toolkit.pitch[1]):
         first, low, high = np.full(len(others), one), psi[place], psi[place + 1]
         rising = heights[others, place + 1] - heights[one, place + 1] > heights[others, place] - heights[one, place]
         for _ in range(48):

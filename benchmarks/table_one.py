@@ -10,7 +10,7 @@ from __future__ import annotations
 from designs import ROWS, counted, timed
 from report import Column, Section, run_alone
 
-TOGETHER = 1.0
+TOGETHER = 0.45
 
 COLUMNS = (
     Column("part", 12, right=False),

@@ -8,6 +8,9 @@ import os
 # Before the first kernel is imported.
 os.environ.setdefault("WORKHOLD_KERNELS", "callable")
 
+# Commands that tests run have buffered streams, as a user's have.
+os.environ.pop("PYTHONUNBUFFERED", None)
+
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(

@@ -7,7 +7,15 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.model.proof import Proof, Undecided
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.model.quality import (
+    CLOSURE_MARGIN,
+    FIGURES,
+    JAW_FORCE_NEEDED,
+    LOAD_REACTION,
+    LOCATION_ERROR,
+    PENALTY,
+    WARNINGS,
+)
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.vise import Vise
@@ -36,7 +44,6 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
         theta=random.uniform(0, 2 * np.pi, count),
         position=random.uniform(-100, 100, (count, 2)),
         jaw_separation=random.uniform(10, 80, count),
-        null_vector=null_vector,
         force=null_vector / random.uniform(0.1, 0.5, (count, 1)),
         quality=fake_quality(null_vector, random),
     )
@@ -51,7 +58,10 @@ def fake_quality(null_vector: NDArray[np.float64], random: np.random.Generator) 
     """Made-up figures of quality, but for the closure margin; without loads."""
     quality = random.uniform(0.01, 2.0, (len(null_vector), len(FIGURES)))
     quality[:, CLOSURE_MARGIN] = null_vector.min(axis=1, initial=1.0)
-    quality[:, LOAD_REACTION] = np.nan
+    # Nearly all of them are for a workshop.
+    quality[:, LOCATION_ERROR] /= 4
+    quality[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = np.nan
+    quality[:, [WARNINGS, PENALTY]] = random.integers(0, 9, (len(null_vector), 2))
     return quality
 
 

@@ -22,7 +22,8 @@ def listed(fixtures: Iterable[Fixture]) -> list[Listed]:
         {
             "type": f.type,
             "pegs": [
-                {"jaw": p.jaw, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.face} for p in f.pegs
+                {"jaw": p.carrier, "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.face}
+                for p in f.pegs
             ],
             "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
             "jaw_separation": f.jaw_separation,

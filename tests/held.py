@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import workhold
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.result import Result
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -75,6 +75,18 @@ def held(name: str, pitch: float, columns: int, radius: float, count: int) -> Re
     return result
 
 
+def plate_fixture() -> tuple[Workpiece, Vise, Fixture]:
+    """The worked example of docs/quality.md: a square plate with two pegs a side, in a pinwheel."""
+    plate = Workpiece.from_loops("plate", [[[-17, -17, 0], [17, -17, 0], [17, 17, 0], [-17, 17, 0]]])
+    pegs = (
+        Peg("left", 0, 1, 0.0, 10.0, 3, 1.0),
+        Peg("left", 1, 0, 10.0, 0.0, 0, 1.0),
+        Peg("right", 0, 4, 30.0, 40.0, 2, 1.0),
+        Peg("right", 1, 3, 40.0, 30.0, 1, 1.0),
+    )
+    return plate, Vise(pitch=10, columns=2, peg_radius=3), Fixture("I", pegs, Pose(0.0, 20.0, 20.0), 20.0, {})
+
+
 def contacts(fixture: Fixture, workpiece: Workpiece, radius: float) -> tuple[Array, Array]:
     """Contact points and outward unit normals, each (4, 2), in the part's coordinates."""
     angle = radians(fixture.pose.theta_deg)
@@ -102,7 +114,7 @@ def force_directions(
     sides = (friction, -friction) if friction else (0.0,)
     directions = np.concatenate([-normals + side * tangents for side in sides])
     at = np.concatenate([points for _ in sides])
-    right = np.array([peg.jaw == "right" for _ in sides for peg in fixture.pegs])
+    right = np.array([peg.carrier == "right" for _ in sides for peg in fixture.pegs])
     angle = radians(fixture.pose.theta_deg)
     along = directions @ np.array([cos(angle), -sin(angle)])
     moments = at[:, 0] * directions[:, 1] - at[:, 1] * directions[:, 0]

@@ -12,6 +12,8 @@ from typing import Any
 
 from attrs import frozen
 
+from workhold.kernels.base.shallow import is_shallow
+
 __all__ = ["ROUNDED", "Rounded", "error_of"]
 
 HALF_UNIT = 2.0**-53
@@ -127,4 +129,13 @@ def atan2(y: Any, x: Any) -> Rounded:
 
 
 # What the names of the module ``math`` are to mean to a kernel.
-ROUNDED = {"sqrt": sqrt, "hypot": hypot, "cos": cos, "sin": sin, "acos": acos, "atan2": atan2}
+ROUNDED: dict[str, Any] = {
+    "sqrt": sqrt,
+    "hypot": hypot,
+    "cos": cos,
+    "sin": sin,
+    "acos": acos,
+    "atan2": atan2,
+    # Asked of rows as lists.
+    "is_shallow": is_shallow.py_func,  # type: ignore[attr-defined]
+}

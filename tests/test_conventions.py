@@ -17,9 +17,12 @@ ROWS = {
     "centres this near": (["SAME_CENTER"], []),
     "lengths this near to a coincidence": (["EXACT"], []),
     "a chord between concentric arcs": (["EXACT"], []),
-    "a gap or an opening": (["GAP_SLACK"], ["HAIR"]),
+    "a gap, an opening": (["GAP_SLACK"], ["HAIR"]),
+    "the body of a clamp may enter": (["BODY_SLACK"], ["BODY_SLACK"]),
     "past the end at a tangent joint": (["END_SLACK"], ["HAIR"]),
     "inside any other end": (["END_SLACK"], ["HAIR"]),
+    "an arc this near to its chord": (["READING"], []),
+    "an arc of a bulge below this": (["STRAIGHT"], ["STRAIGHT"]),
     "a tangent joint": (["JOINT", "TANGENT"], [None, "TANGENT"]),
     "features shorter": (["CLEARANCE"], []),
     "closure margin": (["LEAST_CLOSURE"], ["LEAST_SHARE"]),
@@ -58,5 +61,43 @@ def test_every_number_of_the_claim_has_a_row() -> None:
     }
 
 
+def other_rows() -> list[str]:
+    """What the manual's table of the other numbers has to say: a row for each comment of the module, below its group's name.
+
+    Numbers that stand below one comment share a row.
+    """
+    groups = Path(conventions.__file__).read_text().split("\n# == ")[2:]
+    rows = []
+    for title, _, body in (group.partition(" ==\n") for group in groups):
+        rows.append(f"| **{title}** | | |")
+        for comment, numbers in re.findall(r"((?:^# .*\n)+)((?:^[A-Z].* = .*\n)+)", body, flags=re.M):
+            names = ", ".join(f"`{name}`" for name in re.findall(r"\b[A-Z_]{2,}\b", numbers))
+            values = ", ".join(line.partition(" = ")[2] for line in numbers.splitlines())
+            rows.append(f"| {names} | {values} | {' '.join(comment.replace('# ', '').splitlines())} |")
+    return rows
+
+
+def test_every_other_number_has_its_row() -> None:
+    """A table beside that of the claim says of every group what the module says; the message is what it should be."""
+    head = "| name | number | what it measures, and why it is what it is |\n|---|---|---|\n"
+    text = BELIEF.read_text().partition(head)[2].partition("\n\n")[0].rstrip("\n")
+    assert text.splitlines() == other_rows(), "\n".join(other_rows())
+
+
+def test_no_number_of_the_module_is_without_a_row() -> None:
+    rows = "".join(other_rows())
+    claimed = {name for names, _ in ROWS.values() for name in names}
+    numbers = {name for name, value in vars(conventions).items() if isinstance(value, int | float)}
+    assert {name for name in numbers if f"`{name}`" not in rows} == claimed
+
+
 def test_the_verification_reads_outlines_as_the_geometry_does() -> None:
     assert (rules.STRAIGHT, rules.WHOLE) == (conventions.STRAIGHT, conventions.WHOLE)
+
+
+def test_the_verification_judges_by_the_numbers_of_the_order() -> None:
+    """What is warned of and what counts against a fixture, each written twice."""
+    group = Path(conventions.__file__).read_text().partition("# == What is warned of")[2]
+    names = set(re.findall(r"\b([A-Z_]{4,})\b(?=[A-Z_, ]* = )", group)) - {"FIGURE_DECIMALS"}
+    assert len(names) == 14
+    assert {name: getattr(rules, name) for name in names} == {name: getattr(conventions, name) for name in names}

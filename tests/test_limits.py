@@ -5,6 +5,7 @@ Inputs are tried in a process of its own with little address space and a time li
 
 from __future__ import annotations
 
+import errno
 import json
 import resource
 import subprocess
@@ -17,7 +18,9 @@ import pytest
 from workhold import Vise, Workpiece, load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
+from workhold.limits import lacks_memory
 from workhold.model.query import Query
+from workhold.web.worker import said_of
 
 Loops = list[list[list[float]]]
 PLATE: list[list[float]] = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
@@ -53,7 +56,7 @@ from workhold.files.toolkit.reader import described_vise
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
-        part, held = Workpiece.from_loops("part", loops), described_vise("vise", checked({"unit": "mm", **vise})).vise
+        part, held = Workpiece.from_loops("part", loops), described_vise("vise", checked({"unit": "mm", **vise})).toolkit
         print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
     except InputError as error:
         print(error)
@@ -61,7 +64,7 @@ for searched, loops, vise in json.load(sys.stdin):
 REFUSED: list[tuple[Loops, dict[str, object], str]] = [
     (with_bulge(1e9), {}, "loop 0, segment 0 is an arc of radius 1.5e+10 mm (bulge 1e+09)"),
     (with_bulge(1e300), {}, "is an arc of radius"),
-    (with_bulge(1e-8), {}, "is an arc of radius 1.5e+09 mm"),
+    ([[[0, 0, 2e-6], [18000, 0, 0], [0, 40, 0]]], {}, "is an arc of radius 2.25e+09 mm"),
     (moved(1e9), {}, "has a coordinate beyond 1e+06 mm"),
     (times(1e300), {}, "has a coordinate beyond 1e+06 mm"),
     (times(1e-300), {}, "has zero length"),
@@ -102,13 +105,14 @@ def test_what_lies_within_the_limits_is_designed() -> None:
     assert [int(count) > 0 for count in said] == [True] * len(vises)
 
 
-@pytest.mark.parametrize("bulge", [1e-9, 1e-12, -1e-12, 1e-300])
+@pytest.mark.parametrize("bulge", [1.9e-6, 3e-8, 1e-9, -1e-12, 1e-300])
 def test_an_arc_that_is_nowhere_off_its_chord_is_a_line(tmp_path: Path, bulge: float) -> None:
-    """Its middle is bulge times half the chord away from it, here 3e-8 mm at most."""
+    """Its middle is bulge times half the chord away from it."""
     straight, bent = Workpiece.from_loops("plate", with_bulge(0.0)), Workpiece.from_loops("plate", with_bulge(bulge))
     assert [loop.tolist() for loop in bent.loops] == [loop.tolist() for loop in straight.loops]
     assert straight.remarks == ()
-    assert bent.remarks == ("1 arc that is nowhere farther than 1e-07 mm from a line taken for one.",)
+    said = "1 arc that is nowhere farther than 1e-06 mm, or a millionth of its length, from a line taken for one."
+    assert bent.remarks == (said,)
     path = tmp_path / "plate.json"
     path.write_text(json.dumps({"units": "mm", "loops": with_bulge(bulge)}))
     assert read_workpiece(path).remarks == bent.remarks
@@ -116,8 +120,8 @@ def test_an_arc_that_is_nowhere_off_its_chord_is_a_line(tmp_path: Path, bulge: f
 
 
 def test_an_arc_with_a_sagitta_stays_one() -> None:
-    part = Workpiece.from_loops("plate", with_bulge(1e-6))
-    assert part.loops[0][0, 2] == 1e-6
+    part = Workpiece.from_loops("plate", with_bulge(2e-6))
+    assert part.loops[0][0, 2] == 2e-6
     assert part.remarks == ()
 
 
@@ -127,3 +131,28 @@ def test_the_algebra_tells_when_it_is_asked_too_much(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(wedges, "MOST_PEG_PAIRS", 10)
     with pytest.raises(InputError, match="more than 10 ways"):
         answer_by_algebra(Query(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2)))
+
+
+def caused(cause: Exception) -> Exception:
+    """An error that comes of another one."""
+    error = ValueError("nothing to say of memory")
+    error.__cause__ = cause
+    return error
+
+
+@pytest.mark.parametrize(
+    ("error", "lacks"),
+    [
+        (MemoryError(), True),
+        (OSError(errno.ENOMEM, "no"), True),
+        (OSError(errno.ENOSPC, "no"), False),
+        (RuntimeError("can't start new thread"), True),
+        (ImportError("libx.so: failed to map segment from shared object"), True),
+        (caused(ImportError("x: cannot allocate memory in static TLS block")), True),
+        (caused(KeyError("x")), False),
+    ],
+)
+def test_too_little_memory_is_known_by_what_libraries_say(error: Exception, lacks: bool) -> None:
+    """On the command line, and to a client of the server, which is told no more."""
+    assert lacks_memory(error) is lacks
+    assert said_of(error, 5 << 20).startswith("This needs more than the 5 MiB of memory") is lacks

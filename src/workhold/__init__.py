@@ -1,7 +1,8 @@
 """workhold finds every way to hold a part in a fixture vise with four pegs.
 
 The public face is small: :func:`load` reads a part, :class:`Vise` describes the vise, :func:`design` finds all fixtures
-and returns a :class:`Result`. Names are imported on first use, so that ``import workhold`` costs next to nothing.
+and returns a :class:`Result`, which :func:`save` writes and :func:`open` reads. Names are imported on first use, so that
+``import workhold`` costs next to nothing.
 """
 
 from __future__ import annotations
@@ -12,9 +13,14 @@ from typing import TYPE_CHECKING, Any
 from workhold.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from workhold.completeness import verify
     from workhold.errors import InputError, WorkholdError
     from workhold.files.part.load import load
+    from workhold.files.result.columns import answer_to_file
+    from workhold.files.result.reader import read_result as open
+    from workhold.files.result.save import save
     from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.plate import Plate
     from workhold.model.query import Query
     from workhold.model.result import Result
     from workhold.model.vise import OpeningVise, Vise
@@ -28,15 +34,20 @@ __all__ = [
     "InputError",
     "OpeningVise",
     "Peg",
+    "Plate",
     "Pose",
     "Query",
     "Result",
     "Vise",
     "Workpiece",
     "answer",
+    "answer_to_file",
     "count_contacts",
     "design",
     "load",
+    "open",
+    "save",
+    "verify",
 ]
 
 HOMES = {
@@ -44,6 +55,7 @@ HOMES = {
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",
     "Peg": "workhold.model.fixture",
+    "Plate": "workhold.model.plate",
     "Pose": "workhold.model.fixture",
     "Query": "workhold.model.query",
     "Result": "workhold.model.result",
@@ -51,15 +63,20 @@ HOMES = {
     "Vise": "workhold.model.vise",
     "Workpiece": "workhold.model.workpiece",
     "answer": "workhold.search.design",
+    "answer_to_file": "workhold.files.result.columns",
     "count_contacts": "workhold.search.contacts",
     "design": "workhold.search.design",
     "load": "workhold.files.part.load",
+    "open": "workhold.files.result.reader:read_result",
+    "save": "workhold.files.result.save",
+    "verify": "workhold.completeness",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name in HOMES:
-        return getattr(import_module(HOMES[name]), name)
+        module, _, known_as = HOMES[name].partition(":")
+        return getattr(import_module(module), known_as or name)
     raise AttributeError(f"module 'workhold' has no attribute {name!r}")
 
 

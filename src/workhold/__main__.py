@@ -1,21 +1,32 @@
 """The command ``workhold``, also as ``python -m workhold``."""
 
+import os
 import sys
 from typing import NoReturn
 
+from workhold.cli.ending import INTERRUPTED, end_on_signals, say_interrupted
+
 __all__ = ["run"]
 
-INTERRUPTED = 130
+
+def open_closed_streams() -> None:
+    """Open those of the three standard streams that are closed to nowhere; the next file opened would be one of them."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "w" if number else "r"))
 
 
 def run() -> NoReturn:
     """Run the command line; Ctrl-C while it is being loaded ends it as it does later."""
+    open_closed_streams()
     try:
+        end_on_signals()
         from workhold.cli.main import run
+
+        run()
     except KeyboardInterrupt:
-        sys.stderr.write("workhold: interrupted; no unfinished file was left behind.\n")
+        say_interrupted()
         sys.exit(INTERRUPTED)
-    run()
 
 
 if __name__ == "__main__":

@@ -18,6 +18,9 @@ SAME_CENTER = 1e-9
 EXACT = 1e-11
 # mm. Right pegs may stand nearer than the smallest gap by this much: rounding of a gap that is met exactly.
 GAP_SLACK = 1e-9
+# mm. The body of a clamp may enter the part by this much: it touches it at the tip, and slots as wide as a clamp are drawn
+# with seven digits.
+BODY_SLACK = 1e-7
 # mm. A contact this near to the end of its feature is at the end; beyond a tangent joint it may be by as much.
 END_SLACK = 1e-9
 # mm and no unit. Ends this near, with normals this near, are a tangent joint: bulges are written with few digits.
@@ -38,11 +41,15 @@ LEAST_SPAN = 1e-7
 SAME_POSE = 1e-6
 # mm. Places nearer than this are one: a contact at a joint is found from both faces, off by the rounding of each.
 SAME_PLACE = 1e-6
+# mm. An arc nowhere farther from its chord is a line, and neighbouring arcs nowhere farther from one circle are one: less
+# than a drawing can mean.
+READING = 1e-6
+# No unit. A bulge below this in size is a line: it departs from its chord by a millionth of it, less than a drawing can
+# mean; the radius is above 125,000 chords, and figures told in mm about its centre would lose their last digits.
+STRAIGHT = 2e-6
 
 # == Reading and joining: what an outline is ==
 
-# No unit. A bulge below this in size is a line: the smallest sagitta a drawing could mean.
-STRAIGHT = 1e-12
 # mm. Segments shorter than this have no direction worth the name.
 SHORTEST = 1e-7
 # mm. Points nearer than this touch: the rounding of a drawing with seven digits.
@@ -94,6 +101,73 @@ SQUARE = 4e-15
 # since the algebra bounds no rounding.
 COINCIDENT = 1e-9
 
+# == Algebra ==
+
+# A share of the part's size. Refined poses meet every contact to this.
+MET = 1e-10
+# No unit. At a double solution the Jacobian vanishes: its determinant is the clamping force times the span of the wrenches,
+# so nothing clamps there. Rounding moves such a pose by some 1e-8, and leaves a determinant of that order.
+DOUBLE = 1e-7
+# A share of the part's size. Starting values may miss a contact by this much: Newton's method brings them to MET.
+NEARLY_MET = 0.02
+# No unit. Newton's method does not divide by a determinant below this.
+SINGULAR = 1e-13
+# Radians, and a share of the part's size. Refined poses may be off by this much at least: rounding of the last steps.
+POSE_REACH = 1e-11
+# A share of the part's size. Rounding of the misfit of a sliding pair.
+MISFIT_ROUNDING = 1e-14
+# Radians. Orientations of sliding pairs may be off by the first at least, which is rounding, and by the second at most.
+LEAST_SLIDING_REACH, MOST_SLIDING_REACH = 1e-12, 1e-3
+# Pitches. Rows this near to the reach of a feature are looked at.
+ROW_SLACK = 1e-9
+# No unit. A line that rises by less over its length is level, and meets no horizontal in one point.
+RISES = 1e-12
+# mm and radians. Bounds of distances and directions between features are widened by this much, far more than rounding.
+WEDGE_SLACK = 1e-6
+# A share of the largest coefficient. A polynomial this much beyond its bounds in a sector may still have a root there.
+SECTOR_SLACK = 1e-9
+# No unit. A root this near to the unit circle may be real: coefficients are off by some 1e-14, which moves roots that are
+# alone by as little, and the fourfold ones of symmetric parts by up to 1e-3. Newton's method decides.
+NEAR_CIRCLE = 1e-2
+# A share. Outermost coefficients below this part of the largest are taken for rounding, and trimmed: where features are
+# parallel, concentric or equal, degrees are lower. On the unit circle that changes the polynomial by no more than rounding.
+VANISHING = 1e-13
+# Diameters of the part. Arcs of a larger radius spread the coefficients so far that small ones are not rounding.
+NEARLY_STRAIGHT = 3.0
+# A share. Polynomials with smaller outermost coefficients than this part of the largest are solved in ball arithmetic.
+ILL_CONDITIONED = 1e-6
+# A share. Where a polynomial is below the first part of its largest coefficient, or the second of its terms, roots crowd.
+CROWDED, NOISE = 1e-10, 1e-11
+# A share of the part's size, squared. A pair of arcs that nearly slides crowds up to four roots within its misfit, two pairs
+# up to eight. Rounding by 1e-14 scatters four within some 3e-4, eight within 2e-2: misfits whose product is below this are
+# looked at in balls.
+NEARLY_SLIDING = 1e-3
+# A share. A polynomial smaller than this part of its terms vanishes identically.
+IDENTICALLY_ZERO = 1e-12
+# No unit. Roots in balls are isolated and then refined to this.
+REFINED = 1e-12
+
+# == Files ==
+
+# A share. A chord of an SVG arc this near the diameter is a half circle: its sweep cannot be told from the chord.
+HALF_CIRCLE = 1e-14
+# mm. Departures of a solid from its outline below this are rounding of the CAD program.
+DEPARTS = 1e-4
+# mm. A face of a solid may reach this far out of the silhouette: the rounding of files that give few digits.
+OVERHANG = 1e-3
+# A share. Areas that differ by less are the same; with free-form borders the library integrates only so well.
+SAME_AREA, FREE_AREA = 1e-7, 1e-3
+# A share. The volume of a solid and that of its layers may differ by so much; free-form faces are integrated roughly.
+SAME_VOLUME, FREE_VOLUME = 1e-5, 1e-2
+# Radians. A face of a solid whose normal is off by less lies as it was meant to: 0.01 µm over 100 mm.
+ALIGNED = 1e-7
+# mm. Heights of a solid's faces closer than this are the same.
+SAME_HEIGHT = 1e-5
+# mm. A free-form edge nearer than this to a line or a circle is one that was saved as a spline.
+SAME_CURVE = 1e-6
+# mm. Gaps between the edges of a border that are rounding and not worth a word.
+EDGE_GAP = 1e-6
+
 # == Statics ==
 
 # A share. A force this small beside the largest is none.
@@ -101,3 +175,32 @@ NO_FORCE = 1e-9
 # No unit. Planes with a determinant below this have no common corner, and a corner may be outside by the second.
 FLAT = 1e-12
 OUTSIDE = 1e-9
+
+# == What is warned of, and what counts against a fixture (docs/quality.md says why) ==
+
+# mm. A contact nearer than this to an edge: edges are commonly broken by some tenths of a millimetre.
+NEAR_EDGE = 1.0
+# No unit. Below this closure margin the weakest contact has less than a twelfth of the even share, a quarter.
+WEAK_CLOSURE = 0.02
+# No unit. A peg that pushes with more than so many times the jaw force wedges the part and marks its face.
+STRONG_PEG = 3.0
+# Times the sum of the tolerances of peg and face: with a larger location error the contacts guide badly.
+LARGE_LOCATION_ERROR = 5.0
+# The same, and the closure margin, beyond which it is no fixture for a workshop: the part lies anywhere, or one peg holds
+# less than a hundredth of the even share.
+UNFIT_LOCATION_ERROR = 50.0
+UNFIT_CLOSURE = 0.0025
+# Degrees. A part turned by less lies square: 0.02 mm over 100 mm.
+SQUARE_TILT = 0.01
+# A share. Straight faces in one direction make it the part's main one when no other has this much of their length.
+MAIN_DIRECTION = 0.99
+# A share of the part's diameter: a touched face is small below it, by its length or radius.
+SMALL_FACE = 0.1
+# No unit. A peg that pushes with more than so many times the jaw force asks for care.
+GENTLE_PEG = 1.5
+# Points against a fixture: so many for ten times the location error, and for a tilt, a peg that is not gentle, a small face.
+POINTS_PER_DECADE = 20
+TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 9, 4, 2
+# No unit. Figures are rounded to so many decimals before they are compared with these numbers, and with each other: rounding
+# must not tell fixtures apart that are equal.
+FIGURE_DECIMALS = 9

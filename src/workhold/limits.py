@@ -6,6 +6,8 @@ these are read (``files.part.load``, ``web.limits``).
 
 from __future__ import annotations
 
+import errno
+
 from workhold.errors import InputError
 
 __all__ = [
@@ -16,6 +18,8 @@ __all__ = [
     "MOST_PEG_PAIRS",
     "MOST_RADIUS",
     "MOST_STEPS",
+    "lacks_memory",
+    "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
 ]
@@ -35,6 +39,33 @@ MOST_CHORDS = 5_000_000
 # Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some 6,000 bytes.
 MOST_PEG_PAIRS = 500_000
 
+# What the system's loader, libraries and threads say where there is no memory for them.
+NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
+
+
+def refuse_little_space(needed: int, what: str, remedy: str) -> None:
+    """Refuse work for which this process may have too little address space, where libraries would end it without a word.
+
+    Parameters
+    ----------
+    needed : bytes.
+
+    Raises
+    ------
+    InputError
+        With the limit, what the work takes and the remedy.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < needed:
+        raise InputError(
+            f"{what} takes {needed / 1e6:,.0f} MB of address space, and this process is limited to {limit / 1e6:,.0f} MB "
+            f"(ulimit -v): {remedy}."
+        )
+
 
 def refuse_long(name: str, value: float) -> None:
     """Refuse a length in mm that is too large.
@@ -49,7 +80,7 @@ def refuse_long(name: str, value: float) -> None:
 
 
 def refuse_many_steps(
-    pitch: tuple[float, float], columns: int, rows: int | None, diameter: float, features: int
+    pitch: tuple[float, float], columns: int | None, rows: int | None, diameter: float, features: int
 ) -> None:
     """Refuse a lattice on which two pegs can be placed in too many ways.
 
@@ -64,8 +95,10 @@ def refuse_many_steps(
     InputError
         With the number and its limit.
     """
-    across = min(columns - 1.0, diameter / pitch[0] // 1)
-    along = diameter / pitch[1] // 1 if rows is None else min(rows - 1.0, diameter / pitch[1] // 1)
+    across, along = (
+        diameter / apart // 1 if count is None else min(count - 1.0, diameter / apart // 1)
+        for apart, count in zip(pitch, (columns, rows), strict=True)
+    )
     steps = (2.0 * across + 1.0) * (2.0 * along + 1.0)
     most = min(MOST_STEPS, MOST_CHORDS // features)
     if steps > most:
@@ -74,3 +107,14 @@ def refuse_many_steps(
             f"{steps:.3g} ways, more than the {most:,} this program takes for a part of {features} faces: use a larger "
             "pitch, or fewer columns and rows."
         )
+
+
+def lacks_memory(error: BaseException | None) -> bool:
+    """Whether an error comes of too little memory; libraries and threads tell it in words of their own."""
+    while error is not None:
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            return True
+        if any(words in str(error) for words in NO_MEMORY):
+            return True
+        error = error.__cause__ or error.__context__
+    return False

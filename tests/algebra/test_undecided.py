@@ -10,6 +10,7 @@ import pytest
 from workhold import Query, Vise, Workpiece
 from workhold.algebra import answer_by_algebra, engine
 from workhold.algebra.quartets import Systems
+from workhold.algebra.sliding_pairs import two_and_two_sliding_pairs
 from workhold.algebra.undecided import MOST_NAMED, undecided_notes
 from workhold.algebra.wedges import SECTORS
 
@@ -53,7 +54,7 @@ def test_a_resultant_that_vanishes_is_told(monkeypatch: pytest.MonkeyPatch) -> N
     def only_that(*_: object) -> Iterator[Systems]:
         yield coinciding
 
-    monkeypatch.setattr(engine, "type_one_systems", only_that)
+    monkeypatch.setitem(engine.GENERATORS, (2, 2), (only_that, two_and_two_sliding_pairs))
     monkeypatch.setattr(engine, "alike", lambda contacts: np.zeros(len(contacts.rows), np.bool_))
     result = answer_by_algebra(Query(WEDGE, VISE, "I"))
     assert result.statistics["undecided"] == 1

@@ -24,8 +24,12 @@ Run = Callable[..., Outcome]
 
 
 @pytest.fixture
-def run() -> Run:
-    """Run the command line within this process; the outcome has ``exit_code``, ``stdout`` and ``stderr``."""
+def run(monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Run the command line within this process; the outcome has ``exit_code``, ``stdout`` and ``stderr``.
+
+    Tables are as wide as they like, whatever width the processes that run tests are told.
+    """
+    monkeypatch.delenv("COLUMNS", raising=False)
 
     def invoke(*arguments: object) -> Outcome:
         return CliRunner().invoke(app, [str(argument) for argument in arguments])
@@ -58,7 +62,7 @@ def process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         command: Sequence[str] = [sys.executable, "-m", "workhold", *(str(argument) for argument in arguments)]
         environment = {**os.environ, "COLUMNS": "100", **options.pop("environment", {})}
         return subprocess.run(
-            command, capture_output=True, text=True, timeout=60, cwd=tmp_path, env=environment, check=False, **options
+            command, capture_output=True, text=True, timeout=600, cwd=tmp_path, env=environment, check=False, **options
         )
 
     return started

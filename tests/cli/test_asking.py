@@ -49,6 +49,11 @@ def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(run: Any, se
     vise, tolerance = searched["asked"].toolkit, searched["asked"].tolerance
     assert (vise.pitch, vise.columns, vise.min_gap) == ((20.0, 20.0), 3, 44.0)
     assert tolerance != Tolerance()
+    assert tolerance.fit is not None and tolerance.fit.standard == "ASME B18.8.5M"
+    assert run("design", "widget", "--vise", "plate-20mm", "--tolerance", "0.02").exit_code == 0
+    assert searched["asked"].tolerance == Tolerance(0.02, 0.02, tolerance.fit)
+    assert run("design", "widget", "--vise", "plate-20mm", "--peg-radius", "4").exit_code == 0
+    assert searched["asked"].tolerance.fit is None
 
 
 @pytest.mark.parametrize(
@@ -85,7 +90,7 @@ def test_a_vise_that_is_not_described_is_asked_for(run: Any) -> None:
     """Naming the option, and the other way."""
     outcome = run("design", "widget", "--pitch", "10", "--columns", "2")
     assert outcome.exit_code == 2
-    assert "add --peg-radius, or name a vise with --vise" in outcome.stderr
+    assert "add --peg-radius, or name a vise with --toolkit" in outcome.stderr
 
 
 @pytest.mark.parametrize(
@@ -114,10 +119,10 @@ def test_explore_lists_every_vise(run: Any, tmp_path: Path) -> None:
     outcome = run("explore", "widget", *words)
     assert outcome.exit_code == 0
     rows = [line.split(",") for line in table.read_text().splitlines()]
-    assert rows[0][:4] == ["vise", "fixtures", "type_one", "type_two"]
+    assert rows[0][:4] == ["vise", "fixtures", "type_I", "type_II"]
     assert len(rows) == 4
     assert "505" in outcome.stdout and "pegs of radius 3 overlap" in outcome.stdout
-    assert "Best by end distance: pitch" in outcome.stdout
+    assert "First choice: pitch" in outcome.stdout and "its first fixture has end distance mm" in outcome.stdout
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 
+from fakes import fake_result
+from workhold.files.result.reader import read_result
+from workhold.files.result.writer import write_result
+from workhold.model.workpiece import Workpiece
+
+NO_MEMORY = "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
 INTERRUPTED_AT_START = """
 import sys
 class Interrupt:
@@ -45,20 +52,48 @@ def test_without_a_home_nothing_is_kept_and_nothing_fails(home: str | None) -> N
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_too_little_memory_is_one_sentence() -> None:
-    """With an address space in which the libraries have no place."""
+def limited(size: int) -> Callable[[], None]:
+    """What gives a process so many bytes of address space."""
     resource = pytest.importorskip("resource")
-    limit = 150 << 20
+    return lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
 
-    def prepare() -> None:
-        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
-    done = features("widget", prepare)
-    assert done.returncode == 2
-    assert (
-        done.stderr
-        == "workhold: error: this needs more memory than there is: close other programs, or raise the limit.\n"
+@pytest.mark.parametrize(
+    ("megabytes", "sentence"),
+    [
+        (
+            60,
+            "workhold takes 160 MB of address space, and this process is limited to 60 MB (ulimit -v): raise the limit.",
+        ),
+        (
+            100,
+            "workhold takes 160 MB of address space, and this process is limited to 100 MB (ulimit -v): raise the limit.",
+        ),
+        (
+            600,
+            "compiling the kernels takes 1,000 MB of address space, and this process is limited to 600 MB (ulimit -v): "
+            "raise the limit, or install a wheel with compiled kernels.",
+        ),
+    ],
+)
+def test_too_little_memory_is_one_sentence(megabytes: int, sentence: str) -> None:
+    """Where the libraries would end the process by a signal, or with a complaint of their own."""
+    done = features("widget", limited(megabytes * 10**6), WORKHOLD_KERNELS="numba")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"workhold: error: {sentence}\n")
+
+
+def test_more_threads_than_there_is_memory_for_is_one_sentence(tmp_path: Path) -> None:
+    """Each takes some megabytes for itself."""
+    words = ("design", "widget", "--pitch", "8", "--columns", "2", "--peg-radius", "3", "--threads", "900")
+    done = subprocess.run(
+        [sys.executable, "-m", "workhold", *words, "--out", tmp_path / "r.json"],
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=limited(1 << 30),
     )
+    assert (done.returncode, done.stderr.splitlines()[-1:]) == (2, [f"workhold: error: {NO_MEMORY}"])
+    assert not list(tmp_path.iterdir())
 
 
 def test_interrupted_while_it_is_loaded_it_leaves_no_traceback() -> None:
@@ -98,3 +133,17 @@ def test_names_do_not_steer_the_terminal(tmp_path: Path) -> None:
     done = features(path)
     assert done.returncode == 0
     assert done.stdout.startswith("?[2J?]0;owned??abc") and done.stdout.replace("\n", "").isprintable()
+
+
+def test_a_result_on_the_terminal_does_not_steer_it_and_keeps_its_names(run: Any, tmp_path: Path) -> None:
+    """Of C0, DEL, C1, the override of the direction of writing, and what no terminal of another language has."""
+    name = "a\x1b[2J\x7f\x9b31m\u202eb\u2028ü"
+    result = fake_result(3, notes=(name,))
+    part = Workpiece.from_loops(name, result.workpiece.loops)
+    write_result(attrs.evolve(result, query=attrs.evolve(result.query, workpiece=part)), tmp_path / "r.json")
+    done = run("convert", tmp_path / "r.json", "-")
+    assert done.exit_code == 0, done.stderr
+    assert done.stdout.isascii() and done.stdout.replace("\n", "").isprintable()
+    (tmp_path / "again.json").write_text(done.stdout)
+    again = read_result(tmp_path / "again.json")
+    assert (again.workpiece.name, again.notes) == (name, (name,))

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from importlib import import_module
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +13,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import __version__
+from workhold.cli.main import COMMANDS
 from workhold.files.result.writer import write_result
 
 
@@ -24,11 +29,13 @@ def test_show_tells_all_that_has_to_be_set(run: Any, result_file: Path) -> None:
     assert outcome.exit_code == 0
     fixture = fake_result(6)[1]
     assert f"Fixture 2 of 6, type {fixture.type}" in outcome.stdout
-    assert f"Jaw separation {fixture.jaw_separation:.3f} mm" in outcome.stdout
+    assert f"Opening S {fixture.jaw_separation:.3f} mm" in outcome.stdout
     assert f"turned by {fixture.pose.theta_deg:.3f} degrees" in outcome.stdout
     for peg in fixture.pegs:
         row = next(line for line in outcome.stdout.splitlines() if line.split()[:1] == [peg.hole])
-        assert row.split() == [*(peg.hole, peg.jaw, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.face), f"{peg.force:.3f}")]
+        assert row.split() == [
+            *(peg.hole, peg.carrier, f"{peg.x:.3f}", f"{peg.y:.3f}", str(peg.face), f"{peg.force:.3f}")
+        ]
 
 
 @pytest.mark.parametrize(("name", "start"), [("a.svg", b"<"), ("a.PNG", b"\x89PNG")])
@@ -48,6 +55,10 @@ def test_show_draws(run: Any, result_file: Path, tmp_path: Path, name: str, star
         ((".", "1"), "cannot be read: Is a directory"),
         (("r.json", "1", "--draw", "a.pdf"), "let the name end in .svg or .png"),
         (("r.json", "1", "--draw", "missing/a.svg"), "there is no folder missing"),
+        (
+            ("r.json", "1", "--jaw", "loose"),
+            "jaw 'loose' is not known: give screw, constant, or how many times as stiff",
+        ),
         (("r.json",), "Missing argument 'N'"),
     ],
 )
@@ -99,6 +110,20 @@ def test_version_and_help(run: Any) -> None:
         assert "Example: workhold" in outcome.stdout
 
 
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_all_begins_like_that_of_each(run: Any, name: str) -> None:
+    """What stands for a command that is not imported is what the command says of itself."""
+    function = getattr(import_module(f"workhold.cli.{name}_command"), name)
+    assert " ".join(cleandoc(function.__doc__).split("\n\n")[0].split()) == COMMANDS[name]
+    assert COMMANDS[name].split()[:3] == run(name, "--help").stdout.split("\n\n")[1].split()[:3]
+
+
+def test_the_help_imports_no_command() -> None:
+    words = "import sys; from workhold.cli.main import app; app(['--help'], standalone_mode=False); "
+    words += "sys.exit(any(name.endswith('_command') for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", words], capture_output=True, check=False).returncode == 0
+
+
 def test_no_command_and_an_unknown_one(run: Any) -> None:
     outcome = run()
     assert outcome.exit_code == 2
@@ -106,3 +131,19 @@ def test_no_command_and_an_unknown_one(run: Any) -> None:
     outcome = run("desing")
     assert outcome.exit_code == 2
     assert outcome.stderr == "workhold: error: No such command 'desing'. Did you mean 'design'?; see workhold --help.\n"
+
+
+def test_a_result_goes_from_one_form_to_the_other_and_back(run: Any, tmp_path: Path) -> None:
+    """The same bytes come back; every command opens either form by its content."""
+    write_result(fake_result(5), tmp_path / "a.json")
+    for source, target in (("a.json", "b"), ("b", "c.json"), ("b", "c.csv"), ("c.json", "d.npz")):
+        form = () if "." in target else ("--format", "npz")
+        outcome = run("convert", tmp_path / source, tmp_path / target, *form)
+        assert outcome.exit_code == 0 and "5 fixtures written to" in outcome.stdout
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "c.json").read_bytes()
+    assert (tmp_path / "b").read_bytes() == (tmp_path / "d.npz").read_bytes() != (tmp_path / "a.json").read_bytes()
+    assert run("convert", tmp_path / "b", "-").stdout == (tmp_path / "a.json").read_text()
+    shown = [run("show", tmp_path / name, 4).stdout for name in ("a.json", "b")]
+    assert shown[0] == shown[1] and "Fixture 4 of 5" in shown[0]
+    refused = run("convert", tmp_path / "a.json", "-", "--format", "npz")
+    assert refused.exit_code == 2 and "--format npz needs a file" in refused.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from datetime import date
 from hashlib import sha256
 from pathlib import Path
@@ -31,7 +32,6 @@ def diamond_result() -> Result:
         theta=np.radians([fixture.pose.theta_deg]),
         position=np.array([[fixture.pose.x, fixture.pose.y]]),
         jaw_separation=np.array([fixture.jaw_separation]),
-        null_vector=null_vector,
         force=np.array([[peg.force for peg in fixture.pegs]]),
         quality=unknown_quality(null_vector),
     )
@@ -88,7 +88,7 @@ def test_all_figures_of_quality_are_told(run: Any, folder: Path) -> None:
     """Those that the result file lacks are computed."""
     run("sheet", "r.json", 1, "-o", "a.pdf", "--load", "force=100 at=20,20")
     words = words_in(folder / "a.pdf")
-    for figure in ("closure margin", "wrench radius", "location error", "end distance", "load reaction"):
+    for figure in ("closure margin", "wrench radius", "location error", "edge distance", "load reaction"):
         assert figure in words
 
 
@@ -114,19 +114,73 @@ def test_paper_unit_and_name(run: Any, folder: Path) -> None:
 
 
 def test_lengths_of_loads_are_in_the_unit_of_the_sheet(run: Any, folder: Path) -> None:
-    """A force half an inch off the corner gives the reactions of one 12.7 mm off; one 0.5 mm off gives others."""
+    """A force half an inch off the corner gives the reactions of one 12.7 mm off; one 0.5 mm off gives others. In inches
+    they are in pounds, rounded up."""
 
-    def reactions(unit: str, place: str) -> list[str]:
-        run("sheet", "r.json", 1, "-o", "a.pdf", "--unit", unit, "--load", f"force=50 at={place},0")
-        return words_in(folder / "a.pdf").split("load 1 ")[1].split()[:5]
+    def reactions(unit: str, place: str) -> list[int]:
+        run("sheet", "r.json", 1, "-o", "a.pdf", "--unit", unit, "--load", f"force=5000 at={place},0")
+        return [int(word) for word in words_in(folder / "a.pdf").split("load 1 ")[1].split()[:5]]
 
-    assert reactions("inch", "0.5") == reactions("mm", "12.7") != reactions("mm", "0.5")
+    pounds, newtons = reactions("inch", "0.5"), reactions("mm", "12.7")
+    assert all(-1 / 4.4 <= lbf - n / 4.4482216 < 1 for lbf, n in zip(pounds, newtons, strict=True))
+    assert newtons != reactions("mm", "0.5")
+
+
+def test_what_the_program_is_not_told_is_to_be_written(run: Any, folder: Path) -> None:
+    """Without thickness, length, height and dowel there are lines to write on; with them, what was given."""
+    run("sheet", "r.json", 1, "-o", "a.svg")
+    empty = (folder / "a.svg").read_text()
+    options = ("--thickness", "12", "--peg-length", "20", "--peg-height", "0.25in", "--dowel", "6 mm m6 in H7")
+    assert run("sheet", "r.json", 1, "-o", "b.svg", *options).exit_code == 0
+    full = (folder / "b.svg").read_text()
+    names = ("thickness", "peg length", "height above the jaws", "dowel and fit")
+    for name, value in zip(names, ("12.000 mm", "20.000 mm", "6.350 mm", "6 mm m6 in H7"), strict=True):
+        assert name in empty and name in full
+        assert value not in empty and value in full
+    assert empty.count("<line") + empty.count("<path") >= full.count("<line") + full.count("<path")
+
+
+def test_pins_are_listed(run: Any, folder: Path) -> None:
+    """A row for each peg with its hole, place, diameter, length and dowel; the list may be written again."""
+    options = ("--unit", "inch", "--dowel", "6 mm m6 in H7, hardened", "--peg-length", "20mm")
+    assert run("sheet", "r.json", 1, "-o", "pins.csv", *options).exit_code == 0
+    outcome = run("sheet", "r.json", 1, "-o", "pins.csv", *options)
+    assert outcome.exit_code == 0, outcome.stderr
+    with (folder / "pins.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    fixture = diamond()[0]
+    assert [row["hole"] for row in rows] == [peg.hole for peg in fixture.pegs]
+    assert [float(row["x"]) for row in rows] == pytest.approx([peg.x / 25.4 for peg in fixture.pegs], abs=1e-4)
+    for row in rows:
+        told = {key: row[key] for key in ("diameter", "length", "unit", "dowel")}
+        assert told == {"diameter": "0.2362", "length": "0.7874", "unit": "in", "dowel": "6 mm m6 in H7, hardened"}
+
+
+def test_a_force_may_carry_its_unit(run: Any, folder: Path) -> None:
+    """450 lbf are 2001.7 N, 2 kN are 2000 N."""
+    for given, told in (("450lbf", "at 2002 N"), ("2kN", "at 2000 N")):
+        assert run("sheet", "r.json", 1, "-o", "a.pdf", "--jaw-force", given).exit_code == 0
+        assert told in words_in(folder / "a.pdf")
 
 
 def test_fixtures_in_the_same_holes_are_warned_of(run: Any, folder: Path) -> None:
     """The result tells the same holes twice."""
     run("sheet", "r.json", 1, "-o", "a.pdf")
     assert "The same four holes hold this part in one other way" in words_in(folder / "a.pdf")
+
+
+def test_part_zero_is_where_it_was_asked_for(run: Any, folder: Path) -> None:
+    """The diamond's centre is the middle of its pegs; from the machine's position over L-A1 come the control's lines."""
+    options = ("--zero", "centre", "--machine-position", "-300,-200")
+    outcome = run("sheet", "r.json", 1, "-o", "a.pdf", *options)
+    assert outcome.exit_code == 0, outcome.stderr
+    words, half = words_in(folder / "a.pdf"), diamond()[0].jaw_separation / 2
+    assert "centre of the outside dimensions" in words
+    assert f"{half:.3f} mm" in words
+    assert f"G21 G10 L2 P1 X{half - 300:.3f} Y{10 - 200:.3f} G54 G68 X0 Y0 R45.000" in words
+    assert run("sheet", "r.json", 1, "-o", "a.dxf", "--zero", "centre").exit_code == 0
+    (zero,) = ezdxf.readfile(folder / "a.dxf").modelspace().query('POINT[layer=="PART_ZERO"]')
+    assert (zero.dxf.location.x, zero.dxf.location.y) == pytest.approx((half, 10.0))
 
 
 def test_dxf_is_the_set_up_in_mm(run: Any, folder: Path) -> None:
@@ -143,14 +197,26 @@ def test_dxf_is_the_set_up_in_mm(run: Any, folder: Path) -> None:
         (("r.json", "0", "-o", "a.pdf"), "there is no fixture 0: fixtures are counted from 1"),
         (("r.json", "3", "-o", "a.pdf"), "lists 2 fixtures: there is no fixture 3"),
         (("r.json", "1"), "Missing option '--out'"),
-        (("r.json", "1", "-o", "a.doc"), "let the name end in .pdf, .svg, .png, .dxf or .step"),
+        (("r.json", "1", "-o", "a.doc"), "let the name end in .pdf, .svg, .png, .dxf, .step or .csv"),
         (("r.json", "1", "-o", "missing/a.pdf"), "there is no folder missing"),
         (("r.json", "1", "-o", "a.pdf", "--paper", "a3"), "--paper 'a3' is not known: give a4 or letter"),
         (("r.json", "1", "-o", "a.pdf", "--unit", "foot"), "Unit 'foot' is not known"),
+        (("r.json", "1", "-o", "a.pdf", "--zero", "0,1e308"), "part zero 1e+308 is beyond 1e+06 mm: check the number"),
+        (("r.json", "1", "-o", "a.dxf", "--zero", "-2e6,0"), "part zero -2e+06 is beyond 1e+06 mm"),
+        (
+            ("r.json", "1", "-o", "a.pdf", "--machine-position", "0,-2e6"),
+            "--machine-position -2e+06 is beyond 1e+06 mm",
+        ),
+        (
+            ("r.json", "1", "-o", "a.dxf", "--jaw", "loose"),
+            "jaw 'loose' is not known: give screw, constant, or how many",
+        ),
         (("r.json", "1", "-o", "a.pdf", "--date", "31.3.2026"), "give it as YYYY-MM-DD"),
-        (("r.json", "1", "-o", "a.pdf", "--jaw-force", "-5"), "--jaw-force '-5' is not a positive number"),
+        (("r.json", "1", "-o", "a.pdf", "--jaw-force", "-5"), "--jaw-force '-5' is not a force above 0"),
         (("r.json", "1", "-o", "a.pdf", "--friction", "much"), "--friction 'much' is not a positive number"),
         (("r.json", "1", "-o", "a.pdf", "--load", "force=5"), "--load"),
+        (("r.json", "1", "-o", "a.pdf", "--zero", "hole 1"), "the part has no hole"),
+        (("r.json", "1", "-o", "a.pdf", "--machine-position", "5"), "give it as X,Y, such as -312.5,-88"),
         (("r.json", "1", "-o", "a.pdf", "--loads", "none.toml"), "none.toml"),
         (("none.json", "1", "-o", "a.pdf"), "none.json cannot be read"),
     ],

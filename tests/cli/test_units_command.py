@@ -17,6 +17,7 @@ from workhold.cli.values import length, pitches
 from workhold.errors import InputError
 from workhold.files.result.writer import write_result
 from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.listing.alike import entries
 from workhold.model.units import INCH, MILLIMETRE
 
 ROOT = Path(__file__).parent.parent.parent
@@ -60,11 +61,10 @@ def test_tables_in_inches_are_those_in_millimetres() -> None:
     """Every length of the two tables over 25.4, to four decimals; the other words are the same."""
     result = fake_result(3)
     fixture = result[0]
-    table = result_table(result, 1, INCH)
-    assert ">opening in" in table.columns
-    assert table.rows[0][4] == f"{fixture.jaw_separation / 25.4:.4f}"
-    told = fixture_tables(fixture, 1, 3, INCH)
-    assert f"Jaw separation {fixture.jaw_separation / 25.4:.4f} in" in str(told[1])
+    table = result_table(result, entries(result), 1, INCH)
+    assert table.rows[0][table.columns.index(">opening in")] == f"{fixture.jaw_separation / 25.4:.4f}"
+    told = fixture_tables(fixture, result.toolkit, 1, 3, INCH)
+    assert f"Opening S {fixture.jaw_separation / 25.4:.4f} in" in str(told[1])
     pegs = told[3]
     assert not isinstance(pegs, str)
     assert pegs.columns[2:4] == (">x in", ">y in")
@@ -75,7 +75,7 @@ def test_tables_in_inches_are_those_in_millimetres() -> None:
 def test_show_in_inches(run: Any, tmp_path: Path) -> None:
     write_result(fake_result(2), tmp_path / "r.json")
     outcome = run("show", tmp_path / "r.json", 1, "--unit", "inch")
-    assert f"Jaw separation {fake_result(2)[0].jaw_separation / 25.4:.4f} in" in outcome.stdout
+    assert f"Opening S {fake_result(2)[0].jaw_separation / 25.4:.4f} in" in outcome.stdout
     assert "mm" not in outcome.stdout
     refused = run("show", tmp_path / "r.json", 1, "--unit", "ell")
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
@@ -193,8 +193,9 @@ def test_the_manual_lists_every_preset() -> None:
     page = (ROOT / "docs" / "hardware.md").read_text()
     for name in preset_names():
         loaded = load_vise(name)
-        unit, vise = loaded.unit, loaded.vise
-        pitch, peg = unit.figure(vise.pitch[0]), unit.figure(2 * vise.peg_radius)
+        unit, first = loaded.unit, loaded.toolkit.carriers[0]
+        pitch, peg = unit.figure(first.pitch[0]), unit.figure(2 * first.peg_radius)
         of = unit.abbreviation
-        assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {vise.columns} |" in page
-    assert page.count("\n| `plate-") + page.count("\n| `table-") + page.count("\n| `gripper-") == len(preset_names())
+        assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {first.columns or 'any'} |" in page
+    kinds = ("plate-", "table-", "gripper-", "clamp-")
+    assert sum(page.count(f"\n| `{kind}") for kind in kinds) == len(preset_names())

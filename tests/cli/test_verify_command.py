@@ -10,14 +10,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 
 from fakes import fake_result
 from workhold import Result, Vise, Workpiece, design
 from workhold.files.result.writer import write_result
+from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, unknown_quality
+from workhold.model.tolerance import Tolerance
+from workhold.statics.quality import quality_of
+from workhold.verification.account import SEARCH
+from workhold.verification.verify import not_shown
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +55,13 @@ def test_a_proven_result_in_one_line(run: Any, result_file: Path) -> None:
     outcome = run("verify", result_file)
     assert outcome.exit_code == 0, outcome.stderr
     line = r"(\d+) fixtures: (\d+) proven, 0 refuted, 0 undecided at 128 bits; \d+\.\d s\n"
-    match = re.fullmatch(line, outcome.stdout)
+    match = re.match(line, outcome.stdout)
     assert match is not None
     assert match[1] == match[2] != "0"
     assert outcome.stderr == ""
+    heading, *points = outcome.stdout[match.end() :].splitlines()
+    assert heading == "What a file alone cannot show, and --complete does:"
+    assert points == [f"  - {point}" for point in not_shown(Vise(pitch=15, columns=1, peg_radius=2))]
 
 
 def test_refuted_fixtures_end_with_exit_code_2(run: Any, result_file: Path) -> None:
@@ -100,12 +109,13 @@ def on_the_edge(hair: float) -> Result:
         theta=np.zeros(1),
         position=np.array([[0.0, 20.0]]),
         jaw_separation=np.array([40.0]),
-        null_vector=force / force.sum(),
         force=force,
         quality=unknown_quality(force / force.sum()),
     )
-    counts = {"I": 0, "II": 1}
-    return Result(Query(part, vise), table, counts, counts)
+    table = attrs.evolve(table, quality=quality_of(table, part, vise, Tolerance(), ()))
+    counts, proof = {"I": 0, "II": 1}, Proof(96, 1, 0, 1, 0)
+    statistics = dict.fromkeys(SEARCH, 0) | {"features": 9}
+    return Result(Query(part, vise), table, counts, counts, statistics=statistics, proof=proof)
 
 
 @pytest.mark.parametrize(("hair", "verdict"), [(1e-9, "undecided"), (2e-9, "proven"), (5e-10, "refuted")])
@@ -139,8 +149,32 @@ def test_an_empty_result(run: Any, result_file: Path) -> None:
         data.update(fixtures=[], counts=none, found=none, distinct=none)
 
     outcome = run("verify", edited(result_file, edit))
+    assert outcome.exit_code == 2
+    assert outcome.stdout.startswith('The file: the note is missing that says "')
+    disc = Workpiece.from_loops("disc", [[[20, 0, 1], [-20, 0, 1]]])
+    write_result(design(disc, Vise(pitch=13, columns=2, peg_radius=3)), result_file)
+    outcome = run("verify", result_file)
     assert outcome.exit_code == 0
     assert outcome.stdout.startswith("0 fixtures: 0 proven, 0 refuted, 0 undecided")
+
+
+def test_a_fixture_left_out_with_all_counts_adjusted(run: Any, result_file: Path) -> None:
+    """No file shows that; a search does."""
+
+    def edit(data: dict[str, Any]) -> None:
+        kind = data["fixtures"].pop(2)["type"]
+        for key in ("counts", "found", "distinct"):
+            data[key][kind] -= 1
+
+    assert run("verify", result_file, "--complete").exit_code == 0
+    edited(result_file, edit)
+    assert run("verify", result_file).exit_code == 0
+    outcome = run("verify", result_file, "--complete", "--threads", 1)
+    assert outcome.exit_code == 2
+    assert outcome.stdout.startswith(
+        "The file: a search finds 1 fixture that it does not list, the first of them of type "
+    )
+    assert "A search of the same query was compared with the file." in outcome.stdout
 
 
 @pytest.mark.parametrize(
@@ -176,7 +210,11 @@ def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, proc
         "print([m for m in sys.modules if m.startswith('workhold.')])"
     )
     outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
-    rooms = r"'workhold\.((?:algebra|contact|kernels|listing|proof|search|statics)(?:\.[a-z_.]+)?)'"
-    loaded = set(re.findall(rooms, outcome.stdout))
-    assert loaded <= {"kernels", "kernels.base", "kernels.base.compiling", "kernels.base.distance"}
+    room = r"'workhold\.((?:algebra|contact|kernels|listing|proof|search|statics)(?:\.[a-z_.]+)?)'"
+    loaded = set(re.findall(room, outcome.stdout))
+    rooms = {
+        "kernels.base." + name
+        for name in ("built", "compiling", "distance", "feature", "shallow", "sources", "storing")
+    }
+    assert loaded <= {"kernels", "kernels.base", *rooms}
     assert process("verify", "r.json").returncode == 0

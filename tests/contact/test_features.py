@@ -13,7 +13,7 @@ from strategies import outlines, vises
 from workhold.contact.features import contact_features, end_slacks, feature_rows
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, segment_distance
-from workhold.model.diameter import outline_diameter
+from workhold.model.diameter import outline_diameter, segments_diameter
 from workhold.model.workpiece import Workpiece
 from workhold.statics.wrenches import outward_normals
 from workhold.verification.outline import Outline
@@ -61,6 +61,14 @@ def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
     diameter = outline_diameter(part)
     longest = max(s.length for s in part.loop_segments[0])
     assert farthest - 1e-9 <= diameter <= farthest + longest / 80 * 0.2 + 1e-9
+
+
+@settings(max_examples=80)
+@given(outlines())
+def test_the_diameter_is_that_of_the_two_faces_farthest_apart(part):
+    """To the last digit the largest over all pairs, whatever pairs are passed over."""
+    outer = [face.segment for face in part.faces if face.number < len(part.loops[0])]
+    assert outline_diameter(part) == max(segments_diameter(a, b) for a in outer for b in outer)
 
 
 def test_known_diameters():

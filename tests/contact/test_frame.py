@@ -9,12 +9,15 @@ import pytest
 from attrs import evolve, frozen
 
 from workhold import Result, Vise, Workpiece, design
+from workhold.contact.features import end_distances
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
 from workhold.model.holes import Holes
+from workhold.model.quality import END_DISTANCE
 from workhold.model.query import Query
 from workhold.model.toolkit import Carrier, Travel
+from workhold.statics.quality import quality_of
 
 PART = Workpiece.from_loops(
     "part", [[[0, 0, 0], [40, 3, 0], [44, 20, 0.3], [30, 38, 0], [4, 33, 0]], [[12, 12, 0], [14, 22, 0], [25, 18, 0]]]
@@ -73,7 +76,7 @@ def turned_carrier(carrier: Carrier, quarters: int) -> Carrier:
 def pegs_of(result: Result) -> np.ndarray:
     """Places of all pegs (N, 4) as complex numbers."""
     table = result.table
-    x, y = result.vise.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    x, y = result.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
     return x + 1j * y
 
 
@@ -106,7 +109,7 @@ def test_a_toolkit_that_slides_another_way_has_the_same_fixtures_turned(quarters
 def test_a_vise_is_its_own_frame() -> None:
     """Nothing is turned, and no travel is lost or won."""
     vise = Vise(pitch=(10, 7), columns=4, peg_radius=3, row_offset=2.5)
-    frame = Frame.of(vise)
+    frame = Frame.of(vise, 100.0)
     assert frame.carriers == vise.carriers
     assert frame.lattice == (10.0, 7.0, 2.5)
     assert (frame.travel_at_rest, frame.swapped, frame.gap) == (0.0, 2, 10.0)
@@ -125,7 +128,7 @@ def test_lattices_that_do_not_match_are_refused() -> None:
             return left, evolve(right, travel=Travel(0.3, 0.0, None))
 
     with pytest.raises(InputError, match="quarter turns"):
-        Frame.of(Slanted(pitch=10, columns=2, peg_radius=3))
+        Frame.of(Slanted(pitch=10, columns=2, peg_radius=3), 100.0)
 
 
 def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
@@ -146,10 +149,15 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
     assert len(thin) > 0
     turn = np.exp(-1j * thin.table.theta)[:, None]
     place = (pegs_of(thin) - (thin.table.position @ (1, 1j))[:, None]) * turn - complex(*PART.center)
-    moves = thin.vise.peg_carriers(thin.table.arrangement)
+    moves = thin.toolkit.peg_carriers(thin.table.arrangement)
+    ends = quality_of(thin.table, PART, thin.toolkit)[:, END_DISTANCE]
     for k in range(len(thin)):
+        own = []
         for peg in range(4):
             first, end = problem.moving if moves[k, peg] else problem.standing
             rows = problem.rows[first:end][problem.faces[first:end] == thin.table.face[k, peg]]
             off = (place[k, peg] - rows[:, 1] - 1j * rows[:, 2]) * (rows[:, 3] - 1j * rows[:, 4])
             assert np.where(rows[:, 0] == 0.0, np.abs(off.imag), np.abs(np.abs(off) - rows[:, 6])).min() < 1e-6
+            point = np.array([place[k, peg].real, place[k, peg].imag])
+            own.append(end_distances(rows[:, :8], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max())
+        assert ends[k] == pytest.approx(min(own), abs=1e-9)

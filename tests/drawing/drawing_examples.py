@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt, tan
+from random import Random
 
 import numpy as np
 
@@ -42,6 +43,39 @@ def example(size: float = 1.0, name: str = "notched plate") -> tuple[Fixture, Wo
     pose = Pose(90.0, 43.0 * size, -5.0 * size)
     quality = {"closure_margin": 0.125}
     return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, separation, quality), workpiece, vise
+
+
+def any_set_up(seed: int) -> tuple[Fixture, Workpiece, Vise]:
+    """One of the two parts in any pose between jaws of any lattice, with pegs anywhere: nothing that holds it, but lettering
+    of every kind of crowd, from jaws that all but meet to lattices too fine to be drawn."""
+    chance = Random(seed)
+    part = chance.choice((example, diamond))()[1]
+    pitch = chance.choice((2.5, 5.0, 6.35, 10.0, 12.7, 20.0, 25.0))
+    vise = Vise(
+        pitch=pitch,
+        columns=chance.choice((1, 2, 3, 4, 6)),
+        peg_radius=chance.choice((0.2, 0.35, 0.49)) * pitch,
+        row_offset=chance.choice((0.0, 0.0, pitch / 3)),
+    )
+    separation = chance.choice((0.2 * pitch, 0.5 * pitch, pitch, 1.4 * pitch, 5 * pitch, chance.uniform(1, 90)))
+    pose = Pose(
+        chance.choice((0.0, 45.0, 90.0, chance.uniform(0, 360))), chance.uniform(-20, 60), chance.uniform(-10, 60)
+    )
+    left, holes = chance.choice((2, 3)), set[tuple[int, int, int]]()
+    while len(holes) < 4:
+        row = chance.randrange(1 + int(60 / pitch)) + chance.choice((0, 0, 12))
+        holes.add((int(len(holes) >= left), chance.randrange(vise.columns), row))
+    pegs = []
+    for jaw, column, row in sorted(holes):
+        x, y = vise.carriers[jaw].place(column, row, separation)
+        face = chance.choice(part.faces).number
+        pegs.append(Peg("right" if jaw else "left", column, row, x, y, face, chance.uniform(0, 1.2)))
+    quality = {"closure_margin": 0.1}
+    return (
+        Fixture("I" if left == 2 else "II", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, separation, quality),
+        part,
+        vise,
+    )
 
 
 def diamond(size: float = 1.0, rounded: bool = False, name: str = "diamond") -> tuple[Fixture, Workpiece, Vise]:

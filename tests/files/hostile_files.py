@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import json
 import random
+import tempfile
+import warnings
 from collections.abc import Callable
 from copy import deepcopy
-from io import StringIO
+from functools import cache
+from io import BytesIO, StringIO
 from math import cos, radians, sin
+from pathlib import Path
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
 import ezdxf
+import numpy as np
 
 from fakes import fake_result
+from workhold.archive import mapped_archive
+from workhold.files.result.columns import write_columns
 from workhold.files.result.writer import result_text
+from workhold.model.columns import COLUMNS, HEAD
 
 __all__ = ["MAKERS"]
 
@@ -71,7 +80,7 @@ def upset(content: Any, chance: random.Random) -> Any:
                 container[key] = json.loads(json.dumps(other[at])) if at in keys_of(other) else None
             case 4 if isinstance(container, list):
                 container.insert(chance.randrange(len(container) + 1), json.loads(json.dumps(container[key])))
-            case _ if isinstance(container[key], int | float):
+            case _ if isinstance(container[key], int | float) and abs(container[key]) < 1e308:
                 container[key] = container[key] * chance.choice((-1, 0.5, 1000)) + chance.choice((0, 1e-9, 0.25))
             case _:
                 container[key] = {"more": container[key]} if chance.random() < 0.5 else [container[key]]
@@ -226,10 +235,87 @@ def with_damaged_tags(text: str, chance: random.Random) -> str:
     return "\n".join(lines)
 
 
+def columns(chance: random.Random) -> bytes:
+    """A result of two fixtures in columns: its head upset, its arrays of other types, shapes and values, its members packed,
+    missing, doubled or locked, its bytes cut short or changed."""
+    text, arrays = written_columns()
+    arrays = {name: array.copy() for name, array in arrays.items()}
+    head = json.loads(text)
+    if chance.random() < 0.5:
+        head = upset(head, chance)
+    members = {f"{name}.npy": npy(array) for name, array in arrays.items()}
+    for _ in range(chance.randint(0, 2)):
+        name = chance.choice(list(arrays))
+        members[f"{name}.npy"] = odd_array(arrays[name], chance)
+    listed = [*members.items(), (HEAD, json.dumps(head).encode("utf-8", errors="replace"))]
+    packed = chance.choice((ZIP_STORED,) * 8 + (ZIP_DEFLATED,))
+    if chance.random() < 0.15:
+        listed.append(chance.choice(listed) if chance.random() < 0.5 else ("more.txt", bytes(10_000_000)))
+    if chance.random() < 0.05:
+        del listed[chance.randrange(len(listed))]
+    stream = BytesIO()
+    with ZipFile(stream, "w", packed) as archive, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for name, content in listed:
+            archive.writestr(name, content)
+        if chance.random() < 0.5:
+            archive.comment = b"workhold-result/1"
+    content = bytearray(stream.getvalue())
+    if chance.random() < 0.2:
+        for _ in range(chance.randint(1, 9)):
+            content[chance.randrange(len(content))] = chance.randrange(256)
+    if chance.random() < 0.1:
+        del content[chance.randrange(len(content)) :]
+    return bytes(content)
+
+
+@cache
+def written_columns() -> tuple[str, dict[str, Any]]:
+    """The head and the arrays of such a file as it is written."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "result.npz"
+        write_columns(fake_result(2), path)
+        text, arrays = mapped_archive(path, COLUMNS, HEAD)
+        return text, {name: np.array(array) for name, array in arrays.items()}
+
+
+def npy(array: Any) -> bytes:
+    """An array as a member; one of objects is a pickle."""
+    stream = BytesIO()
+    np.save(stream, array, allow_pickle=True)
+    return stream.getvalue()
+
+
+def odd_array(array: Any, chance: random.Random) -> bytes:
+    """A column that is not what it was."""
+    match chance.randrange(6):
+        case 0:
+            kind = chance.choice(("O", "<f4", ">f8", "<i8", "<u4", "|S8", "<c16", "|b1", "<m8[s]"))
+            return npy(np.zeros(array.shape, object) if kind == "O" else np.zeros(array.shape, kind))
+        case 1:
+            shape = chance.choice(((0,), (), (3, *array.shape[1:]), (2, 7), (1, 1, 1, 1), (2, 4, 1)))
+            return npy(np.zeros(shape, array.dtype))
+        case 2:
+            return npy(np.asfortranarray(array) if array.ndim > 1 else array[::-1])
+        case 3:
+            content = npy(array)
+            shape = str(array.shape).encode()
+            absurd = str((chance.choice((2**31, 2**62, 10**30, -1)), *array.shape[1:])).encode()
+            return content.replace(shape, absurd, 1).replace(b" " * max(len(absurd) - len(shape), 0), b"", 1)
+        case _:
+            known = np.iinfo(array.dtype) if array.dtype.kind == "i" else None
+            extremes = (
+                (known.min, known.max, -1, 0, 1, 7) if known else (np.nan, np.inf, -np.inf, 1e308, -1.0, 0.0, 1e-308)
+            )
+            array.reshape(-1)[chance.randrange(array.size)] = chance.choice(extremes)
+            return npy(array)
+
+
 MAKERS: dict[str, Callable[[random.Random], bytes]] = {
     "part.json": part,
     "result.json": result,
     "vise.toml": vise,
     "loads.toml": loads,
     "drawing.dxf": dxf,
+    "result.npz": columns,
 }

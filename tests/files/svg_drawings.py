@@ -385,7 +385,7 @@ class Drafter:
         if "nonsense" in declarations:
             way = "attribute"  # in a style sheet, resvg does not pass over what is not valid
         if way == "important":
-            name = f"i{self.count}"  # of several important rules, resvg takes the first
+            name = f"i{len(self.rules)}"  # of several important rules, resvg takes the first
         if way == "attribute":
             for part in declarations.split(";"):
                 node.both[part.partition(":")[0]] = part.partition(":")[2]

@@ -26,6 +26,7 @@ def plain(content, **options):
     if content == b"loop":
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         while True: pass
+    if content == b"killed": os.kill(os.getpid(), signal.SIGKILL)
     if content == b"hog": return len(bytearray(1 << 40))
     if content == b"refuse": raise InputError("this is refused.")
     if content == b"fault": raise ValueError("a mistake")
@@ -56,6 +57,7 @@ def test_content_and_options_go_there_and_plain_data_come_back(work: str) -> Non
     [
         (b"crash", "the file is damaged so that the library that reads it breaks down: save it anew."),
         (b"loop", "the file was given up after 1 s of reading: it is damaged, or holds too much; save less in it."),
+        (b"killed", "the file ran out of memory while it was read: close other programs, or save less in it."),
         (b"hog", "the file needs more than 2.7 GB of memory to read: save less in it."),
         (b"refuse", "this is refused."),
     ],

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 
 from strategies import seeds
-from workhold.geometry.intersect import bounding_box, common_points
+from workhold.geometry.intersect import bounding_box, circle_circle, common_points, contains_parameter
 from workhold.geometry.segment import Arc, Line
 
 
@@ -49,3 +49,20 @@ def test_a_segment_that_lies_in_another_meets_it_at_both_its_ends() -> None:
     assert common_points(narrow, Line((cos(0.9), sin(0.9)), (9 * cos(0.9), 9 * sin(0.9))), 1e-7) == [
         pytest.approx((5 * cos(0.9), 5 * sin(0.9)))
     ]
+
+
+def test_circles_that_touch_have_one_common_point_and_one_inside_another_none() -> None:
+    """Whichever of them comes first; a touch from inside lies beyond the centre of the smaller one."""
+    wide, narrow = ((0.0, 0.0), 5.0), ((2.0, 0.0), 3.0)
+    for one, two in ((wide, narrow), (narrow, wide)):
+        assert circle_circle(*one, *two) == [pytest.approx((5.0, 0.0))]
+        assert circle_circle(*one, two[0], two[1] + 1e-6 * (1 if two is wide else -1)) == []
+    assert circle_circle(*wide, (8.0, 0.0), 3.0) == [pytest.approx((5.0, 0.0))]
+    assert circle_circle(*wide, (8.0 + 1e-6, 0.0), 3.0) == []
+
+
+def test_a_tolerance_at_the_end_of_an_arc_is_a_length() -> None:
+    """So much along the arc, whatever its radius."""
+    arc = Arc((0.0, 0.0), 100.0, 0.0, 0.5, 1.0)
+    assert contains_parameter(arc, 0.5 + 0.9e-5, 1e-3)
+    assert not contains_parameter(arc, 0.5 + 1.1e-5, 1e-3)

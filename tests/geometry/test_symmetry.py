@@ -91,3 +91,14 @@ def test_a_bump_is_never_carried_onto_a_notch():
     assert [r.angle for r in group(bumps_and_notches)] == pytest.approx([0.0, tau / 2])
     all_bumps = [[x, y, abs(bulge)] for x, y, bulge in bumps_and_notches]
     assert len(group(all_bumps)) == 4
+
+
+def test_holes_of_different_sizes_are_not_carried_onto_each_other():
+    """A square with a hole in every corner has four rotations, with one of them larger it has one, with two opposite two."""
+    square = [[-30, -30, 0], [30, -30, 0], [30, 30, 0], [-30, 30, 0]]
+
+    def order(*radii):
+        places = ((15, 15), (-15, 15), (-15, -15), (15, -15))
+        return len(group(square, *(circle(x, y, radius) for (x, y), radius in zip(places, radii, strict=True))))
+
+    assert (order(3, 3, 3, 3), order(3, 5, 3, 5), order(3, 3, 5, 5), order(5, 3, 3, 3)) == (4, 2, 1, 1)

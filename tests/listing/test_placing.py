@@ -19,7 +19,7 @@ def test_pegs_move_outward_no_farther_than_the_largest_opening_demands_and_left_
     """Pegs in two columns on the left and one on the right, in jaws of four columns 10 mm apart: one column more between
     the jaws takes a pitch off the separation. The left pegs have two columns to move, then the right ones three."""
     vise = Vise(pitch=10, columns=4, peg_radius=3, min_gap=7.0, max_opening=12.0)
-    frame = Frame.of(vise)
+    frame = Frame.of(vise, 100.0)
     found = placed_as_is(evolve(candidates(1), gap=np.array([opening])), frame)
     moves = max(ceil((opening - 12.0) / 10), 0)
     assert found.fits[0] == (opening - 10 * moves >= 7.0)

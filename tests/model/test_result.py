@@ -36,14 +36,14 @@ def test_fixtures_repeat_their_row_of_the_table():
     result = fake_result(12)
     for k, fixture in enumerate(result):
         lefts = 2 if fixture.type == "I" else 3
-        assert [peg.jaw for peg in fixture.pegs] == ["left"] * lefts + ["right"] * (4 - lefts)
+        assert [peg.carrier for peg in fixture.pegs] == ["left"] * lefts + ["right"] * (4 - lefts)
         for m, peg in enumerate(fixture.pegs):
-            left, right = result.vise.carriers
-            carrier = left if peg.jaw == "left" else right
+            left, right = result.toolkit.carriers
+            carrier = left if peg.carrier == "left" else right
             assert (peg.x, peg.y) == carrier.place(peg.column, peg.row, fixture.jaw_separation)
             assert peg.face == result.table.face[k, m] and peg.force == result.table.force[k, m]
         assert np.radians(fixture.pose.theta_deg) == pytest.approx(result.table.theta[k])
-        assert fixture.quality["closure_margin"] == result.table.null_vector[k].min()
+        assert fixture.quality["closure_margin"] == pytest.approx(result.table.null_vector[k].min())
 
 
 def test_an_empty_result():

@@ -12,6 +12,7 @@ from attrs import evolve, frozen
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold.errors import InputError
 from workhold.geometry.box import Box
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.holes import Holes
@@ -84,14 +85,15 @@ def test_a_plate_may_slide_either_way_along_either_axis(way: str, travelled: flo
     fixture = pegs_in(toolkit, travelled, ("base", 1, 1), ("base", 2, 3), ("slide", 0, 0), ("slide", 2, 1))
     seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
     check(seen)
-    ((slide, start, end),) = seen.travels
+    base, slide, measured = *seen.carriers, seen.measured
+    assert measured is not None
+    start, end = measured.axes
     moved = np.array(end[0]) - np.array(start[0])
     along = 1 if way[1] == "y" else 0
-    assert slide.upright == bool(along)
+    assert measured.is_upright == bool(along) and measured.setting.length == travelled
     assert moved[along] == pytest.approx(travelled * (1 if way[0] == "+" else -1))
     assert slide.clamping is not None and slide.clamping[along] * moved[along] < 0
-    base = seen.carriers[0]
-    assert base.clamping is None and base.slid is None
+    assert base.clamping is None and not seen.clamps
     towards = {"+x": "right", "-x": "left", "+y": "top", "-y": "bottom"}[way]
     back = {"right": "left", "left": "right", "top": "bottom", "bottom": "top"}[towards]
     assert base.facing == {towards} and slide.facing == {back}
@@ -104,7 +106,7 @@ def test_a_plate_alone_faces_nothing() -> None:
     fixture = pegs_in(toolkit, 0.0, ("base", 0, 0), ("base", 3, 0), ("base", 0, 4), ("base", 3, 4))
     seen = shown_beside(Box(5.0, 5.0, 25.0, 40.0), fixture, toolkit)
     check(seen)
-    assert seen.travels == [] and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
+    assert seen.measured is None and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
     assert seen.carriers[0].plate == Box(-5.0, -6.0, 35.0, 54.0) and seen.carriers[0].broken == frozenset()
 
 
@@ -117,7 +119,8 @@ def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tupl
     check(seen)
     left, right = seen.carriers
     assert (left.clamping, right.clamping) == (None, clamping)
-    assert right.slid == ((20.0, 2.0), (56.0, 2.0))
+    assert seen.measured is not None
+    assert (seen.measured.setting.start, seen.measured.setting.end) == ((20.0, 2.0), (56.0, 2.0))
     assert [(hole.column, hole.row) for hole in left.holes() if hole.blocked] == [(2, 1)]
     assert {hole.column for hole in right.holes() if hole.blocked} == {0}
     assert left.columns[-1] == 2 and right.columns[0] == 0
@@ -163,3 +166,24 @@ def test_a_pose_and_its_way_back(theta: float, x: float, y: float) -> None:
     assert pose.inverse.turn(*pose.turn(3.0, -4.0)) == pytest.approx((3.0, -4.0))
     many = np.column_stack(pose.apply(np.array([3.0, 0.0]), np.array([-4.0, 0.0])))
     assert many == pytest.approx(np.array([there, (x, y)]))
+
+
+@pytest.mark.parametrize("row", [10**5, 2**31 - 1])
+def test_too_many_holes_are_not_shown(row: int) -> None:
+    """Two pegs far apart, and a part far away, are refused before any hole is counted."""
+    vise = Vise(pitch=10, columns=3, peg_radius=2)
+    far = pegs_in(vise, 30.0, ("left", 0, 0), ("left", 1, row), ("right", 0, 0), ("right", 1, 1))
+    near = pegs_in(vise, 30.0, ("left", 0, 0), ("left", 1, 3), ("right", 0, 0), ("right", 1, 1))
+    assert len(shown_beside(Box(0.0, 0.0, 50.0, 50.0), near, vise).carriers) == 2
+    for part, fixture in ((Box(0.0, 0.0, 50.0, 50.0), far), (Box(0.0, 10.0 * row, 50.0, 1e300), near)):
+        with pytest.raises(InputError, match="too many to show"):
+            shown_beside(part, fixture, vise)
+
+
+@pytest.mark.parametrize(("peg_radius", "hole"), [(3.0, 3.0), (4.9, 4.2), (0.5001, 0.5001), (0.0, 10 / 7)])
+def test_a_hole_is_drawn_as_large_as_its_peg(peg_radius: float, hole: float) -> None:
+    """Neighbouring holes stay apart where pegs nearly overlap, and pegs that are points have holes to be seen."""
+    toolkit = Vise(pitch=(10, 14), columns=2, peg_radius=peg_radius)
+    fixture = pegs_in(toolkit, 20.0, ("left", 0, 0), ("left", 1, 2), ("right", 0, 0), ("right", 1, 1))
+    seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
+    assert [each.hole_radius for each in seen.carriers] == pytest.approx([hole, hole])

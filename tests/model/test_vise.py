@@ -5,13 +5,15 @@ from __future__ import annotations
 from math import inf, nan
 
 import pytest
+from attrs import evolve
 from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import vises
 from workhold.errors import InputError
 from workhold.model.fixture import Peg
-from workhold.model.holes import column_letters
+from workhold.model.holes import Holes, column_letters, holes_named
+from workhold.model.units import MILLIMETRE
 from workhold.model.vise import Vise
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
@@ -86,8 +88,46 @@ def test_hole_names():
     assert Peg("right", 26, 0, 0.0, 0.0, 5, 0.3).hole == "R-AA1"
 
 
+@given(st.sampled_from(["left", "right"]), st.integers(0, 18_000), st.none() | st.integers(0, 999_999))
+def test_a_hole_is_found_again_by_its_name(carrier: str, column: int, row: int | None) -> None:
+    """Of carriers of any names, also in small letters and without the hyphen."""
+    holes = Holes(carrier, column, row)
+    assert holes_named(holes.name, ("left", "right"), "jaw") == holes
+    assert holes_named(f" {holes.name.lower().replace('-', '')}", ("left", "right"), "jaw") == holes
+    plates = {"left": "wall", "right": "floor"}
+    on_plate = Holes(plates[carrier], column, row)
+    assert holes_named(on_plate.name, plates.values(), "plate") == on_plate
+    with pytest.raises(InputError, match="give plate, column letter and row"):
+        holes_named(holes.name, ("wall", "floor"), "plate")
+
+
 def test_column_letters_count_without_a_zero():
     """A..Z, AA..ZZ, AAA: all different, in order of length and then of the alphabet."""
     names = [column_letters(k) for k in range(26 + 26**2 + 1)]
     assert names == sorted(names, key=lambda name: (len(name), name)) and len(set(names)) == len(names)
     assert (names[0], names[25], names[26], names[-2], names[-1]) == ("A", "Z", "AA", "ZZ", "AAA")
+
+
+def test_further_changes_are_what_their_words_say() -> None:
+    """Lengths in the words are those of the changed vise; half the pitch is offered where pegs fit it both ways."""
+    vise = Vise(pitch=(16, 20), columns=2, peg_radius=4, min_gap=12)
+    assert {one.words: vise.changed(one.fields) for one in vise.further_changes(MILLIMETRE)} == {
+        "with a smallest gap of 8 mm": evolve(vise, min_gap=8.0),
+        "with one more column on each jaw": evolve(vise, columns=3),
+        "with the right jaw's rows offset by 10 mm": evolve(vise, row_offset=10.0),
+        "with half the pitch": evolve(vise, pitch=(8.0, 10.0), min_gap=8.0),
+    }
+    narrow = evolve(vise, pitch=(15.0, 20.0), min_gap=8.0, row_offset=1.0)
+    assert [one.words for one in narrow.further_changes(MILLIMETRE)] == ["with one more column on each jaw"]
+
+
+def test_limits_are_lifted_one_by_one() -> None:
+    """A vise without limits has none to lift; each that is lifted leaves the others."""
+    plain = Vise(**VALID)
+    assert plain.limits == ()
+    vise = Vise(**VALID, body_radius=4, max_opening=50, rows=4, blocked=["L-A"])
+    assert [limit.bounds for limit in vise.limits] == ["bodies", "travel", "holes", "holes"]
+    for limit in vise.limits:
+        left = vise.changed(limit.lifted.fields).limits
+        assert [one.rule for one in left] == [one.rule for one in vise.limits if one != limit]
+    assert vise.without(vise.limits) == plain

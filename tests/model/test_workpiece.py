@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, inf, nan, pi, radians, sin, tan
+from typing import Any
 
 import numpy as np
 import pytest
@@ -185,3 +186,26 @@ def test_size_and_place_do_not_matter(piece, change):
     for one, two in zip(again.faces, piece.faces, strict=True):
         assert one.segment.length == pytest.approx(scale * two.segment.length, rel=1e-6)
         assert one.segments == two.segments
+
+
+@pytest.mark.parametrize(
+    ("loops", "words"),
+    [
+        (np.zeros((2, 4, 3)), "segment 0 has zero length"),
+        (np.zeros((2, 3, 4)), "loop 0 is not a list of .x, y, bulge. numbers"),
+        (np.zeros((4, 3)), "loop 0 is not a list of .x, y, bulge. numbers"),
+        (np.zeros((0, 4, 3)), "has no loop"),
+        (5, "has no list of loops"),
+        (None, "has no list of loops"),
+    ],
+)
+def test_loops_of_another_form_are_refused(loops: Any, words: str) -> None:
+    """Arrays of all dimensions, and what is no list."""
+    with pytest.raises(InputError, match=words):
+        Workpiece.from_loops("part", loops)
+
+
+def test_loops_may_be_an_array() -> None:
+    """Of three dimensions, where all have as many segments."""
+    loops = np.array([[[0, 0, 0], [40, 0, 0], [40, 40, 0]], [[30, 10, 0], [34, 10, 0], [34, 14, 0]]])
+    assert len(Workpiece.from_loops("part", loops).segments) == 6

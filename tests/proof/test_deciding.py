@@ -70,18 +70,18 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
 def test_a_cancel_on_the_way_stops_ball_arithmetic(
     found: tuple[Problem, list[NDArray[np.float64]], Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Boxes that narrowing gives up go to ball arithmetic one by one; a cancel there leaves the rest."""
+    """Boxes that doubles give up go to ball arithmetic one by one; a cancel there leaves the rest."""
     problem, records, _ = found
     monkeypatch.setattr(deciding, "interval_newton_in_doubles", lambda block, *_: (block[:0], block))
     cancel = Event()
     looked_at = []
-    settled = deciding.record_in_balls
+    original = deciding.record_in_balls
 
     def one(*arguments: object) -> object:
         looked_at.append(arguments)
         if len(looked_at) == 3:
             cancel.set()
-        return settled(*arguments)  # type: ignore[arg-type]
+        return original(*arguments)  # type: ignore[arg-type]
 
     monkeypatch.setattr(deciding, "record_in_balls", one)
     together = np.concatenate(records)
@@ -125,7 +125,7 @@ def test_overlapping_boxes_of_the_same_pegs_are_one(found: tuple[Problem, list[N
 
 def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) -> None:
     """The precision of ball arithmetic belongs to the whole process: with every open record sent there, from small blocks
-    on many threads, no two boxes are settled at the same time, and the outcome is the same as on one thread."""
+    on many threads, no two boxes are decided at the same time, and the outcome is the same as on one thread."""
     inside, most = [0], [0]
     solutions_in = settling.solutions_in
 

@@ -1,4 +1,4 @@
-"""Boxes with two, one, a double or no solution are settled."""
+"""Boxes with two, one, a double or no solution are decided."""
 
 from __future__ import annotations
 

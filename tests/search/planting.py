@@ -117,10 +117,10 @@ def plant(seed: int) -> Plant | None:
         vertices_of_side = side(random, start, end, touches[peg], normals[peg], vise.peg_radius)
         names[int(peg)] = len(vertices) + (1 if len(vertices_of_side) == 3 else 0)
         vertices += vertices_of_side
-    return settled(random, vise, pegs, separation, np.array(vertices), names, lefts)
+    return drawn(random, vise, pegs, separation, np.array(vertices), names, lefts)
 
 
-def settled(
+def drawn(
     random: np.random.Generator,
     vise: Vise,
     pegs: list[dict[str, Any]],

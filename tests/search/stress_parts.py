@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import partial
 from math import cos, degrees, pi, radians, sin, sqrt, tan
+from random import Random
 
 from attrs import evolve, frozen
 from flint import arb, ctx
@@ -12,12 +13,12 @@ from flint import arb, ctx
 from fixture_sets import Listed
 from workhold import Vise, Workpiece
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.query import Query
 from workhold.verification.balls import dot
 from workhold.verification.closure import minors
 from workhold.verification.contacts import Contact, contact_system
 from workhold.verification.contacts import Pose as Balls
 from workhold.verification.fixture_proof import Judge
-from workhold.verification.holes import hole_place
 from workhold.verification.krawczyk import certified_zero
 from workhold.verification.outline import Outline
 
@@ -25,6 +26,8 @@ __all__ = [
     "Carried",
     "bracket_with_fillet",
     "carried_over",
+    "crowned",
+    "cut_circle",
     "disc",
     "held_in_notch",
     "lug",
@@ -68,16 +71,13 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
     A fixture is a simple root of the contact equations, so it moves little when the part changes little. Nothing of the
     search is used: roots are enclosed by Krawczyk's theorem, the rules are decided in ball arithmetic.
     """
-    judge = Judge(part, vise)
+    judge = Judge(Query(part, vise))
     out = []
     for fixture in fixtures:
         start = [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y, fixture.jaw_separation]
         with ctx.workprec(256):
             faces = Outline.of(part).faces
-            contacts = [
-                Contact(hole_place(peg, vise), int(peg.jaw == "right"), faces[peg.face], arb(vise.peg_radius))
-                for peg in fixture.pegs
-            ]
+            contacts = [judge.hardware.contact(peg, faces[peg.face]) for peg in fixture.pegs]
             zero = certified_zero(partial(contact_system, contacts), start)
             if zero is None:
                 out.append(Carried(fixture, "missing", "", 0.0))
@@ -96,11 +96,11 @@ def solved_fixture(fixture: Fixture, contacts: list[Contact], zero: list[arb]) -
     normals = [contact.side.outward(point) for contact, point in zip(contacts, points, strict=True)]
     vector = minors(points, normals)
     across = pose.cosine, -pose.sine
-    push = -sum((vector[k] * dot(across, normals[k]) for k in range(4) if not contacts[k].right), arb(0))
+    push = -sum((vector[k] * dot(across, normals[k]) for k in range(4) if not contacts[k].way[0] > 0), arb(0))
     theta, x, y, separation = (float(entry.mid()) for entry in zero)
     opened = separation - fixture.jaw_separation
     first, second, third, fourth = (
-        evolve(peg, x=peg.x + opened * (peg.jaw == "right"), force=float((entry / push).mid()))
+        evolve(peg, x=peg.x + opened * (peg.carrier == "right"), force=float((entry / push).mid()))
         for peg, entry in zip(fixture.pegs, vector, strict=True)
     )
     return Fixture(fixture.type, (first, second, third, fourth), Pose(degrees(theta), x, y), separation, quality={})
@@ -134,6 +134,26 @@ def resized(fixtures: Iterable[Listed], scale: float) -> list[Listed]:
 def disc(radius: float, x: float = 0.0, y: float = 0.0) -> Loop:
     """A whole circle as two halves."""
     return [[x + radius, y, 1.0], [x - radius, y, 1.0]]
+
+
+def crowned(bulge: float) -> Workpiece:
+    """A plate with a hole, one edge of which has a bulge."""
+    outline: Loop = [[0, 0, bulge], [61.3, 0, 0], [61.3, 38.7, 0], [0, 38.7, 0]]
+    return workpiece("crowned", [outline, disc(8.2, 23.1, 17.9)])
+
+
+def cut_circle(count: int, off: float) -> Workpiece:
+    """A circle as a tool path has it: arcs between places on it, each with a sweep that is off by up to ``off`` radians."""
+    random, step = Random(7), 2 * pi / count
+    return workpiece(
+        "circle",
+        [
+            [
+                [20 * cos(k * step), 20 * sin(k * step), tan((step + off * random.uniform(-1, 1)) / 4)]
+                for k in range(count)
+            ]
+        ],
+    )
 
 
 def stepped(tilt: float = 0.0) -> Workpiece:

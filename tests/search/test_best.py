@@ -95,6 +95,7 @@ def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> N
         held.append(len(self.kept.standing))
 
     monkeypatch.setattr(BestFixtures, "decide", watched)
+    monkeypatch.setattr("workhold.listing.best.WAITING_LONG", 500)
     design(load("oblongPart"), Vise(pitch=8, columns=10, peg_radius=3), best=50)
     assert len(held) > 3 and max(held) < 50 * 8
 

@@ -68,7 +68,7 @@ def test_mirroring_part_and_vise(workpiece: Workpiece, pitch: float, count: int,
 
     there = design(redrawn, vise_for(pitch, count, -offset))
     here = mirrored(listed(design(workpiece, vise_for(pitch, count, offset))), face)
-    assert_same(listed(there), here, Judge(redrawn, there.vise))
+    assert_same(listed(there), here, Judge(redrawn, there.toolkit))
 
 
 @settings(max_examples=EXAMPLES)

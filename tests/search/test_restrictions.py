@@ -35,7 +35,7 @@ def triangle() -> Workpiece:
 
 def identities(result: Result, chosen: list[bool] | None = None) -> list[Key]:
     """Identities of the fixtures listed, or of the chosen ones, sorted."""
-    judge = Judge(result.workpiece, result.vise)
+    judge = Judge(result.workpiece, result.toolkit)
     found = [judge.identity(fixture) for fixture in listed(result)]
     if chosen is not None:
         found = [identity for identity, is_chosen in zip(found, chosen, strict=True) if is_chosen]
@@ -53,7 +53,7 @@ def peg_places(fixture: Fixture) -> list[tuple[float, float]]:
 def test_avoided_faces_are_not_touched_and_nothing_else_is_lost(free: Result) -> None:
     """What is left are exactly the fixtures that never touched them."""
     avoid = (1, 4)
-    limited = design(free.workpiece, free.vise, restrictions=Restrictions(avoid=avoid))
+    limited = design(free.workpiece, free.toolkit, restrictions=Restrictions(avoid=avoid))
     chosen = [not any(peg.face in avoid for peg in fixture.pegs) for fixture in free]
     assert 0 < sum(chosen) < len(free)
     assert identities(limited) == identities(free, chosen)
@@ -96,7 +96,7 @@ def test_thick_bodies_keep_pegs_apart(free: Result) -> None:
 @pytest.mark.parametrize("angles", [((-20.0, 35.0),), ((0.0, 0.0), (170.0, 200.0)), ((0.0, 360.0),)])
 def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) -> None:
     """Type I counts when it or its half turn lies in a range, and is listed as it lies there; less is searched."""
-    limited = design(free.workpiece, free.vise, restrictions=Restrictions(angles=angles))
+    limited = design(free.workpiece, free.toolkit, restrictions=Restrictions(angles=angles))
 
     def lies(theta: float) -> bool:
         return any((theta - low + 1e-7) % 360 <= high - low + 2e-7 for low, high in angles)
@@ -106,7 +106,7 @@ def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) 
     assert sum(chosen) > 0
     assert identities(limited) == identities(free, chosen)
     assert (limited.statistics["curve_pairs"] < free.statistics["curve_pairs"]) == (sum(chosen) < len(free))
-    judge = Judge(limited.workpiece, limited.vise)
+    judge = Judge(limited.workpiece, limited.toolkit)
     assert all(judge.check(fixture)[0] == [] for fixture in listed(limited)[::9])
 
 
@@ -114,24 +114,24 @@ def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) 
 @pytest.mark.parametrize("names", [["L-A"], ["R-A2", "L-B3", "R-B1"], ["L-A", "R-B"]])
 def test_no_peg_stands_in_a_blocked_hole(free: Result, rows: int | None, names: list[str]) -> None:
     """A fixture is left exactly when it, or for Type I its half turn, can be shifted to holes that are free."""
-    blocked = tuple(map(holes_named, names))
+    blocked = tuple(holes_named(name, ("left", "right"), "jaw") for name in names)
     limited = design(free.workpiece, vise(rows=rows, blocked=blocked))
     for fixture in limited:
         for peg in fixture.pegs:
-            assert not any((peg.jaw, peg.column) == (h.jaw, h.column) and h.row in (None, peg.row) for h in blocked), (
-                fixture
-            )
+            assert not any(
+                (peg.carrier, peg.column) == (h.carrier, h.column) and h.row in (None, peg.row) for h in blocked
+            ), fixture
     unblocked = design(free.workpiece, vise(rows=rows))
-    chosen = [can_stand(fixture, unblocked.vise, blocked) for fixture in unblocked]
+    chosen = [can_stand(fixture, unblocked.toolkit, blocked) for fixture in unblocked]
     assert sum(chosen) > 0
     assert identities(limited) == identities(unblocked, chosen)
-    judge = Judge(limited.workpiece, limited.vise)
+    judge = Judge(limited.workpiece, limited.toolkit)
     assert all(judge.check(fixture)[0] == [] for fixture in listed(limited)[::9])
 
 
 def can_stand(fixture: Fixture, vise: Vise, blocked: tuple[object, ...]) -> bool:
     """Whether some shift of a fixture's pegs, by columns on each jaw and by rows, avoids blocked holes."""
-    forms = [[(peg.jaw, peg.column, peg.row) for peg in fixture.pegs]]
+    forms = [[(peg.carrier, peg.column, peg.row) for peg in fixture.pegs]]
     if fixture.type == "I":
         other = {"left": "right", "right": "left"}
         forms.append([(other[jaw], -column, -row) for jaw, column, row in forms[0]])
@@ -159,8 +159,8 @@ def can_stand(fixture: Fixture, vise: Vise, blocked: tuple[object, ...]) -> bool
 
 def sum_outward(fixture: Fixture, vise: Vise) -> int:
     """Columns that the pegs of a fixture stand away from the opening."""
-    left = max(peg.column for peg in fixture.pegs if peg.jaw == "left")
-    right = min(peg.column for peg in fixture.pegs if peg.jaw == "right")
+    left = max(peg.column for peg in fixture.pegs if peg.carrier == "left")
+    right = min(peg.column for peg in fixture.pegs if peg.carrier == "right")
     return vise.columns - 1 - left + right
 
 
@@ -169,14 +169,14 @@ def is_free(jaw: str, outward: int, row: int, vise: Vise, blocked: tuple[object,
     if outward >= vise.columns:
         return False
     column = vise.columns - 1 - outward if jaw == "left" else outward
-    return not any((h.jaw, h.column) == (jaw, column) and h.row in (None, row) for h in blocked)  # type: ignore[attr-defined]
+    return not any((h.carrier, h.column) == (jaw, column) and h.row in (None, row) for h in blocked)  # type: ignore[attr-defined]
 
 
 def test_both_engines_agree_under_restrictions() -> None:
     """The paper's polynomials, given the same features and rules, list the same fixtures."""
     part = triangle()
     limits = Restrictions(zones=(circle_zone(0.0, 0.0, 12.0),), angles=((-30.0, 60.0), (140.0, 170.0)))
-    small = Vise(pitch=20, columns=2, peg_radius=3, body_radius=4, blocked=[holes_named("R-A")])
+    small = Vise(pitch=20, columns=2, peg_radius=3, body_radius=4, blocked=["R-A"])
     query = Query(part, small, restrictions=limits)
     one, other = (engine(query) for engine in (answer, answer_by_algebra))
     assert len(one) > 0 and identities(one) == identities(other)
@@ -213,9 +213,9 @@ def test_any_segment_of_a_face_names_it() -> None:
     ("changes", "words"),
     [
         ({"body_radius": 2.0}, "body radius 2 is not one"),
-        ({"blocked": [holes_named("L-C1")]}, "L-C1 is blocked, but each jaw has only 2 columns"),
-        ({"rows": 3, "blocked": [holes_named("R-A4")]}, "R-A4 is blocked, but each jaw has only 3 rows"),
-        ({"blocked": [holes_named("L-A"), holes_named("L-B")]}, "every column of the left jaw is blocked"),
+        ({"blocked": ["L-C1"]}, "L-C1 is blocked, but each jaw has only 2 columns"),
+        ({"rows": 3, "blocked": ["R-A4"]}, "R-A4 is blocked, but each jaw has only 3 rows"),
+        ({"blocked": ["L-A", "L-B"]}, "every column of the left jaw is blocked"),
     ],
 )
 def test_vises_that_cannot_be(changes: dict[str, object], words: str) -> None:

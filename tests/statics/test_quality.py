@@ -21,6 +21,7 @@ from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
     END_DISTANCE,
+    FIGURES,
     LOAD_REACTION,
     LOCATION_ERROR,
     WRENCH_RADIUS,
@@ -39,14 +40,14 @@ class TestHeld:
 
     def test_forces_and_closure_margin_are_those_of_the_search(self, result: Result) -> None:
         """The smallest entry of the null vector and the largest force per unit of jaw force, as found with the fixture."""
-        quality = quality_of(result.table, result.workpiece, result.vise)
+        quality = quality_of(result.table, result.workpiece, result.toolkit)
         assert quality[:, CLOSURE_MARGIN] == pytest.approx(result.table.null_vector.min(axis=1), abs=1e-9)
         assert quality[:, CLAMP_AMPLIFICATION] == pytest.approx(result.table.force.max(axis=1), rel=1e-6)
 
     def test_wrench_radius_is_that_of_the_convex_hull(self, result: Result) -> None:
         """Qhull's nearest facet of the wrenches (n, (q - c) x n / L) is as far."""
-        quality = quality_of(result.table, result.workpiece, result.vise)
-        radius = result.vise.peg_radius
+        quality = quality_of(result.table, result.workpiece, result.toolkit)
+        radius = result.toolkit.peg_radius
         length = outline_diameter(result.workpiece) / 2 + radius
         for fixture, found in zip(result, quality[:, WRENCH_RADIUS], strict=True):
             points, normals = contacts(fixture, result.workpiece, radius)
@@ -57,8 +58,8 @@ class TestHeld:
 
     def test_a_peg_can_walk_the_end_distance_and_no_farther(self, result: Result) -> None:
         """Along its face, either way, a peg stays clear of the rest of the part for that long; one of the four no longer."""
-        quality = quality_of(result.table, result.workpiece, result.vise)
-        radius = result.vise.peg_radius
+        quality = quality_of(result.table, result.workpiece, result.toolkit)
+        radius = result.toolkit.peg_radius
         for fixture, found in list(zip(result, quality[:, END_DISTANCE], strict=True))[::3]:
             points, normals = contacts(fixture, result.workpiece, radius)
             centers = points + radius * normals
@@ -71,7 +72,7 @@ class TestHeld:
     def test_location_error_is_that_of_the_pose_solved_anew(self, result: Result) -> None:
         """The pose's derivatives, by solving the contact equations with one error at a time, give it over all corners."""
         tolerance = Tolerance(peg=0.012, face=0.03)
-        quality = quality_of(result.table, result.workpiece, result.vise, tolerance)
+        quality = quality_of(result.table, result.workpiece, result.toolkit, tolerance)
         points = silhouette(result.workpiece)
         for fixture, found in list(zip(result, quality[:, LOCATION_ERROR], strict=True))[::2]:
             moves = np.array([movement(fixture, result, points, peg) for peg in range(4)])
@@ -93,14 +94,14 @@ class TestHeld:
             Load(points=path, force=80.0, directions=(-50, 40), moment=300.0),
             Load(moment=-700.0),
         ]
-        together = quality_of(result.table, result.workpiece, result.vise, loads=loads)[:, LOAD_REACTION]
+        together = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)[:, LOAD_REACTION]
         single = [
-            quality_of(result.table, result.workpiece, result.vise, loads=[load])[:, LOAD_REACTION] for load in loads
+            quality_of(result.table, result.workpiece, result.toolkit, loads=[load])[:, LOAD_REACTION] for load in loads
         ]
         assert together == pytest.approx(np.max(single, axis=0), rel=1e-12)
         for k, fixture in enumerate(result):
-            wrenches, _ = force_directions(fixture, result.workpiece, result.vise.peg_radius)
-            cases = load_cases(fixture, result.workpiece, result.vise, loads)
+            wrenches, _ = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
+            cases = load_cases(fixture, result.workpiece, result.toolkit, loads)
             for load, case, figures in zip(loads, cases, single, strict=True):
                 worst = case.reaction
                 assert worst.value == pytest.approx(figures[k], rel=1e-6)
@@ -168,9 +169,10 @@ def solved(fixture: Fixture, result: Result, off: int, error: float) -> Array:
     """Orientation, place and opening of the jaws (4,) when one peg stands off by an error in mm, without first order."""
     segments = {face.number: face.segment for face in result.workpiece.faces}
     pegs = [
-        (peg.x, peg.y, peg.jaw == "right", segments[peg.face], error * (k == off)) for k, peg in enumerate(fixture.pegs)
+        (peg.x, peg.y, peg.carrier == "right", segments[peg.face], error * (k == off))
+        for k, peg in enumerate(fixture.pegs)
     ]
-    radius = result.vise.peg_radius
+    radius = result.toolkit.peg_radius
 
     def gaps(z: Array) -> list[float]:
         c, s = cos(z[0]), sin(z[0])
@@ -204,7 +206,7 @@ def test_pegs_that_share_a_face_share_its_error() -> None:
     """Every fixture of a triangle has two pegs on one face, so faces that are off move it no more than pegs that are."""
     result = held("triangle", 20, 2, 3, 30)
     apart, together = (
-        quality_of(result.table, result.workpiece, result.vise, Tolerance(peg, face))[:, LOCATION_ERROR]
+        quality_of(result.table, result.workpiece, result.toolkit, Tolerance(peg, face))[:, LOCATION_ERROR]
         for peg, face in ((0.02, 0.0), (0.0, 0.02))
     )
     assert (together <= apart * (1 + 1e-9)).all() and (together < 0.99 * apart).mean() > 0.5
@@ -214,7 +216,7 @@ def test_location_error_grows_with_the_tolerances_in_proportion() -> None:
     """First order: twice the tolerances, twice the error; none, none."""
     result = held("widget", 8, 1, 3, 50)
     one, two, none = (
-        quality_of(result.table, result.workpiece, result.vise, Tolerance(t, t))[:, LOCATION_ERROR]
+        quality_of(result.table, result.workpiece, result.toolkit, Tolerance(t, t))[:, LOCATION_ERROR]
         for t in (0.01, 0.02, 0)
     )
     assert two == pytest.approx(2 * one, rel=1e-12)
@@ -225,14 +227,14 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut into blocks of any size the figures are the same, bit for bit."""
     result = held("widget", 8, 1, 3, 50)
     loads = [Load(points=[(3, 4)], force=10)]
-    whole = quality_of(result.table, result.workpiece, result.vise, loads=loads)
+    whole = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)
     monkeypatch.setattr("workhold.statics.quality.BLOCK", 7)
-    assert np.array_equal(quality_of(result.table, result.workpiece, result.vise, loads=loads), whole)
+    assert np.array_equal(quality_of(result.table, result.workpiece, result.toolkit, loads=loads), whole)
 
 
 def test_no_fixtures_no_figures() -> None:
     """An empty table gives an empty array; without loads the load reaction is not known."""
     result = held("widget", 8, 1, 3, 50)
-    assert quality_of(FixtureTable.empty(), result.workpiece, result.vise).shape == (0, 6)
-    quality = quality_of(result.table, result.workpiece, result.vise)
+    assert quality_of(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, len(FIGURES))
+    quality = quality_of(result.table, result.workpiece, result.toolkit)
     assert np.isnan(quality[:, LOAD_REACTION]).all() and not np.isnan(quality[:, :LOAD_REACTION]).any()

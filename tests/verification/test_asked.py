@@ -12,7 +12,6 @@ import pytest
 
 from workhold import Result, Vise, design, load
 from workhold.listing.ranking import ranking_keys
-from workhold.model.holes import holes_named
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
 from workhold.model.restrictions import Restrictions, circle_zone
@@ -24,7 +23,7 @@ Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
 @pytest.fixture(scope="module")
 def limited() -> Result:
     """The best fixtures of a search with everything that can be asked for."""
-    vise = Vise(pitch=8, columns=2, peg_radius=3, body_radius=3.5, blocked=[holes_named("R-B")])
+    vise = Vise(pitch=8, columns=2, peg_radius=3, body_radius=3.5, blocked=["R-B"])
     asked = Restrictions(avoid=(3,), zones=(circle_zone(40.0, 30.0, 4.0),), angles=((-80.0, 60.0),))
     return design(load("widget"), vise, restrictions=asked, loads=[Load(((10.0, 5.0),), 100.0)], best=10)
 
@@ -54,10 +53,10 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
     hole = limited[0].pegs[3].hole
 
     def verified_in(**changes: Any) -> Verification:
-        vise = attrs.evolve(limited.vise, **changes)
+        vise = attrs.evolve(limited.toolkit, **changes)
         return verify(attrs.evolve(limited, query=attrs.evolve(limited.query, toolkit=vise)))
 
-    outcome = verified_in(blocked=[holes_named(hole)])
+    outcome = verified_in(blocked=[hole])
     assert any(f"stands in {hole}, which is blocked" in item.reason for item in outcome.unproven)
     outcome = verified_in(body_radius=200.0, blocked=[])
     assert any("overlap" in item.reason or "stands over" in item.reason for item in outcome.unproven)
@@ -67,7 +66,7 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
 def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""
     quality = limited.table.quality.copy()
-    quality[4, number] *= 1 + 1e-6
+    quality[4, number] += 1e-6 * max(quality[4, number], 1.0)
     outcome = verify(attrs.evolve(limited, table=attrs.evolve(limited.table, quality=quality)))
     assert [item.index for item in outcome.unproven] == [4]
     assert FIGURES[number].words in outcome.unproven[0].reason
@@ -101,9 +100,9 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
     """It is a fault, unless they count as equal by all that they are ranked by."""
     order = np.arange(len(limited))
     order[[place, place + 1]] = place + 1, place
-    equal = np.array_equal(
-        *np.round(np.array(ranking_keys(limited.table.quality, limited.query.ranking)).T[order[place:][:2]], 9)
-    )
+    query = limited.query
+    keys = np.array(ranking_keys(limited.table.quality, query.ranking, query.tolerance))
+    equal = np.array_equal(*np.round(keys.T[order[place:][:2]], 9))
     outcome = verify(attrs.evolve(limited, table=limited.table.take(order)))
     assert (outcome.faults == ()) == equal
     assert outcome.proven == len(limited)

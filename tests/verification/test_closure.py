@@ -15,11 +15,14 @@ from hypothesis import given
 
 from closing_forces import null_vectors
 from strategies import seeds
+from workhold import Vise
 from workhold.verification.balls import Point
 from workhold.verification.closure import Balance, closure_findings, minors, span
 from workhold.verification.contacts import Pose
+from workhold.verification.vise import ViseRules
 
 # The part as it is drawn.
+HARDWARE = ViseRules(Vise(pitch=10, columns=1, peg_radius=0))
 UPRIGHT = Pose.of(arb(0), arb(0), arb(0), arb(0))
 
 
@@ -72,7 +75,7 @@ class FixedContact:
 
     place: tuple[arb, arb]
     normal: tuple[arb, arb]
-    right: int
+    way: tuple[int, int]
 
     @property
     def side(self) -> FixedContact:
@@ -96,11 +99,11 @@ def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_p
     for part, spans in ((0.999, False), (1.001, True)):
         offset = arb(part * 1e-7 * length / 8)
         contacts = [
-            FixedContact((offset * x, offset * y), (arb(n), arb(m)), int(k > 1))
+            FixedContact((offset * x, offset * y), (arb(n), arb(m)), (int(k > 1), 0))
             for k, ((x, y), (n, m)) in enumerate(ways)
         ]
         balance = Balance.of(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
-        words = [found.reason for found in closure_findings(balance, length, 1)]
+        words = [found.reason for found in closure_findings(balance, length, HARDWARE)]
         assert any("their wrenches span only" in reason for reason in words) == (not spans)
 
 

@@ -6,6 +6,7 @@ import attrs
 import pytest
 
 from workhold import Fixture, Pose, Result
+from workhold.verification.kinds import hardware_of
 from workhold.verification.repeats import Seen
 
 
@@ -26,7 +27,7 @@ def half_turned(fixture: Fixture) -> Fixture:
     pegs = [
         attrs.evolve(
             peg,
-            jaw="left" if peg.jaw == "right" else "right",
+            carrier="left" if peg.carrier == "right" else "right",
             column=1 - peg.column,
             row=-peg.row,
             x=width - peg.x,
@@ -45,7 +46,7 @@ def moved(fixture: Fixture, distance: float) -> Fixture:
 
 @pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
 def test_the_same(widget_result: Result, again: object) -> None:
-    seen = Seen()
+    seen = Seen(hardware_of(widget_result.toolkit))
     for index, fixture in enumerate(widget_result):
         assert seen.add(index, fixture) is None
     for index, fixture in enumerate(widget_result):
@@ -54,9 +55,9 @@ def test_the_same(widget_result: Result, again: object) -> None:
 
 def test_not_the_same(widget_result: Result) -> None:
     """Another place of the workpiece, or another opening with the same left pegs and pose."""
-    seen = Seen()
+    seen = Seen(hardware_of(widget_result.toolkit))
     fixture = widget_result[0]
-    right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.jaw == "right")) for peg in fixture.pegs]
+    right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
     assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [None, None, None]
     assert seen.add(3, moved(fixture, 1e-8)) == 0

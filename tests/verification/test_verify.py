@@ -163,3 +163,11 @@ def test_progress_runs_to_the_end(widget_result: Result) -> None:
     assert len(told) == len(widget_result)
     assert told[-1] == (1.0, 0)
     assert told == sorted(told)
+
+
+def test_a_part_with_faces_a_hair_off_square_is_proven() -> None:
+    """Which of the two directions counts is one rule, so that the tilts of the file are those of the verification."""
+    loop = [[0, 0, 0.05], [64, 1.5, 0.02], [83.1265, 44.4598, 0], [-1.84987, 40.5763, 0]]
+    result = design(Workpiece.from_loops("part", [loop]), Vise(pitch=20, columns=1, peg_radius=2))
+    assert len(result) > 0
+    assert verify(result).proven == len(result)

@@ -80,7 +80,7 @@ def fixture_of(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) ->
 
 def neighbour(random: Random, fixture: Fixture, vise: Vise, faces: list[int]) -> list[Hole] | None:
     """The holes and faces of a fixture with one or two of them changed."""
-    holes: list[Any] = [[peg.jaw, peg.column, peg.row, peg.face] for peg in fixture.pegs]
+    holes: list[Any] = [[peg.carrier, peg.column, peg.row, peg.face] for peg in fixture.pegs]
     for _ in range(random.randint(1, 2)):
         hole = random.choice(holes)
         change = random.choice(["row", "column", "face"])
@@ -111,7 +111,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_neighbours_of_fixtures(name: str) -> None:
     result: Result = CASES[name]()
-    workpiece, vise = result.workpiece, result.vise
+    workpiece, vise = result.workpiece, result.toolkit
     judge, random = Judge(workpiece, vise), Random(7)
     faces = [face.number for face in workpiece.faces]
     seen: Counter[str] = Counter()

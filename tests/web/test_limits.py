@@ -21,7 +21,7 @@ LIMITED = {
     "seconds": 1.5,
     "fixtures": 100,
     "kept_jobs": 20,
-    "kept_bytes": 60_000,
+    "kept_bytes": 70_000,
     "streams": 1,
 }
 

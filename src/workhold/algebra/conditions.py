@@ -1,4 +1,4 @@
-"""From simultaneous contacts to fixtures: ends of features, jaws apart, force closure, clamping (paper, section 3, test).
+"""From simultaneous contacts to fixtures: ends of features, the gap rule, force closure, clamping (paper, section 3, test).
 
 The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that the closing steps
 would not exclude. What passes is written as records, in the layout of the compiled kernels, for those steps, which both
@@ -14,9 +14,10 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.contact.frame import Frame
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, X, Y
 from workhold.kernels.contact import closure, record
-from workhold.model.vise import Vise
 from workhold.statics.wrenches import outward_normals
 
 __all__ = ["Held", "fourth_pegs", "joined", "records_of", "row_points"]
@@ -25,8 +26,6 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Rows this near, in pitches, to the reach of a feature are looked at.
-ROUNDING = 1e-9
 # Where a horizontal nearly touches a circle, the contact moves this much more than the orientation, at most.
 STEEPEST = 1e6
 
@@ -70,16 +69,16 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
     rows : (..., 10) feature rows, the last two entries how far in mm a contact may lie past the low and the high end.
     center, radius : (...) peg centres and how far they may be off in mm.
     """
-    off = (center - rows[..., 1] - 1j * rows[..., 2]) * (rows[..., 3] - 1j * rows[..., 4])
-    straight = rows[..., 0] == 0.0
+    off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
+    straight = rows[..., IS_ARC] == 0.0
     parameter = np.where(straight, off.real, np.angle(off))
-    inside = (rows[..., 5] - np.abs(parameter)) * np.where(straight, 1.0, rows[..., 6])
-    whole = ~straight & (rows[..., 5] >= pi)
-    slack = np.where(parameter > 0.0, rows[..., 9], rows[..., 8])
+    inside = (rows[..., HALF_EXTENT] - np.abs(parameter)) * np.where(straight, 1.0, rows[..., RADIUS])
+    whole = ~straight & (rows[..., HALF_EXTENT] >= pi)
+    slack = np.where(parameter > 0.0, rows[..., HIGH_SLACK], rows[..., LOW_SLACK])
     return np.asarray(whole | (inside >= margin - slack - 2.0 * radius))
 
 
-def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float) -> Array:
+def records_of(held: Held, rows: Array, frame: Frame, margin: float, length: float) -> Array:
     """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
     Parameters
@@ -93,11 +92,11 @@ def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float
     held = held.take(np.asarray(inside.all(axis=1)))
     along = (held.center * np.exp(-1j * held.psi)[:, None]).real
     gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(axis=1, initial=-np.inf)
-    apart = np.asarray(gap >= vise.min_gap - GAP_SLACK - 8.0 * length * held.reach)
-    held, along = held.take(apart), along[apart]
+    clear = np.asarray(gap >= frame.gap - GAP_SLACK - 8.0 * length * held.reach)
+    held, along = held.take(clear), along[clear]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :8]
-    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length, vise.clamping)
+    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length, frame.toolkit.clamping)
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
     out[:, record.STANDING] = held.standing
     out[:, record.FEATURES : record.FEATURES + 4] = held.feature
@@ -107,7 +106,7 @@ def records_of(held: Held, rows: Array, vise: Vise, margin: float, length: float
     out[:, record.TAIL_X : record.TAIL_Y + 1] = points[:, 0]
     out[:, record.SEPARATION] = along[:, held.standing] - along[:, 0]
     out[:, record.REACH] = held.reach
-    out[:, record.RADIUS] = 4.0 * length * held.reach
+    out[:, record.LARGEST_RADIUS] = 4.0 * length * held.reach
     return np.asarray(out[good])
 
 
@@ -118,7 +117,7 @@ def may_close(held: Held, held_rows: Array, normals: Array, points: Array, lengt
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(
-        held_rows[..., 0] == 0.0, 0.0, 1.0 / np.where(held_rows[..., 6] == 0.0, 1.0, held_rows[..., 6])
+        held_rows[..., IS_ARC] == 0.0, 0.0, 1.0 / np.where(held_rows[..., RADIUS] == 0.0, 1.0, held_rows[..., RADIUS])
     )
     swing = radius * curvature.max(axis=1, initial=0.0)
     band = 20.0 * swing + 4.0 * radius / length + closure.ROUNDING
@@ -162,34 +161,34 @@ def wrench_minors(points: Array, normals: Array, length: float) -> Array:
 
 
 def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
-    """Where a feature's line or circle meets horizontals of the vise.
+    """Where a feature's line or circle meets horizontals of the frame.
 
     Parameters
     ----------
     row : (8,) feature row.
-    psi, height : (N,) orientation of the pegs in radians, and height along the vise's y axis in mm.
+    psi, height : (N,) orientation of the pegs in radians, and height along the frame's y axis in mm.
 
     Returns
     -------
     (indices of horizontals, points in the workpiece's frame, how much they move when height and psi do)
     """
     z = np.exp(1j * psi)
-    middle = (row[1] + 1j * row[2]) / z
+    middle = (row[X] + 1j * row[Y]) / z
     rise = height - middle.imag
-    if row[0] == 0.0:
-        tangent = (row[3] + 1j * row[4]) / z
-        index = np.flatnonzero(np.abs(tangent.imag) > 1e-12)
+    if row[IS_ARC] == 0.0:
+        tangent = (row[AXIS_X] + 1j * row[AXIS_Y]) / z
+        index = np.flatnonzero(np.abs(tangent.imag) > RISES)
         along = rise[index] / tangent.imag[index]
         slope = np.minimum(3.0 / np.abs(tangent.imag[index]), STEEPEST)
         return index, (middle[index] + along * tangent[index]) * z[index], slope
-    index = np.flatnonzero(np.abs(rise) < row[6])
-    half = np.sqrt((row[6] - rise[index]) * (row[6] + rise[index]))
+    index = np.flatnonzero(np.abs(rise) < row[RADIUS])
+    half = np.sqrt((row[RADIUS] - rise[index]) * (row[RADIUS] + rise[index]))
     both = [(middle[index] + sign * half + 1j * rise[index]) * z[index] for sign in (1.0, -1.0)]
-    slope = np.minimum(3.0 * row[6] / np.maximum(half, row[6] / STEEPEST), STEEPEST)
+    slope = np.minimum(3.0 * row[RADIUS] / np.maximum(half, row[RADIUS] / STEEPEST), STEEPEST)
     return np.concatenate([index, index]), np.concatenate(both), np.concatenate([slope, slope])
 
 
-def fourth_pegs(triples: Held, rows: Array, vise: Vise, margin: float, length: float) -> Held:
+def fourth_pegs(triples: Held, rows: Array, frame: Frame, margin: float, length: float) -> Held:
     """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
 
     Parameters
@@ -201,18 +200,18 @@ def fourth_pegs(triples: Held, rows: Array, vise: Vise, margin: float, length: f
     inside = within_ends(rows[triples.feature], triples.center, margin, radius[:, None])
     triples = triples.take(np.asarray(inside.all(axis=1)))
     turn = np.exp(-1j * triples.psi)
-    base = (triples.center[:, 0] * turn).imag + vise.row_offset
+    base = (triples.center[:, 0] * turn).imag + frame.lattice.row_offset
     found = []
     for e, row in enumerate(rows):
-        middle = ((row[1] + 1j * row[2]) * turn).imag - base
-        tangent = ((row[3] + 1j * row[4]) * turn).imag
-        half = np.abs(row[5] * tangent) if row[0] == 0.0 else np.full(len(middle), row[6])
-        lowest = np.ceil((middle - half) / vise.pitch[1] - ROUNDING).astype(np.int64)
-        highest = np.floor((middle + half) / vise.pitch[1] + ROUNDING).astype(np.int64)
+        middle = ((row[X] + 1j * row[Y]) * turn).imag - base
+        tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * turn).imag
+        half = np.abs(row[HALF_EXTENT] * tangent) if row[IS_ARC] == 0.0 else np.full(len(middle), row[RADIUS])
+        lowest = np.ceil((middle - half) / frame.lattice.pitch_y - ROW_SLACK).astype(np.int64)
+        highest = np.floor((middle + half) / frame.lattice.pitch_y + ROW_SLACK).astype(np.int64)
         steps = np.arange(int((highest - lowest).max(initial=-1)) + 1)
         owner, step = np.nonzero(lowest[:, None] + steps <= highest[:, None])
         line = lowest[owner] + step
-        index, point, slope = row_points(row, triples.psi[owner], base[owner] + line * vise.pitch[1])
+        index, point, slope = row_points(row, triples.psi[owner], base[owner] + line * frame.lattice.pitch_y)
         chosen, line = triples.take(owner[index]), line[index]
         found.append(
             Held(

@@ -10,11 +10,11 @@ a change of variables of degree one, so polynomials keep their degrees and their
 the unit circle. Nothing is at infinity there (psi = pi is z = -1), and the factors 1 + t^2 and 1 + u^2 that the paper's
 denominators leave behind are z = 0 and z = infinity, which drop out of a Laurent polynomial by themselves.
 
-A point x maps to C + R w + z x, with C, R the characteristic circle; a point of the right jaw to C + R w + z (x + sigma).
-At a fixed z a constraint is a polynomial in w and sigma, real when \|w\| = 1. It is kept as numbers:
+A point x maps to C + R w + z x, with C, R the characteristic circle; a point of the right jaw to C + R w + z (x + s), s the
+separation, the paper's sigma. At a fixed z a constraint is a polynomial in w and s, real when \|w\| = 1, kept as numbers:
 
     w_0 + 2 Re(w_1 w)                                   a trigonometric polynomial in phi, called a ring here.
-    sigma^2 square + sigma linear(w) + constant(w)      a constraint with rings as coefficients.
+    s^2 square + s linear(w) + constant(w)              a constraint with rings as coefficients.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import COINCIDENT
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, RADIUS, X, Y
 
 __all__ = ["Contacts", "Ring", "circle_constraint", "circle_difference", "line_constraint", "pair_constraint"]
 
@@ -51,7 +52,7 @@ class Contacts:
     Parameters
     ----------
     rows : (N, K, 8) feature rows.
-    point : (N, K) pegs as complex numbers from the first peg, right pegs with the jaw separation left out, in mm.
+    point : (N, K) pegs as complex numbers from the first peg, right pegs with the separation left out, in mm.
     """
 
     rows: Array
@@ -60,17 +61,17 @@ class Contacts:
     @property
     def middle(self) -> Complex:
         """A point of each line, or the centre of each circle, (N, K)."""
-        return np.asarray(self.rows[..., 1] + 1j * self.rows[..., 2])
+        return np.asarray(self.rows[..., X] + 1j * self.rows[..., Y])
 
     @property
     def normal(self) -> Complex:
         """Unit normals of lines (N, K); without meaning for circles."""
-        return np.asarray(self.rows[..., 4] - 1j * self.rows[..., 3])
+        return np.asarray(self.rows[..., AXIS_Y] - 1j * self.rows[..., AXIS_X])
 
     @property
     def radius(self) -> Array:
         """Radii (N, K), 0 for lines."""
-        return np.asarray(self.rows[..., 6])
+        return np.asarray(self.rows[..., RADIUS])
 
     def take(self, which: NDArray[np.int64] | BoolArray) -> Contacts:
         """The systems of an index array or mask."""
@@ -110,7 +111,7 @@ class Contacts:
 
 
 def line_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Array, Ring]:
-    """h (equation 2) or h_sigma (equation 4) of peg k on a line: (factor of sigma, the rest).
+    """h (equation 2) or h_sigma (equation 4) of peg k on a line: (factor of the separation, the rest).
 
     Parameters
     ----------
@@ -123,7 +124,7 @@ def line_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Array, Ring
 
 
 def circle_constraint(contacts: Contacts, k: int, psi: Array) -> tuple[Ring, Ring]:
-    """g (equation 3) or g_sigma (equation 5) of peg k on a circle: (factor of sigma, the rest); sigma^2 has factor 1."""
+    """g (equation 3) or g_sigma (equation 5) of peg k on a circle: (factor of the separation, the rest); its square: 1."""
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
     linear = Ring(2.0 * (np.conj(z) * start).real, radius * np.conj(z))
@@ -143,11 +144,11 @@ def pair_constraint(contacts: Contacts, k: int, psi: Array) -> Ring:
 
 
 def circle_difference(contacts: Contacts, k: int, m: int, psi: Array) -> tuple[Array, Ring]:
-    """g_sigma of peg m less that of peg k: sigma^2 cancels, so that it is linear in sigma like h_sigma.
+    """g_sigma of peg m less that of peg k: the square of the separation cancels, so that it is linear in it like h_sigma.
 
     Returns
     -------
-    (factor of sigma, the rest), with z - z0 divided out where the arcs slide
+    (factor of the separation, the rest), with z - z0 divided out where the arcs slide
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     _, apart = contacts.centers_apart(k, m, psi)

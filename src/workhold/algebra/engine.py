@@ -1,8 +1,12 @@
-"""The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (paper, section 3)."""
+"""The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (paper, section 3).
+
+It serves what the paper is about: two carriers alike, of which a half turn makes the other, with two pegs on each or with
+three and one. Its left and right pegs, Types I and II are those of the frame of the search.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from threading import Event
 
 import numpy as np
@@ -24,12 +28,14 @@ from workhold.algebra.sliding_pairs import (
 )
 from workhold.algebra.undecided import undecided_notes
 from workhold.algebra.wedges import peg_pairs
+from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_CENTER
+from workhold.errors import InputError
 from workhold.listing.listed import Work, listed_result
+from workhold.listing.ways import joined_ways
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.vise import Vise
 
 __all__ = ["answer_by_algebra"]
 
@@ -39,16 +45,21 @@ Case = tuple[int, int]
 
 # Systems are solved this many at a time.
 BATCH = 4096
+# The systems and the sliding pairs of each arrangement of pegs.
+GENERATORS: dict[tuple[int, ...], tuple[Callable[..., Iterator[Systems]], Callable[..., list[Held]]]] = {
+    (2, 2): (type_one_systems, two_and_two_sliding_pairs),
+    (3, 1): (type_two_systems, three_and_one_sliding_pairs),
+}
 
 
 @define(eq=False)
 class Solver:
-    """Solves systems of one workpiece in one vise.
+    """Solves systems of one workpiece in one toolkit.
 
     Parameters
     ----------
     rows : (F, 10) features about the centre of the part, with the slack of their ends.
-    vise : the vise.
+    frame : the toolkit as the search sees it.
     margin : smallest distance in mm from a contact to the end of its feature.
     diameter : largest distance in mm between two peg centres: lengths are measured in it.
     counts : how many systems, orientations and simultaneous contacts there were.
@@ -56,7 +67,7 @@ class Solver:
     """
 
     rows: Array
-    vise: Vise
+    frame: Frame
     margin: float
     diameter: float
     counts: dict[str, int] = field(
@@ -65,10 +76,10 @@ class Solver:
     undecided: list[Systems] = field(factory=list)
 
     def offsets(self, systems: Systems) -> NDArray[np.complex128]:
-        """Pegs from the first peg, right pegs with the jaw separation left out, in mm, (N, K)."""
+        """Pegs from the first peg, right pegs with the separation left out, in mm, (N, K)."""
         right = (np.arange(systems.feature.shape[1]) >= 2) * (systems.feature.shape[1] == 4)
-        height = systems.row * self.vise.pitch[1] + right * self.vise.row_offset
-        return np.asarray(systems.column * self.vise.pitch[0] + 1j * height)
+        height = systems.row * self.frame.lattice.pitch_y + right * self.frame.lattice.row_offset
+        return np.asarray(systems.column * self.frame.lattice.pitch_x + 1j * height)
 
     @property
     def scaled(self) -> Array:
@@ -104,9 +115,9 @@ class Solver:
     def fixtures(self, held: Held) -> Array:
         """Records of the fixtures among simultaneous contacts; three pegs are completed by a fourth first."""
         if held.feature.shape[1] == 3:
-            held = fourth_pegs(held, self.rows, self.vise, self.margin, self.diameter / 2)
+            held = fourth_pegs(held, self.rows, self.frame, self.margin, self.diameter / 2)
         self.counts["simultaneous_contacts"] += len(held.psi)
-        return records_of(held, self.rows, self.vise, self.margin, self.diameter / 2)
+        return records_of(held, self.rows, self.frame, self.margin, self.diameter / 2)
 
 
 def arcs_first(systems: Systems, rows: Array) -> Systems:
@@ -160,21 +171,32 @@ def joined(parts: list[Systems]) -> Systems:
     return Systems(*(np.concatenate([getattr(p, n) for p in parts]) for n in ("feature", "column", "row", "sectors")))
 
 
-def stages(solver: Solver, types: Sequence[str]) -> Iterator[Array]:
+def refuse_unlike(frame: Frame) -> None:
+    """Refuse a toolkit of which the paper does not treat.
+
+    Raises
+    ------
+    InputError
+        When its carriers are not alike, or two pegs move and no half turn exchanges them.
+    """
+    one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius) for c in frame.carriers)
+    if one != other or not (frame.swapped or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)):
+        raise InputError(
+            f"the paper's polynomials do not serve a {frame.toolkit.kind}: its carriers are not alike; search with curves."
+        )
+
+
+def stages(solver: Solver, arrangements: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
-    rows, vise = solver.rows, solver.vise
-    pairs = peg_pairs(rows[:, :8], vise, solver.diameter)
-    sliding_pairs = sliding_pairs_of(pairs, solver.scaled, vise, solver.diameter)
-    for name, systems, sliding in (
-        ("I", type_one_systems, two_and_two_sliding_pairs),
-        ("II", type_two_systems, three_and_one_sliding_pairs),
-    ):
-        if name not in types:
-            continue
-        held = sliding(pairs, sliding_pairs, rows, vise)
+    rows, frame = solver.rows, solver.frame
+    pairs = peg_pairs(rows[:, :8], frame, solver.diameter)
+    sliding_pairs = sliding_pairs_of(pairs, solver.scaled, frame, solver.diameter)
+    for name in arrangements:
+        systems, sliding = GENERATORS[frame.toolkit.arrangement(name).pegs]
+        held = sliding(pairs, sliding_pairs, rows, frame)
         if held:
             yield solver.fixtures(together(held))
-        for batch, case in by_case(systems(pairs, rows[:, :8], vise), rows):
+        for batch, case in by_case(systems(pairs, rows[:, :8], frame), rows):
             yield solver.fixtures(solver.solve(batch, case))
 
 
@@ -197,10 +219,15 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
     Raises
     ------
     InputError
-        As ``workhold.answer``.
+        As ``workhold.answer``, and for a toolkit whose carriers are not alike.
     """
+    ways = query.toolkit.ways
+    if len(ways) > 1:
+        alone = [evolve(query, toolkit=way) for way in ways]
+        return joined_ways([answer_by_algebra(one, progress=progress, cancel=cancel) for one in alone], query)
     problem = Problem.of(query)
-    solver = Solver(problem.rows, problem.vise, query.contact_margin, problem.diameter)
+    refuse_unlike(problem.frame)
+    solver = Solver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
     records: list[Array] = []
     complete = True
     for found in stages(solver, query.arrangements):

@@ -13,13 +13,12 @@ from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Contacts
+from workhold.conventions import REFINED
 
-__all__ = ["TOLERANCE", "Laurent", "exact_resultant", "exact_roots"]
+__all__ = ["Laurent", "exact_resultant", "exact_roots"]
 
 # Bits; roots are spread by half of them.
 PRECISIONS = (512, 1024)
-# Roots are isolated and then refined to this.
-TOLERANCE = 1e-12
 
 
 @frozen
@@ -118,7 +117,7 @@ class System:
         return constant(step), Laurent(acb_poly([ball(-step.conjugate() * zero.conjugate())]), -1)
 
     def line(self, k: int) -> tuple[Laurent, Ring]:
-        """h or h_sigma: factor of sigma and the rest."""
+        """h or h_sigma: factor of the separation and the rest."""
         n, half = self.normal[k], constant(0.5)
         e, e_bar = self.start(k)
         first = self.radius[0] / 2.0
@@ -127,7 +126,7 @@ class System:
         return factor, (constant(n.conjugate() * first), middle, constant(n * first))
 
     def circle(self, k: int) -> tuple[Ring, Ring]:
-        """g or g_sigma: factor of sigma and the rest."""
+        """g or g_sigma: factor of the separation and the rest."""
         e, e_bar = self.start(k)
         radius, other = constant(self.radius[0]), constant(self.radius[k])
         z, inverse = binomial(0.0, 0, 1.0, 1), binomial(1.0, -1, 0.0, 0)
@@ -145,7 +144,7 @@ class System:
         return radius * e_bar, self.start(k)[0] * e_bar, radius * e
 
     def difference(self, k: int, m: int) -> tuple[Laurent, Ring]:
-        """g_sigma of m less that of k: factor of sigma and the rest."""
+        """g_sigma of m less that of k: factor of the separation and the rest."""
         e, e_bar = self.apart(k, m)
         (one, one_bar), (two, two_bar) = self.start(k), self.start(m)
         middle = constant(0.5) * (e * (one_bar + two_bar) + e_bar * (one + two))
@@ -170,7 +169,7 @@ def product(one: Ring, two: Ring) -> list[Laurent]:
     return [a * d, a * e + b * d, a * f + b * e + c * d, b * f + c * e, c * f]
 
 
-def without_sigma(factor: Laurent, rest: Ring, linear: Ring, last: Ring) -> list[Laurent]:
+def without_separation(factor: Laurent, rest: Ring, linear: Ring, last: Ring) -> list[Laurent]:
     """rest^2 - factor rest linear + factor^2 last: coefficients of w^2 ... w^-2."""
     squares, mixed = product(rest, rest), product(rest, linear)
     out = [square - factor * other for square, other in zip(squares, mixed, strict=True)]
@@ -198,7 +197,7 @@ def with_square(ring: Ring, double: list[Laurent]) -> Laurent:
     return total
 
 
-def exact_resultant(contacts: Contacts, case: tuple[int, int], sigma_free: bool = False) -> acb_poly:
+def exact_resultant(contacts: Contacts, case: tuple[int, int], free_of_separation: bool = False) -> acb_poly:
     """The resultant of one system that has an arc, times a power of z, at the precision of ``flint.ctx``."""
     system = System.of(contacts)
     second = system.pair(1)
@@ -210,9 +209,9 @@ def exact_resultant(contacts: Contacts, case: tuple[int, int], sigma_free: bool 
         (one, (a, b, c)), (two, (d, e, f)) = system.line(2), system.line(3)
         return of_rings(second, (one * d - two * a, one * e - two * b, one * f - two * c)).polynomial
     factor, rest = system.difference(2, 3) if right == 2 else system.line(3)
-    if sigma_free:
+    if free_of_separation:
         return of_rings(second, rest).polynomial
-    return with_square(second, without_sigma(factor, rest, *system.circle(2))).polynomial
+    return with_square(second, without_separation(factor, rest, *system.circle(2))).polynomial
 
 
 def spread(polynomial: acb_poly, precision: int) -> acb_poly:
@@ -233,17 +232,19 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
     return acb_poly([values[k] + acb(change / (k + 1.7), change / (k + 2.3)) for k in range(kept[0], kept[-1] + 1)])
 
 
-def exact_roots(contacts: Contacts, case: tuple[int, int], sigma_free: bool = False) -> NDArray[np.complex128] | None:
+def exact_roots(
+    contacts: Contacts, case: tuple[int, int], free_of_separation: bool = False
+) -> NDArray[np.complex128] | None:
     """Roots z of the resultant of one system that has an arc, None if it vanishes identically."""
     before = ctx.prec
     try:
         for precision in PRECISIONS:
             ctx.prec = precision
-            polynomial = spread(exact_resultant(contacts, case, sigma_free), precision)
+            polynomial = spread(exact_resultant(contacts, case, free_of_separation), precision)
             if polynomial.degree() < 1:
                 return None
             try:
-                return np.array([complex(root) for root in polynomial.roots(TOLERANCE)], np.complex128)
+                return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
             except ValueError:
                 continue
     finally:

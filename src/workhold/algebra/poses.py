@@ -1,7 +1,7 @@
-"""Simultaneous contact poses: from orientations back to phi, sigma and the place (paper, section 4).
+"""Simultaneous contact poses: from orientations back to phi, the separation and the place (paper, section 4).
 
 For each orientation the constraint of the second peg, a ring, gives up to two phi, and a right peg's constraint up to two
-sigma. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
+separations. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
 themselves, and stays if it meets them to the last digits.
 """
 
@@ -12,24 +12,17 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Complex, Contacts, Ring, circle_constraint, line_constraint, pair_constraint
+from workhold.conventions import DOUBLE, MET, NEARLY_MET, POSE_REACH, SINGULAR
 
 __all__ = ["Poses", "poses_at", "refined", "residuals"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Starting values may miss a contact by this part of the part's size.
-NEARLY = 0.02
-# Refined poses meet every contact to this many mm, for a part of size 1.
-MET = 1e-10
 ROUNDS = 24
-# At a double solution the Jacobian vanishes: its determinant is the clamping force times the span of the wrenches, so
-# nothing clamps there. Rounding moves such a pose by some 1e-8, and leaves a determinant of that order.
-DOUBLE = 1e-7
-# A refined pose may be off by this many of the last steps, and by this much at least. At a double solution steps halve and
-# are all that is left; elsewhere the last ones are rounding.
+# A refined pose may be off by this many of the last steps. At a double solution steps halve and are all that is left;
+# elsewhere the last ones are rounding.
 LAST_STEPS = 16.0
-LEAST_REACH = 1e-11
 
 
 @define(frozen=True, eq=False)
@@ -41,25 +34,25 @@ class Poses:
     owner : (N,) index of the system that a pose solves.
     psi : (N,) orientation in radians.
     place : (N,) where the first peg is in the workpiece's frame, a complex number in mm.
-    sigma : (N,) x distance in mm from the first left to the first right peg (0 for three left pegs).
+    separation : (N,) x distance in mm from the first left to the first right peg (0 for three left pegs).
     reach : (N,) how far off the others may be, in radians and in parts of the part's size.
     """
 
     owner: IntArray
     psi: Array
     place: Complex
-    sigma: Array
+    separation: Array
     reach: Array
 
     def take(self, which: NDArray[np.bool_] | IntArray) -> Poses:
         """The poses of an index array or mask."""
-        return Poses(self.owner[which], self.psi[which], self.place[which], self.sigma[which], self.reach[which])
+        return Poses(self.owner[which], self.psi[which], self.place[which], self.separation[which], self.reach[which])
 
 
 def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
     """Peg centres (N, K) in the workpiece's frame."""
     moving = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
-    reach = contacts.point[poses.owner] + poses.sigma[:, None] * moving
+    reach = contacts.point[poses.owner] + poses.separation[:, None] * moving
     return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
 
 
@@ -87,20 +80,20 @@ def refined(contacts: Contacts, poses: Poses) -> Poses:
     pegs = contacts.rows.shape[1]
     for _ in range(ROUNDS):
         off, matrix = linearized(contacts, poses)
-        regular = np.abs(np.linalg.det(matrix)) > 1e-13
+        regular = np.abs(np.linalg.det(matrix)) > SINGULAR
         poses, off, matrix = poses.take(regular), off[regular], matrix[regular]
         step = np.linalg.solve(matrix, off[..., None])[..., 0]
         step = np.clip(step, -0.25, 0.25)
-        sigma = poses.sigma - step[:, 3] if pegs == 4 else poses.sigma
+        separation = poses.separation - step[:, 3] if pegs == 4 else poses.separation
         place = poses.place - step[:, 1] - 1j * step[:, 2]
-        reach = LAST_STEPS * np.abs(step).max(axis=1, initial=0.0) + LEAST_REACH
-        poses = Poses(poses.owner, poses.psi - step[:, 0], place, sigma, reach)
+        reach = LAST_STEPS * np.abs(step).max(axis=1, initial=0.0) + POSE_REACH
+        poses = Poses(poses.owner, poses.psi - step[:, 0], place, separation, reach)
     off, matrix = linearized(contacts, poses)
     return poses.take((np.abs(off).max(axis=1, initial=0.0) <= MET) & (np.abs(np.linalg.det(matrix)) > DOUBLE))
 
 
 def linearized(contacts: Contacts, poses: Poses) -> tuple[Array, Array]:
-    """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, the place, and sigma."""
+    """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, place and separation."""
     pegs = contacts.rows.shape[1]
     off, across, center = distances(contacts, poses)
     columns = [(np.conj(across) * 1j * (center - poses.place[:, None])).real, across.real, across.imag]
@@ -119,7 +112,7 @@ def angles_of(ring: Ring) -> tuple[Complex, Complex]:
 
 
 def separations(contacts: Contacts, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
-    """The values sigma may have at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
+    """The values that the separation may have at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
     if case[1] == -1:
         return [np.zeros(w.shape)]
     if case[1] == 0:
@@ -133,7 +126,7 @@ def separations(contacts: Contacts, case: tuple[int, int], psi: Array, w: Comple
 
 
 def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
-    """Poses on lines alone: at an orientation the place and sigma solve linear equations (straight-line form)."""
+    """Poses on lines alone: at an orientation the place and the separation solve linear equations (straight-line form)."""
     pegs = contacts.rows.shape[1]
     normal = contacts.normal[owner]
     z = np.exp(1j * psi)[:, None]
@@ -143,8 +136,8 @@ def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
         columns.append((np.conj(normal) * z).real * (np.arange(4) >= 2))
     matrix = np.stack(columns, axis=-1)
     solution = -(np.linalg.pinv(matrix) @ rest[..., None])[..., 0]
-    sigma = solution[:, 2] if pegs == 4 else np.zeros(len(owner))
-    return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], sigma, np.zeros(len(owner)))
+    separation = solution[:, 2] if pegs == 4 else np.zeros(len(owner))
+    return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], separation, np.zeros(len(owner)))
 
 
 def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
@@ -163,13 +156,13 @@ def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Ar
     found = []
     for w in angles_of(pair_constraint(chosen, 1, column)):
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
-        for sigma in separations(chosen, case, column, w):
-            found.append(Poses(owner, psi, place[:, 0], sigma[:, 0], np.zeros(len(owner))))
+        for separation in separations(chosen, case, column, w):
+            found.append(Poses(owner, psi, place[:, 0], separation[:, 0], np.zeros(len(owner))))
     everything = Poses(
         np.concatenate([p.owner for p in found]),
         np.concatenate([p.psi for p in found]),
         np.concatenate([p.place for p in found]),
-        np.concatenate([p.sigma for p in found]),
+        np.concatenate([p.separation for p in found]),
         np.concatenate([p.reach for p in found]),
     )
-    return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY))
+    return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY_MET))

@@ -13,9 +13,9 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.wedges import HALF_SECTOR, SECTORS, SLACK, PegPairs, facing
-from workhold.conventions import PARALLEL
-from workhold.model.vise import Vise
+from workhold.algebra.wedges import HALF_SECTOR, SECTORS, PegPairs, facing
+from workhold.contact.frame import Frame
+from workhold.conventions import PARALLEL, WEDGE_SLACK
 
 __all__ = ["Facings", "Systems", "type_one_systems", "type_two_systems"]
 
@@ -66,7 +66,7 @@ class Facings:
 
     @classmethod
     def of(cls, rows: Array, clamping: int) -> Facings:
-        """The facings of feature rows (F, 8) in a vise that clamps by closing (1) or by opening (-1)."""
+        """The facings of feature rows (F, 8) for right pegs that clamp by pushing left (1) or right (-1)."""
         right = facing(rows, pi / 2 + HALF_SECTOR)
         left, right = (np.roll(right, -SECTORS // 2, axis=1), right)[::clamping]
         return cls(left, right, facing(rows, pi / 2))
@@ -81,7 +81,7 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
 def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
     """A rank (N,) of each peg pair that is the same for the pair with its features exchanged, higher with more arcs.
 
-    Turning the vise half way round exchanges the jaws and each pair's features, so it is enough to look at quartets
+    Turning the toolkit half way round exchanges the jaws and each pair's features, so it is enough to look at quartets
     whose left pair ranks at least as high as the right one.
     """
     arcs = (rows[pairs.tail, 0] != 0.0).astype(np.int64) + (rows[pairs.head, 0] != 0.0)
@@ -95,30 +95,30 @@ def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
     return rank
 
 
-def type_one_systems(pairs: PegPairs, rows: Array, vise: Vise) -> Iterator[Systems]:
+def type_one_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
     """Quartets with two pegs on each jaw, but those with parallel lines on one jaw (section 3.5.1)."""
-    facings = Facings.of(rows, vise.clamping)
+    facings = Facings.of(rows, frame.toolkit.clamping)
     generic = np.flatnonzero(~are_parallel(rows, pairs.tail, pairs.head))
     rank, sectors = jaw_ranks(pairs, rows), pairs.sectors
     resists = facings.resists[pairs.tail] | facings.resists[pairs.head]
     as_left = sectors & (facings.left[pairs.tail] | facings.left[pairs.head])
     as_right = sectors & (facings.right[pairs.tail] | facings.right[pairs.head])
     # From the first peg to the rightmost of a left pair and to the leftmost of a right pair.
-    rightward = np.maximum(pairs.column, 0) * vise.pitch[0]
-    leftward = np.minimum(pairs.column, 0) * vise.pitch[0]
+    rightward = np.maximum(pairs.column, 0) * frame.lattice.pitch_x
+    leftward = np.minimum(pairs.column, 0) * frame.lattice.pitch_x
     for one in generic:
         two = generic[rank[generic] <= rank[one]]
         two = two[(resists[one] | resists[two]).all(axis=1)]
         room = pairs.high[two, :, 0] + leftward[two, None] - pairs.low[one, :, 0] - rightward[one]
-        shared = as_left[one] & as_right[two] & (room >= vise.min_gap - SLACK)
+        shared = as_left[one] & as_right[two] & (room >= frame.gap - WEDGE_SLACK)
         keep = shared.any(axis=1)
         if keep.any():
-            yield from with_rows(pairs, int(one), two[keep], shared[keep], vise)
+            yield from with_rows(pairs, int(one), two[keep], shared[keep], frame)
 
 
-def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, vise: Vise) -> Iterator[Systems]:
+def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame: Frame) -> Iterator[Systems]:
     """Systems of one left pair with right pairs, for every row of the right jaw that the wedges allow."""
-    pitch, offset = vise.pitch[1], vise.row_offset
+    pitch, offset = frame.lattice.pitch_y, frame.lattice.row_offset
     low = np.where(shared, (pairs.low[two, :, 1] - pairs.high[one, :, 1] - offset) / pitch, np.inf)
     high = np.where(shared, (pairs.high[two, :, 1] - pairs.low[one, :, 1] - offset) / pitch, -np.inf)
     for line in range(ceil(low.min()), floor(high.max()) + 1):
@@ -136,12 +136,12 @@ def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, vise:
         yield Systems(feature, column, row, inside[keep])
 
 
-def type_two_systems(pairs: PegPairs, rows: Array, vise: Vise) -> Iterator[Systems]:
+def type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
     """Triples of left pegs, those with parallel lines among them too; the fourth peg follows the pose (section 3.5).
 
     The third peg lies in the wedges from the first and from the second peg.
     """
-    facings = Facings.of(rows, vise.clamping)
+    facings = Facings.of(rows, frame.toolkit.clamping)
     count = len(rows)
     number = {key: k for k, key in enumerate(zip(*(v.tolist() for v in whole(pairs)), strict=True))}
     sectors = pairs.sectors

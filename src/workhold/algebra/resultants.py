@@ -1,4 +1,4 @@
-r"""Eliminating sigma and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
+r"""Eliminating the separation and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
 
 A resultant is never written out as a polynomial of symbols. It is evaluated at as many orientations as it has
 coefficients, from closed formulas for the small resultants in w, and its coefficients follow by a discrete Fourier
@@ -29,7 +29,7 @@ from workhold.algebra.constraints import (
 )
 from workhold.conventions import COINCIDENT
 
-__all__ = ["PAPER_DEGREES", "TRUE_DEGREES", "coefficients", "degree_bound", "have_no_sigma", "resultant"]
+__all__ = ["PAPER_DEGREES", "TRUE_DEGREES", "coefficients", "degree_bound", "have_no_separation", "resultant"]
 
 Array = NDArray[np.float64]
 
@@ -77,8 +77,8 @@ def product(one: Ring, two: Ring) -> tuple[Array, Complex, Complex]:
     )
 
 
-def without_sigma(factor: Array, rest: Ring, linear: Ring, constant: Ring) -> tuple[Array, Complex, Complex]:
-    """Resultant in sigma of factor sigma + rest and sigma^2 + linear sigma + constant, of degree two in w.
+def without_separation(factor: Array, rest: Ring, linear: Ring, constant: Ring) -> tuple[Array, Complex, Complex]:
+    """Resultant in the separation s of factor s + rest and s^2 + linear s + constant, of degree two in w.
 
     It is rest^2 - factor rest linear + factor^2 constant.
     """
@@ -123,9 +123,9 @@ def resultant_with_square(ring: Ring, double: tuple[Array, Complex, Complex]) ->
 
 
 def straight_line_form(contacts: Contacts, psi: Array) -> tuple[Array, Array]:
-    """The determinant of the contacts' equations, linear in the place and sigma.
+    """The determinant of the contacts' equations, linear in the place and the separation.
 
-    Rows (normal, factor of sigma on the right jaw, rest); three rows without sigma for Type II.
+    Rows (normal, factor of the separation on the right jaw, rest); three rows without it for Type II.
     """
     z = np.exp(1j * psi)[..., None]
     normal = np.broadcast_to(contacts.normal[:, None, :], (*psi.shape, contacts.rows.shape[1]))
@@ -154,11 +154,11 @@ def resultant(contacts: Contacts, case: tuple[int, int], psi: Array) -> tuple[Ar
     if right == -1:
         return triple_resultant(contacts, second, psi)
     if right == 0:
-        return resultant_of_rings(second, sigma_between_lines(contacts, psi))
+        return resultant_of_rings(second, lines_without_separation(contacts, psi))
     factor, rest = circle_difference(contacts, 2, 3, psi) if right == 2 else line_constraint(contacts, 3, psi)
-    value, size = resultant_with_square(second, without_sigma(factor, rest, *circle_constraint(contacts, 2, psi)))
-    free = have_no_sigma(contacts)[:, None] & (right == 2)
-    # Where sigma is not in the difference at all, the difference alone takes the place of the resultant in sigma.
+    value, size = resultant_with_square(second, without_separation(factor, rest, *circle_constraint(contacts, 2, psi)))
+    free = have_no_separation(contacts)[:, None] & (right == 2)
+    # Where the separation is not in the difference at all, the difference alone takes the place of the resultant in it.
     plain_value, plain_size = resultant_of_rings(second, rest)
     return np.where(free, plain_value, value), np.where(free, plain_size, size)
 
@@ -171,13 +171,13 @@ def triple_resultant(contacts: Contacts, second: Ring, psi: Array) -> tuple[Arra
     return value / length**2, size / length**2
 
 
-def sigma_between_lines(contacts: Contacts, psi: Array) -> Ring:
-    """h_sigma of pegs 3 and 4 with sigma eliminated."""
+def lines_without_separation(contacts: Contacts, psi: Array) -> Ring:
+    """h_sigma of pegs 3 and 4 with the separation eliminated."""
     (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
     return Ring(one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first)
 
 
-def have_no_sigma(contacts: Contacts) -> NDArray[np.bool_]:
+def have_no_separation(contacts: Contacts) -> NDArray[np.bool_]:
     """Which systems have concentric arcs under right pegs that stand one above the other, (N,)."""
     concentric = np.abs(contacts.middle[:, 2] - contacts.middle[:, 3]) <= COINCIDENT
     return np.asarray(concentric & (np.abs((contacts.point[:, 2] - contacts.point[:, 3]).real) <= COINCIDENT))

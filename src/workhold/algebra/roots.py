@@ -15,10 +15,22 @@ from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
 from workhold.algebra.constraints import Contacts
-from workhold.algebra.exact import TOLERANCE, exact_roots
-from workhold.algebra.resultants import coefficients, have_no_sigma
+from workhold.algebra.exact import exact_roots
+from workhold.algebra.resultants import coefficients, have_no_separation
 from workhold.algebra.wedges import CENTERS, HALF_SECTOR, sector_of
-from workhold.conventions import COINCIDENT
+from workhold.conventions import (
+    COINCIDENT,
+    CROWDED,
+    IDENTICALLY_ZERO,
+    ILL_CONDITIONED,
+    NEAR_CIRCLE,
+    NEARLY_SLIDING,
+    NEARLY_STRAIGHT,
+    NOISE,
+    REFINED,
+    SECTOR_SLACK,
+    VANISHING,
+)
 
 __all__ = ["ball_roots", "near_circle", "orientations", "sectors_with_roots"]
 
@@ -27,24 +39,6 @@ Complex = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-# A root this near to the unit circle may be real: coefficients are off by some 1e-14, which moves roots that are alone by
-# as little, and the fourfold ones of symmetric parts by up to 1e-3. Newton's method decides.
-NEAR = 1e-2
-# Outermost coefficients below this part of the largest are taken for rounding, and trimmed: where features are parallel,
-# concentric or equal, degrees are lower. On the unit circle that changes the polynomial by no more than the rounding does.
-VANISHING = 1e-13
-# Arcs of a larger radius, in diameters, spread the coefficients so far that small ones are not rounding.
-NEARLY_STRAIGHT = 3.0
-# Polynomials with smaller outermost coefficients than this part of the largest are solved in ball arithmetic.
-ILL_CONDITIONED = 1e-6
-# Where a polynomial is below this part of its largest coefficient, or of its terms, roots are crowded.
-CROWDED = 1e-10
-NOISE = 1e-11
-# A pair of arcs that nearly slides crowds up to four roots within its misfit in diameters, two pairs up to eight. Rounding
-# by 1e-14 scatters four within some 3e-4, eight within 2e-2: misfits whose product is below this are looked at in balls.
-NEARLY_SLIDING = 1e-3
-# A polynomial smaller than this part of its terms vanishes identically.
-IDENTICALLY_ZERO = 1e-12
 PRECISIONS = (64, 128, 256, 512)
 
 
@@ -72,7 +66,7 @@ def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArr
     second = np.abs(((values * exponents**2) @ waves).real) * HALF_SECTOR**2 / 2.0
     curve = np.abs(values) @ (exponents**2).astype(np.float64) * HALF_SECTOR**2 / 2.0
     largest = np.abs(values).max(axis=1)
-    possible = value <= slope + curve[:, None] + 1e-9 * largest[:, None]
+    possible = value <= slope + curve[:, None] + SECTOR_SLACK * largest[:, None]
     crowded = value + slope + second <= np.maximum(CROWDED * largest, NOISE * size)[:, None]
     return possible, possible & crowded
 
@@ -85,7 +79,7 @@ def ball_roots(values: Complex) -> Complex:
         for precision in PRECISIONS:
             ctx.prec = precision
             try:
-                return np.array([complex(root) for root in polynomial.roots(TOLERANCE)], np.complex128)
+                return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
             except ValueError:
                 continue
     finally:
@@ -112,7 +106,7 @@ def vanishing_ends(values: Complex, largest: Array) -> IntArray:
 
 def near_circle(roots: Complex) -> BoolArray:
     """Which roots may be on the unit circle."""
-    return np.asarray(np.abs(np.abs(roots) - 1.0) <= NEAR)
+    return np.asarray(np.abs(np.abs(roots) - 1.0) <= NEAR_CIRCLE)
 
 
 def hard_roots(contacts: Contacts, case: tuple[int, int], values: Complex) -> Complex | None:
@@ -120,7 +114,7 @@ def hard_roots(contacts: Contacts, case: tuple[int, int], values: Complex) -> Co
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
         return ball_roots(values[kept[0] : kept[-1] + 1])
-    return exact_roots(contacts, case, case[1] == 2 and bool(have_no_sigma(contacts)[0]))
+    return exact_roots(contacts, case, case[1] == 2 and bool(have_no_separation(contacts)[0]))
 
 
 def nearly_sliding(contacts: Contacts) -> BoolArray:

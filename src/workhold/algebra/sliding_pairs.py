@@ -9,8 +9,8 @@ time. What is divided out and what is listed here is told by one measure, ``Cont
 Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
 
 The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same step, level with
-each other: pegs in the same place (sigma = 0) fit at every orientation. The fixtures among these have the two jaws' pegs
-in the two different places that an orientation allows, which are level at a few orientations only.
+each other: pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
+the two different places that an orientation allows, which are level at a few orientations only.
 """
 
 from __future__ import annotations
@@ -25,8 +25,17 @@ from workhold.algebra.conditions import STEEPEST, Held, row_points
 from workhold.algebra.constraints import Complex, Contacts
 from workhold.algebra.quartets import are_parallel
 from workhold.algebra.wedges import PegPairs, sector_of
-from workhold.conventions import COINCIDENT, PARALLEL, SQUARE
-from workhold.model.vise import Vise
+from workhold.contact.frame import Frame
+from workhold.conventions import (
+    COINCIDENT,
+    LEAST_SLIDING_REACH,
+    MISFIT_ROUNDING,
+    MOST_SLIDING_REACH,
+    PARALLEL,
+    ROW_SLACK,
+    SQUARE,
+)
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 
 __all__ = [
     "SlidingPair",
@@ -44,10 +53,6 @@ IntArray = NDArray[np.int64]
 # Arcs are listed up to this many times the misfit at which they are divided out, so that the rounding of a misfit that
 # lies on that edge cannot lose a pair.
 SPARE = 2.0
-# Rounding of a misfit, in parts of the part's size.
-ROUNDING = 1e-14
-# Orientations may be off by this at least, and by this at most, in radians.
-LEAST_REACH, MOST_REACH = 1e-12, 1e-3
 
 
 @define(frozen=True)
@@ -66,12 +71,12 @@ class SlidingPair:
     error: float
 
 
-def step_of(pairs: PegPairs, k: int, vise: Vise) -> complex:
+def step_of(pairs: PegPairs, k: int, frame: Frame) -> complex:
     """Step between the pegs of a pair as a complex number in mm."""
-    return complex(pairs.column[k] * vise.pitch[0], pairs.row[k] * vise.pitch[1])
+    return complex(pairs.column[k] * frame.lattice.pitch_x, pairs.row[k] * frame.lattice.pitch_y)
 
 
-def sliding_pairs_of(pairs: PegPairs, scaled: Array, vise: Vise, diameter: float) -> list[SlidingPair]:
+def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: float) -> list[SlidingPair]:
     """All peg pairs that fix the orientation, once for each orientation.
 
     Parameters
@@ -79,7 +84,7 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, vise: Vise, diameter: float
     scaled : (F, 8) feature rows with lengths in parts of the part's size.
     diameter : that size in mm.
     """
-    step = (pairs.column * vise.pitch[0] + 1j * pairs.row * vise.pitch[1]) / diameter
+    step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter
     contacts = Contacts(scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1))
     between, rows = contacts.middle[:, 1] - contacts.middle[:, 0], contacts.rows
     misfit = contacts.misfit(0, 1)
@@ -87,11 +92,11 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, vise: Vise, diameter: float
     cosine = (np.conj(contacts.normal[:, 0]) * between).real / np.abs(step)
     lines = np.flatnonzero(are_parallel(scaled, pairs.tail, pairs.head) & (np.abs(cosine) < 1.0 - SQUARE))
     turn = np.abs(rows[lines, 0, 3] * rows[lines, 1, 4] - rows[lines, 0, 4] * rows[lines, 1, 3])
-    apart = turn * (rows[lines, :, 5].sum(axis=1) + np.abs(step[lines]))
+    apart = turn * (rows[lines, :, HALF_EXTENT].sum(axis=1) + np.abs(step[lines]))
     middle, spread = np.angle(contacts.normal[lines, 0] / step[lines]), np.arccos(cosine[lines])
     pair = np.concatenate([arcs, lines, lines])
     psi = np.concatenate([np.angle(between[arcs] / step[arcs]), middle + spread, middle - spread])
-    error = (np.concatenate([misfit[arcs], apart, apart]) + ROUNDING) * diameter
+    error = (np.concatenate([misfit[arcs], apart, apart]) + MISFIT_ROUNDING) * diameter
     order = np.argsort(pair, kind="stable")
     return [SlidingPair(int(pair[k]), float(psi[k]), float(error[k])) for k in order]
 
@@ -107,35 +112,35 @@ def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: comple
     step : from the first peg to the second, turned by the orientation, in mm.
     slope : how much farther the contacts move than the pegs turn, see :func:`row_points`.
     """
-    normal = row[4] - 1j * row[3] if row[0] == 0.0 else (point - row[1] - 1j * row[2]) / row[6]
+    normal = row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
     arm = np.maximum(np.abs((np.conj(normal) * step).imag), abs(step) / STEEPEST)
-    return np.asarray(np.clip(2.0 * sliding_pair.error / arm * slope, LEAST_REACH, MOST_REACH))
+    return np.asarray(np.clip(2.0 * sliding_pair.error / arm * slope, LEAST_SLIDING_REACH, MOST_SLIDING_REACH))
 
 
 def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
     """Points of feature a's line or circle whose shifted image is on feature b's, none, one or two, and how much each moves
     when either does."""
-    one, two = complex(a[1], a[2]), complex(b[1], b[2]) - shift
-    if a[0] == 0.0 and b[0] == 0.0:
-        turn = a[3] * b[4] - a[4] * b[3]
+    one, two = complex(a[X], a[Y]), complex(b[X], b[Y]) - shift
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
+        turn = a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]
         if abs(turn) <= PARALLEL:
             return []
         off = two - one
-        along = (off.real * b[4] - off.imag * b[3]) / turn
-        return [(one + along * complex(a[3], a[4]), steepness(1.0, abs(turn)))]
-    if a[0] == 0.0:
-        return line_meets_circle(one, complex(a[3], a[4]), two, b[6])
-    if b[0] == 0.0:
-        return line_meets_circle(two, complex(b[3], b[4]), one, a[6])
+        along = (off.real * b[AXIS_Y] - off.imag * b[AXIS_X]) / turn
+        return [(one + along * complex(a[AXIS_X], a[AXIS_Y]), steepness(1.0, abs(turn)))]
+    if a[IS_ARC] == 0.0:
+        return line_meets_circle(one, complex(a[AXIS_X], a[AXIS_Y]), two, b[RADIUS])
+    if b[IS_ARC] == 0.0:
+        return line_meets_circle(two, complex(b[AXIS_X], b[AXIS_Y]), one, a[RADIUS])
     gap = abs(two - one)
-    if gap <= COINCIDENT * (a[6] + b[6]):
+    if gap <= COINCIDENT * (a[RADIUS] + b[RADIUS]):
         return []
-    along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
-    if abs(along) >= a[6]:
+    along = (gap + (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) / gap) / 2.0
+    if abs(along) >= a[RADIUS]:
         return []
-    half = ((a[6] - along) * (a[6] + along)) ** 0.5
+    half = ((a[RADIUS] - along) * (a[RADIUS] + along)) ** 0.5
     direction = (two - one) / gap
-    slope = steepness(a[6] * b[6], half * gap)
+    slope = steepness(a[RADIUS] * b[RADIUS], half * gap)
     return [(one + direction * complex(along, sign * half), slope) for sign in (1.0, -1.0)]
 
 
@@ -154,21 +159,23 @@ def line_meets_circle(point: complex, tangent: complex, center: complex, radius:
     return [(center + tangent * complex(sign * half, off.imag), slope) for sign in (1.0, -1.0)]
 
 
-def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, vise: Vise) -> list[Held]:
+def two_and_two_sliding_pairs(
+    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
+) -> list[Held]:
     """Left pairs that slide, stopped by a right pair (sliding right pairs are these after a half turn)."""
     found = []
     sectors = pairs.sectors
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
         a, b = int(pairs.tail[i]), int(pairs.head[i])
-        own = z * step_of(pairs, i, vise)
+        own = z * step_of(pairs, i, frame)
         sector = int(sector_of(np.array(sliding_pair.psi)))
         near = sectors[:, sector] | sectors[:, sector - 1] | sectors[:, (sector + 1) % sectors.shape[1]]
         for j in np.flatnonzero(near):
             c, d = int(pairs.tail[j]), int(pairs.head[j])
-            step = z * step_of(pairs, int(j), vise)
+            step = z * step_of(pairs, int(j), frame)
             for point, steep in meets(rows[c], rows[d], step):
-                line, tail, slope = stopped(rows[a], sliding_pair.psi, (point / z).imag, vise)
+                line, tail, slope = stopped(rows[a], sliding_pair.psi, (point / z).imag, frame)
                 if len(line) == 0:
                     continue
                 zero = np.zeros(len(line), np.int64)
@@ -187,37 +194,37 @@ def two_and_two_sliding_pairs(pairs: PegPairs, sliding_pairs: list[SlidingPair],
     return found
 
 
-def stopped(row: Array, psi: float, height: float, vise: Vise) -> tuple[IntArray, Complex, Array]:
+def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArray, Complex, Array]:
     """Rows of the first right peg, counted from the first left peg, places of the latter on its feature, and how much these
     move when the height or the orientation does.
 
-    ``height`` is that of the first right peg along the vise's y axis in mm.
+    ``height`` is that of the first right peg along the frame's y axis in mm.
     """
-    middle = ((row[1] + 1j * row[2]) * np.exp(-1j * psi)).imag
-    tangent = ((row[3] + 1j * row[4]) * np.exp(-1j * psi)).imag
-    reach = abs(row[5] * tangent) if row[0] == 0.0 else row[6]
-    pitch = vise.pitch[1]
-    first = ceil((height - vise.row_offset - middle - reach) / pitch - 1e-9)
-    last = floor((height - vise.row_offset - middle + reach) / pitch + 1e-9)
+    middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
+    tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
+    reach = abs(row[HALF_EXTENT] * tangent) if row[IS_ARC] == 0.0 else row[RADIUS]
+    pitch = frame.lattice.pitch_y
+    first = ceil((height - frame.lattice.row_offset - middle - reach) / pitch - ROW_SLACK)
+    last = floor((height - frame.lattice.row_offset - middle + reach) / pitch + ROW_SLACK)
     line = np.arange(first, last + 1)
-    index, point, slope = row_points(row, np.full(len(line), psi), height - vise.row_offset - line * pitch)
+    index, point, slope = row_points(row, np.full(len(line), psi), height - frame.lattice.row_offset - line * pitch)
     return line[index], point, slope
 
 
 def three_and_one_sliding_pairs(
-    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, vise: Vise
+    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
 ) -> list[Held]:
     """Left pairs that slide, stopped by a third left peg; the third peg may be anywhere in the order of pegs."""
     found = []
-    most = vise.columns - 1
+    most = frame.standing.column_count - 1
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
-        a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * step_of(pairs, i, vise)
+        a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * step_of(pairs, i, frame)
         for c, column, row in third_pegs(pairs, a):
             spread = (0, int(pairs.column[i]), column)
             if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(spread) > most:
                 continue
-            third = z * complex(column * vise.pitch[0], row * vise.pitch[1])
+            third = z * complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
             for point, slope in meets(rows[a], rows[c], third):
                 places = np.array([[point, point + own, point + third]])
                 found.append(
@@ -256,11 +263,12 @@ def alike(contacts: Contacts) -> NDArray[np.bool_]:
     for k in range(2):
         one, two = rows[:, k], rows[:, k + 2]
         off = two[:, 1:3] - one[:, 1:3]
-        across = off[:, 0] * one[:, 4] - off[:, 1] * one[:, 3]
-        turn = one[:, 3] * two[:, 4] - one[:, 4] * two[:, 3]
-        lines = (one[:, 0] == 0.0) & (np.abs(across) <= COINCIDENT) & (np.abs(turn) <= PARALLEL)
-        circles = (one[:, 0] != 0.0) & (np.abs(off).max(axis=1) + np.abs(two[:, 6] - one[:, 6]) <= COINCIDENT)
-        same &= (one[:, 0] == two[:, 0]) & (lines | circles)
+        across = off[:, 0] * one[:, AXIS_Y] - off[:, 1] * one[:, AXIS_X]
+        turn = one[:, AXIS_X] * two[:, AXIS_Y] - one[:, AXIS_Y] * two[:, AXIS_X]
+        lines = (one[:, IS_ARC] == 0.0) & (np.abs(across) <= COINCIDENT) & (np.abs(turn) <= PARALLEL)
+        misfit = np.abs(off).max(axis=1) + np.abs(two[:, RADIUS] - one[:, RADIUS])
+        circles = (one[:, IS_ARC] != 0.0) & (misfit <= COINCIDENT)
+        same &= (one[:, IS_ARC] == two[:, IS_ARC]) & (lines | circles)
     return np.asarray(same)
 
 
@@ -271,7 +279,7 @@ def alike_orientations(contacts: Contacts) -> tuple[IntArray, Array]:
     together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0, with x the
     step and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
     """
-    first = np.flatnonzero(contacts.rows[:, 0, 0] != 0.0)
+    first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]
     turn = np.angle(contacts.normal[line, 1])
     owners, found = [line, line], [turn + np.pi / 2, turn - np.pi / 2]

@@ -17,6 +17,7 @@ from workhold.algebra.constraints import Contacts
 from workhold.algebra.poses import Poses, poses_at
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
 from workhold.algebra.roots import hard_roots
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 
 __all__ = ["Row", "random_contacts", "table_two"]
 
@@ -68,23 +69,23 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
     ]
     rows = np.zeros((count, pegs, 8))
     angle = random.uniform(0.0, tau, (count, pegs))
-    rows[..., 0], rows[..., 5], rows[..., 7] = arcs, 1.0, 1.0
-    rows[..., 3], rows[..., 4] = np.cos(angle), np.sin(angle)
-    rows[..., 6] = arcs * random.uniform(0.2, 1.0, (count, pegs))
+    rows[..., IS_ARC], rows[..., HALF_EXTENT], rows[..., SIGN] = arcs, 1.0, 1.0
+    rows[..., AXIS_X], rows[..., AXIS_Y] = np.cos(angle), np.sin(angle)
+    rows[..., RADIUS] = arcs * random.uniform(0.2, 1.0, (count, pegs))
     point = random.normal(size=(count, pegs)) + 1j * random.normal(size=(count, pegs))
     point[:, 0] = 0.0
     turn = np.exp(1j * random.uniform(0.0, tau, (count, 1)))
     place = random.normal(size=(count, 1)) + 1j * random.normal(size=(count, 1))
     touch = place + turn * (point + random.normal(size=(count, 1)) * (np.arange(pegs) >= 2) * (pegs == 4))
     # A circle passes through its peg at the drawn angle; a line through it in the drawn direction.
-    middle = touch - rows[..., 6] * np.exp(1j * angle)
-    rows[..., 1], rows[..., 2] = middle.real, middle.imag
+    middle = touch - rows[..., RADIUS] * np.exp(1j * angle)
+    rows[..., X], rows[..., Y] = middle.real, middle.imag
     return Contacts(rows, point)
 
 
 def distinct_poses(poses: Poses) -> int:
     """How many poses there are, those counted once that several starting values lead to."""
-    place = [poses.place.real, poses.place.imag, poses.sigma]
+    place = [poses.place.real, poses.place.imag, poses.separation]
     values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
     same = (np.abs(values[:, None] - values[None]) <= SAME).all(axis=2)
     return int((same.argmax(axis=1) == np.arange(len(values))).sum())

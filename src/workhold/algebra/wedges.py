@@ -21,9 +21,11 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.contact.frame import Frame
+from workhold.conventions import WEDGE_SLACK
 from workhold.errors import InputError
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.limits import MOST_PEG_PAIRS
-from workhold.model.vise import Vise
 
 __all__ = ["SECTORS", "PegPairs", "Pieces", "facing", "lattice_steps", "peg_pairs", "pieces_of", "sector_of"]
 
@@ -34,8 +36,6 @@ BoolArray = NDArray[np.bool_]
 SECTORS = 360
 HALF_SECTOR = pi / SECTORS
 CENTERS = (np.arange(SECTORS) + 0.5) * tau / SECTORS
-# Bounds are widened by this much, in mm and in radians.
-SLACK = 1e-6
 # A piece is about this part of the largest distance on the part.
 PIECE = 1 / 16
 
@@ -52,12 +52,13 @@ def facing(rows: Array, spread: float) -> BoolArray:
     ----------
     rows : (F, 8) feature rows.
     """
-    straight = rows[:, 0] == 0.0
-    middle = np.where(straight, np.arctan2(-rows[:, 3], rows[:, 4]), np.arctan2(rows[:, 4], rows[:, 3]))
-    middle = np.where(rows[:, 7] < 0.0, middle + pi, middle)
-    half = np.where(straight, 0.0, rows[:, 5])
+    straight = rows[:, IS_ARC] == 0.0
+    x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
+    middle = np.where(straight, np.arctan2(-x, y), np.arctan2(y, x))
+    middle = np.where(rows[:, SIGN] < 0.0, middle + pi, middle)
+    half = np.where(straight, 0.0, rows[:, HALF_EXTENT])
     off = np.abs((CENTERS - middle[:, None] + pi) % tau - pi)
-    return np.asarray(off <= half[:, None] + spread + SLACK)
+    return np.asarray(off <= half[:, None] + spread + WEDGE_SLACK)
 
 
 @define(frozen=True, eq=False)
@@ -76,31 +77,31 @@ class Pieces:
 
 def pieces_of(row: Array, size: float) -> Pieces:
     """Cut a feature into pieces of about ``size`` mm."""
-    straight = row[0] == 0.0
-    length = 2.0 * row[5] * (1.0 if straight else row[6])
+    straight = row[IS_ARC] == 0.0
+    length = 2.0 * row[HALF_EXTENT] * (1.0 if straight else row[RADIUS])
     count = max(2 if straight else 4, ceil(length / size))
-    parameter = row[5] * (2.0 * np.arange(count) + 1.0 - count) / count
-    half = row[5] / count
+    parameter = row[HALF_EXTENT] * (2.0 * np.arange(count) + 1.0 - count) / count
+    half = row[HALF_EXTENT] / count
     if straight:
-        middle = row[1] + 1j * row[2] + parameter * (row[3] + 1j * row[4])
+        middle = row[X] + 1j * row[Y] + parameter * (row[AXIS_X] + 1j * row[AXIS_Y])
         return Pieces(middle, np.full(count, half))
-    middle = row[1] + 1j * row[2] + row[6] * (row[3] + 1j * row[4]) * np.exp(1j * parameter)
-    return Pieces(middle, np.full(count, 2.0 * row[6] * sin(half / 2.0)))
+    middle = row[X] + 1j * row[Y] + row[RADIUS] * (row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(1j * parameter)
+    return Pieces(middle, np.full(count, 2.0 * row[RADIUS] * sin(half / 2.0)))
 
 
-def lattice_steps(vise: Vise, longest: float) -> list[tuple[int, int]]:
+def lattice_steps(frame: Frame, longest: float) -> list[tuple[int, int]]:
     """Steps (columns, rows) from the first peg of a pair to the second, up to ``longest`` mm."""
-    most_rows = int(longest / vise.pitch[1])
-    if vise.rows is not None:
-        most_rows = min(most_rows, vise.rows - 1)
-    most_columns = min(vise.columns - 1, int(longest / vise.pitch[0]))
+    most_rows = int(longest / frame.lattice.pitch_y)
+    if frame.standing.rows is not None:
+        most_rows = min(most_rows, frame.standing.rows - 1)
+    most_columns = min(frame.standing.column_count - 1, int(longest / frame.lattice.pitch_x))
     steps = [
         (column, row)
         for row in range(most_rows + 1)
         for column in range(-most_columns, most_columns + 1)
         if row > 0 or column > 0
     ]
-    return [s for s in steps if hypot(s[0] * vise.pitch[0], s[1] * vise.pitch[1]) <= longest]
+    return [s for s in steps if hypot(s[0] * frame.lattice.pitch_x, s[1] * frame.lattice.pitch_y) <= longest]
 
 
 @define(frozen=True, eq=False)
@@ -113,7 +114,7 @@ class PegPairs:
     column, row : (N,) the step between them.
     tails : (N, P, SECTORS) whether the first peg can be on a piece of its feature at an orientation; P is the largest
         number of pieces of a feature.
-    low, high : (N, SECTORS, 2) bounds in mm on where the first peg is along the vise's x and y.
+    low, high : (N, SECTORS, 2) bounds in mm on where the first peg is along the frame's x and y.
     """
 
     tail: IntArray
@@ -145,7 +146,7 @@ def wedge_sectors(one: Pieces, two: Pieces, distance: float, direction: float) -
     (P, SECTORS) array, or None where no wedge holds the step's length
     """
     between = two.middle[None, :] - one.middle[:, None]
-    spread = one.radius[:, None] + two.radius[None, :] + SLACK
+    spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK
     size = np.abs(between)
     i, j = np.nonzero((size - spread <= distance) & (distance <= size + spread))
     if len(i) == 0:
@@ -153,7 +154,7 @@ def wedge_sectors(one: Pieces, two: Pieces, distance: float, direction: float) -
     between, spread, size = between[i, j], spread[i, j], size[i, j]
     # A vector x with |x| = distance and |x - between| <= spread: law of cosines.
     cosine = (distance**2 + size**2 - spread**2) / np.maximum(2.0 * distance * size, 1e-300)
-    reach = np.arccos(np.clip(cosine, -1.0, 1.0)) + HALF_SECTOR + SLACK
+    reach = np.arccos(np.clip(cosine, -1.0, 1.0)) + HALF_SECTOR + WEDGE_SLACK
     psi = np.angle(between) - direction
     inside = np.abs((CENTERS - psi[:, None] + pi) % tau - pi) <= reach[:, None]
     out = np.zeros((len(one.middle), SECTORS), np.bool_)
@@ -164,7 +165,7 @@ def wedge_sectors(one: Pieces, two: Pieces, distance: float, direction: float) -
 def tail_bounds(one: Pieces, tails: BoolArray) -> tuple[Array, Array]:
     """Bounds (SECTORS, 2) on the first peg along x and y at each orientation, inf and -inf where there is none."""
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
-    slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + SLACK)[:, None]
+    slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]
     low, high = np.empty((SECTORS, 2)), np.empty((SECTORS, 2))
     for axis, value in enumerate((seen.real, seen.imag)):
         low[:, axis] = np.where(tails, value - slack, np.inf).min(axis=0)
@@ -172,7 +173,7 @@ def tail_bounds(one: Pieces, tails: BoolArray) -> tuple[Array, Array]:
     return low, high
 
 
-def peg_pairs(rows: Array, vise: Vise, diameter: float) -> PegPairs:
+def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
     """Every peg pair that its annulus wedges allow (section 3.4).
 
     Parameters
@@ -189,8 +190,8 @@ def peg_pairs(rows: Array, vise: Vise, diameter: float) -> PegPairs:
     most = max(len(p.middle) for p in pieces)
     whole: list[tuple[int, int, int, int]] = []
     tails, lows, highs = [], [], []
-    for column, row in lattice_steps(vise, diameter + SLACK):
-        step = complex(column * vise.pitch[0], row * vise.pitch[1])
+    for column, row in lattice_steps(frame, diameter + WEDGE_SLACK):
+        step = complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
         for a, one in enumerate(pieces):
             for b, two in enumerate(pieces):
                 found = wedge_sectors(one, two, abs(step), float(np.angle(step)))

@@ -7,19 +7,44 @@ take to run; the help needs no boxes, and :mod:`workhold.cli.values` reads the w
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
-from inspect import cleandoc
-from typing import Any
+from functools import partial, wraps
+from inspect import Parameter, Signature, cleandoc, signature
+from typing import Any, get_type_hints
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-__all__ = ["PlainCommand", "PlainGroup"]
+__all__ = ["PlainCommand", "PlainGroup", "option", "spread"]
 
 BAD_INPUT = 2
 ARGUMENTS, OPTIONS, COMMANDS = "Arguments", "Options", "Commands"
 # Columns of a help's left side; longer entries have a line of their own.
 WIDEST_ENTRY = 27
+
+
+def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
+    """An option of a section of the help, as the default value of a parameter or of a field in a group of words."""
+    return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
+
+
+def spread(command: Callable[..., None]) -> Callable[..., None]:
+    """A command in whose place of each group of words, an attrs class of options, the class's fields stand as options."""
+    kinds = get_type_hints(command, include_extras=True)
+    groups = {name: kinds[name] for name in signature(command).parameters if hasattr(kinds[name], "__attrs_attrs__")}
+    parameters: list[Parameter] = []
+    for name, parameter in signature(command).parameters.items():
+        fields = signature(groups[name]).parameters.values() if name in groups else [parameter]
+        hints = get_type_hints(groups[name], include_extras=True) if name in groups else kinds
+        parameters += [one.replace(annotation=hints[one.name], kind=Parameter.KEYWORD_ONLY) for one in fields]
+
+    @wraps(command)
+    def spread_out(**words: Any) -> None:
+        taken = {name: {one: words.pop(one) for one in signature(kind).parameters} for name, kind in groups.items()}
+        command(**words, **{name: kind(**taken[name]) for name, kind in groups.items()})
+
+    spread_out.__dict__["__signature__"] = Signature(parameters)
+    spread_out.__annotations__ = {one.name: one.annotation for one in parameters}
+    return spread_out
 
 
 class PlainCommand(TyperCommand):

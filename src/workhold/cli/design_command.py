@@ -1,58 +1,27 @@
-"""``workhold design``: every fixture of a part in a vise."""
+"""``workhold design``: every fixture of a part in a vise or on a plate."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from workhold.cli.commands import option, spread
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.explanations import explain_none
-from workhold.cli.options import (
-    JOIN_TOLERANCE,
-    AxisOption,
-    DrawingUnitOption,
-    JoinToleranceOption,
-    LayerOption,
-    PartArgument,
-    PartNumberOption,
-    SectionOption,
-    UnitOption,
-    load_part,
-)
+from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output, refuse_output_folder
 from workhold.cli.pictures import picture_names
-from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
+from workhold.cli.progress import search_progress
+from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_form, write_output
 from workhold.cli.saying import tell
-from workhold.cli.search_options import (
-    AngleOption,
-    AvoidOption,
-    ContactMarginOption,
-    KeepOutOption,
-    LoadOption,
-    LoadsOption,
-    QueryWords,
-    RankByOption,
-    ToleranceOption,
-)
-from workhold.cli.values import choice, counting_number, length_unit, whole_number
-from workhold.cli.vise_options import (
-    BlockedOption,
-    BodyRadiusOption,
-    ColumnsOption,
-    MaxOpeningOption,
-    MinGapOption,
-    MinOpeningOption,
-    PegRadiusOption,
-    PitchOption,
-    RowOffsetOption,
-    RowsOption,
-    ToolkitOption,
-    ViseOption,
-    ViseWords,
-)
+from workhold.cli.search_options import QueryWords, with_fit_of
+from workhold.cli.values import choice, length_unit, optional_count, whole_number
+from workhold.cli.vise_options import ViseWords
 
 if TYPE_CHECKING:
     from workhold.model.query import Query
@@ -61,148 +30,94 @@ if TYPE_CHECKING:
 
 __all__ = ["design"]
 
-SEARCH, OUTPUT = "The search", "Results"
-STANDARD_OUTPUT = "-"
-TYPES, BOTH = ("I", "II"), "both"
-FORMATS = ("json", "csv")
+SEARCH = "The search"
+EVERY_TYPE = "both"
 ENGINES = ("curves", "algebra")
+# From this part of the work on it is told how many fixtures there will be, where they are so many or more; the search finds
+# them in the first part. Bytes of a fixture in a file of each form.
+KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
+BYTES = {"json": 960, "csv": 550, "npz": 209}
+
+UnfitOption = Annotated[
+    bool, typer.Option("--unfit", help="List also what is no fixture for a workshop, in red.", rich_help_panel=OUTPUT)
+]
 
 
+@spread
 def design(
     part: PartArgument,
-    vise: ViseOption = None,
-    toolkit: ToolkitOption = None,
-    pitch: PitchOption = None,
-    columns: ColumnsOption = None,
-    peg_radius: PegRadiusOption = None,
-    body_radius: BodyRadiusOption = None,
-    rows: RowsOption = None,
-    blocked: BlockedOption = None,
-    min_gap: MinGapOption = None,
-    min_opening: MinOpeningOption = None,
-    max_opening: MaxOpeningOption = None,
-    row_offset: RowOffsetOption = None,
-    avoid: AvoidOption = None,
-    keep_out: KeepOutOption = None,
-    angle: AngleOption = None,
-    contact_margin: ContactMarginOption = "0",
-    load: LoadOption = None,
-    loads: LoadsOption = None,
-    rank_by: RankByOption = None,
-    tolerance: ToleranceOption = None,
-    type_: Annotated[
-        str,
-        typer.Option(
-            "--type",
-            metavar="I|II|both",
-            help="I: two pegs on each jaw; II: three on the left, one on the right.",
-            rich_help_panel=SEARCH,
-        ),
-    ] = "both",
-    best: Annotated[
-        str | None,
-        typer.Option(metavar="K", help="Keep only the best K.", rich_help_panel=SEARCH),
-    ] = None,
-    threads: Annotated[
-        str | None,
-        typer.Option(metavar="N", help="Threads to use; all processors if not given.", rich_help_panel=SEARCH),
-    ] = None,
-    engine: Annotated[
-        str,
-        typer.Option(
-            metavar="curves|algebra",
-            help="curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
-            rich_help_panel=SEARCH,
-        ),
-    ] = "curves",
-    out: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE", help="Write all fixtures to this file; - is the terminal.", rich_help_panel=OUTPUT
-        ),
-    ] = None,
-    format_: Annotated[
-        str | None,
-        typer.Option(
-            "--format",
-            metavar="json|csv",
-            help="Form of the file; csv is for a spreadsheet. If not given, the file's name decides.",
-            rich_help_panel=OUTPUT,
-        ),
-    ] = None,
-    draw: Annotated[
-        str | None,
-        typer.Option(
-            metavar="DIR",
-            help="Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss.",
-            rich_help_panel=OUTPUT,
-        ),
-    ] = None,
+    *,
+    held_in: ViseWords,
+    words: QueryWords,
+    type_: str = option(
+        SEARCH,
+        "I|II|both",
+        "Of a vise: I: two pegs on each jaw; II: three on the left, one on the right.",
+        "--type",
+        default="both",
+    ),
+    best: str | None = option(SEARCH, "K", "Keep only the best K."),
+    threads: str | None = option(SEARCH, "N", "Threads to use; all processors if not given."),
+    engine: str = option(
+        SEARCH,
+        "curves|algebra",
+        "curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
+        default="curves",
+    ),
+    out: str | None = option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal."),
+    format_: str | None = FORMAT,
+    draw: str | None = option(
+        OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
+    ),
     force: ForceOption = False,
-    list_: Annotated[
-        str, typer.Option("--list", metavar="N", help="How many to list on the terminal.", rich_help_panel=OUTPUT)
-    ] = "5",
-    unit: UnitOption = None,
-    layer: LayerOption = None,
-    part_number: PartNumberOption = None,
-    drawing_unit: DrawingUnitOption = None,
-    axis: AxisOption = None,
-    section: SectionOption = None,
-    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
+    list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
+    unfit: UnfitOption = False,
+    reading: PartWords,
 ) -> None:
-    """Find every way to hold PART in a vise.
+    """Find every way to hold PART in a vise, or on a plate with a clamp.
 
-    Four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type II).
+    In a vise four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type
+    II). On a plate three locators stand in holes, and a clamp pushes along a row or a column.
     Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
 
     Example: workhold design part.dxf --vise plate-20mm --out part.json
     """
     # Everything cheap is checked before anything is read, and everything is checked before the search.
-    shown = length_unit(unit)
-    vise_words = ViseWords(
-        vise,
-        toolkit,
-        pitch,
-        columns,
-        peg_radius,
-        body_radius,
-        rows,
-        blocked,
-        min_gap,
-        min_opening,
-        max_opening,
-        row_offset,
-    )
-    words = QueryWords(avoid, keep_out, angle, contact_margin, load, loads, rank_by, tolerance)
-    kept = counting_number("--best", best, "fixtures to keep")
-    workers = counting_number("--threads", threads, "threads")
+    shown = length_unit(reading.unit)
+    kept = optional_count("--best", best)
+    workers = optional_count("--threads", threads)
     engine = choice("--engine", engine, ENGINES)
-    type_ = choice("--type", type_, (*TYPES, BOTH))
     listed = whole_number("--list", list_)
-    form = output_format(out, format_)
+    form = output_form(out, format_)
     folder = None if draw is None else Path(draw)
     if out is not None and out != STANDARD_OUTPUT:
-        refuse_output(out, (part, vise, loads), force)
+        refuse_output(out, (part, held_in.vise, words.loads), force)
     if folder is not None:
-        refuse_output_folder(folder, picture_names(), (part, vise, loads), force)
-    in_toolkit, of_vise = vise_words.asked(shown)
+        refuse_output_folder(folder, picture_names(), (part, held_in.vise, words.loads), force)
+    toolkit, tolerance = held_in.asked(shown)
     asked = words.asked(shown)
-    asked["tolerance"] = asked["tolerance"] or of_vise
+    asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
+    type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
 
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
-    query = Query(workpiece, in_toolkit, None if type_ == BOTH else type_, best=kept, **asked)
+    workpiece = reading.load(part).workpiece
+    query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, **asked)
     first_run = is_first_run()
     start = perf_counter()
-    with ask_to_stop() as cancel, search_progress(first_run) as progress:
+    with ask_to_stop() as cancel:
         if first_run and engine == "curves":
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        result = answered(query, engine, threads=workers, progress=progress, cancel=cancel)
+        streamed = out if form == "npz" and engine == "curves" else None
+        with search_progress() as progress:
+            told = foretelling(progress, query, out, form)
+            result = answered(query, engine, streamed, threads=workers, progress=told, cancel=cancel)
+    if out is not None and streamed is None:
+        write_output(result, out, form)
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
-    report(result, spent, out, form, listed, shown)
+    report(result, spent, out, form, listed, shown, unfit)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
@@ -211,64 +126,62 @@ def design(
         draw_pictures(result, folder, out, shown)
 
 
-def answered(query: Query, engine: str, threads: int | None, **watching: Any) -> Result:
-    """The answer of an engine, which is imported only now."""
+def foretelling(
+    progress: Callable[[float, int], None], query: Query, out: str | None, form: str
+) -> Callable[[float, int], None]:
+    """The same progress, which says once how large a file it will be, as soon as that can be told and where it matters."""
+    if out is None or query.best is not None:
+        return progress
+    told: list[float] = []
+
+    def followed(fraction: float, found: int) -> None:
+        progress(fraction, found)
+        if told or fraction < KNOWN_FROM:
+            return
+        told.append(fraction)
+        fixtures = round(found / min(fraction / SEARCH_SHARE, 1.0))
+        if fixtures >= MANY:
+            size = f"some {float(f'{fixtures:.1e}'):,.0f} fixtures, {fixtures * BYTES[form] / 1e6:,.0f} MB in {out}"
+            columns = "" if form == "npz" else "; a name that ends in .npz gives a smaller file that opens at once"
+            tell(f"this will be {size}: --best K keeps only the best K{columns}.")
+
+    return followed
+
+
+def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
+    """The answer of an engine, which is imported only now, written on the way where a file is named for that."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
 
         return answer_by_algebra(query, **watching)
+    if streamed is not None:
+        from workhold.files.result.columns import answer_to_file
+
+        return answer_to_file(query, streamed, threads=threads, **watching)
     from workhold.search.design import answer
 
     return answer(query, threads=threads, **watching)
 
 
-def output_format(out: str | None, asked: str | None) -> str:
-    """The form of the result file: the one asked for, or the one that its name suggests.
+def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool) -> None:
+    """Tell about a result that is written; the words go to stderr where stdout carries the file."""
+    from workhold.cli.tables import counts_sentence, print_tables, proof_sentences, result_table, unfit_sentence
+    from workhold.listing.alike import entries
 
-    Raises
-    ------
-    InputError
-        For a form that is not known.
-    """
-    if asked is not None:
-        return choice("--format", asked, FORMATS)
-    return "csv" if out is not None and out.lower().endswith(".csv") else "json"
-
-
-def write_output(result: Result, out: str, form: str) -> None:
-    """Write the result to a file or to the terminal."""
-    if form == "csv":
-        from workhold.files.result.csv import write_result_csv as write
-        from workhold.files.result.csv import write_result_csv_to as write_to
-    else:
-        from workhold.files.result.writer import write_result as write
-        from workhold.files.result.writer import write_result_to as write_to
-
-    if out == STANDARD_OUTPUT:
-        write_to(result, sys.stdout)
-        sys.stdout.flush()
-    else:
-        write(result, out)
-
-
-def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit) -> None:
-    """Write the result and tell about it; the words go to stderr where stdout carries the file."""
-    from workhold.cli.tables import counts_sentence, print_tables, proof_sentences, result_table
-
-    if out is not None:
-        write_output(result, out, form)
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
         tell(note)
+    shown = entries(result, unfit)
     if len(result) and listed > 0:
-        print_tables(result_table(result, listed, unit), stream=stream)
+        print_tables(result_table(result, shown, listed, unit), stream=stream)
     sentence = counts_sentence(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"
-        sentence = f"No fixture {found} for {result.workpiece.name} in this vise: the count is 0"
+        sentence = f"No fixture {found} for {result.workpiece.name} {result.toolkit.wording.inside}: the count is 0"
     written = out is not None and out != STANDARD_OUTPUT
-    proof = proof_sentences(result, out if written and form == "json" else None)
-    print_tables(f"{sentence}; {spent}.", *proof, stream=stream)
+    proof = proof_sentences(result, out if written and form != "csv" else None)
+    left_out = [unfit_sentence(shown.unfit)] if shown.unfit else []
+    print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=stream)
     if written:
         print_tables(f"Written to {out}.", stream=stream)
     if not result.complete:

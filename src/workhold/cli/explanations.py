@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TextIO
 if TYPE_CHECKING:
     from workhold.model.explanation import Explanation
     from workhold.model.result import Result
+    from workhold.model.toolkit import Toolkit
     from workhold.model.units import Unit
 
 __all__ = ["explain_none"]
@@ -25,29 +26,29 @@ def explain_none(result: Result, threads: int | None, folder: Path | None, unit:
     from workhold.search.explaining import explain
 
     explanation = explain(result.query, threads, unit)
-    print_explanation(explanation, unit, stream)
+    print_explanation(explanation, result.query.toolkit, unit, stream)
     if folder is not None and explanation.nearest is not None:
         draw_nearest_miss(explanation, result, folder, unit, stream)
 
 
-def print_explanation(explanation: Explanation, unit: Unit, stream: TextIO) -> None:
+def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
     """Write the explanation."""
     from workhold.cli.tables import Table, fixture_tables, print_tables
 
     print_tables("", stream=stream)
     if explanation.contacts == 0:
-        print_tables("No four pegs of the two jaws can touch the part at the same time.", stream=stream)
+        print_tables(f"No {toolkit.wording.four} can touch the part at the same time.", stream=stream)
     else:
         table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
         print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
     if explanation.nearest is not None:
-        _, _, _, pegs = fixture_tables(explanation.nearest.fixture, 1, 1, unit)
+        _, _, _, pegs = fixture_tables(explanation.nearest.fixture, toolkit, 1, 1, unit)
         print_tables("", f"Nearest miss: {explanation.nearest.words}", pegs, stream=stream)
     print_tables("", stream=stream)
     if not explanation.helps:
-        print_tables("No single change that was tried helps; workhold explore tries other vises.", stream=stream)
+        print_tables("No single change that was tried helps; workhold explore tries others.", stream=stream)
         return
     helps = Table(("what would help", ">fixtures"))
     for item in explanation.helps[:MOST_HELPS]:

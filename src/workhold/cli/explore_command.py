@@ -1,4 +1,4 @@
-"""``workhold explore``: the same part in many vises."""
+"""``workhold explore``: the same part in many vises and plates."""
 
 from __future__ import annotations
 
@@ -6,39 +6,20 @@ import csv
 import io
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from attrs import frozen
 
-from workhold.cli.options import (
-    JOIN_TOLERANCE,
-    AxisOption,
-    DrawingUnitOption,
-    JoinToleranceOption,
-    LayerOption,
-    PartArgument,
-    PartNumberOption,
-    SectionOption,
-    UnitOption,
-    load_part,
-)
+from workhold.cli.commands import option, spread
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
-from workhold.cli.progress import INTERRUPTED, ask_to_stop, search_progress
+from workhold.cli.progress import search_progress
 from workhold.cli.saying import tell
-from workhold.cli.search_options import (
-    AngleOption,
-    AvoidOption,
-    ContactMarginOption,
-    KeepOutOption,
-    LoadOption,
-    LoadsOption,
-    QueryWords,
-    RankByOption,
-    ToleranceOption,
-)
-from workhold.cli.values import choice, length, length_unit, whole_number
-from workhold.cli.vise_options import ToolkitOption
+from workhold.cli.search_options import QueryWords, with_fit_of
+from workhold.cli.values import length, length_unit, whole_number
+from workhold.cli.vise_options import TOOLKIT
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
@@ -51,89 +32,65 @@ if TYPE_CHECKING:
 
 __all__ = ["explore"]
 
-SWEEP = "Vises to try"
-TYPES = ("I", "II")
+SWEEP = "Vises and plates to try"
 # More vises than this are more likely a slip than a wish.
 MOST_VISES = 1000
 
 
+@spread
 def explore(
     part: PartArgument,
-    vise: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAMES|FILES",
-            help="Vises by name or from TOML files, such as plate-20mm,plate-25mm; all presets if neither this nor --pitch "
-            "is given.",
-            rich_help_panel=SWEEP,
-        ),
-    ] = None,
-    toolkit: ToolkitOption = None,
-    pitch: Annotated[
-        str | None, typer.Option(metavar="LIST", help="Pitches, such as 8,10,12.5 or 10x12.5.", rich_help_panel=SWEEP)
-    ] = None,
-    columns: Annotated[
-        str | None, typer.Option(metavar="LIST", help="Numbers of columns, such as 1,2,4.", rich_help_panel=SWEEP)
-    ] = None,
-    peg_radius: Annotated[
-        str | None, typer.Option(metavar="LIST", help="Peg radii, such as 2.5,3.", rich_help_panel=SWEEP)
-    ] = None,
-    avoid: AvoidOption = None,
-    keep_out: KeepOutOption = None,
-    angle: AngleOption = None,
-    contact_margin: ContactMarginOption = "0",
-    load: LoadOption = None,
-    loads: LoadsOption = None,
-    rank_by: RankByOption = None,
-    tolerance: ToleranceOption = None,
-    out: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the table to this file, as comma-separated values.")
-    ] = None,
+    *,
+    vise: list[str] | None = option(
+        SWEEP,
+        "NAMES|FILES",
+        "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if neither this nor "
+        "--pitch is given.",
+    ),
+    toolkit: str | None = TOOLKIT,
+    pitch: str | None = option(SWEEP, "LIST", "Pitches, such as 8,10,12.5 or 10x12.5."),
+    columns: str | None = option(SWEEP, "LIST", "Numbers of columns, such as 1,2,4."),
+    peg_radius: str | None = option(SWEEP, "LIST", "Peg radii, such as 2.5,3."),
+    words: QueryWords,
+    out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
     force: ForceOption = False,
-    unit: UnitOption = None,
-    layer: LayerOption = None,
-    part_number: PartNumberOption = None,
-    drawing_unit: DrawingUnitOption = None,
-    axis: AxisOption = None,
-    section: SectionOption = None,
-    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
+    reading: PartWords,
 ) -> None:
-    """Try PART in many vises: how many fixtures there are in each, and the best of each figure of quality.
+    """Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each with its figures.
 
     The lists of pitches, columns and radii are combined with each other, and with each vise that is named.
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
     from workhold.files.atomic import text_file
-    from workhold.model.kinds import KINDS
 
-    shown = length_unit(unit)
-    kind = None if toolkit is None else choice("--toolkit", toolkit, tuple(KINDS))
-    vises = asked_vises(vise, kind, pitch, columns, peg_radius, shown)
-    asked = QueryWords(avoid, keep_out, angle, contact_margin, load, loads, rank_by, tolerance).asked(shown)
+    shown = length_unit(reading.unit)
+    vises = asked_vises(vise, toolkit, pitch, columns, peg_radius, shown)
+    asked = words.asked(shown)
     if out is not None:
-        refuse_output(out, (part, loads, *(name for names in vise or () for name in names.split(","))), force)
+        refuse_output(out, (part, words.loads, *(name for names in vise or () for name in names.split(","))), force)
     from workhold.kernels.base.compiling import is_first_run
 
-    workpiece = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section).workpiece
+    workpiece = reading.load(part).workpiece
     refuse_unknown_faces(workpiece, asked["restrictions"])
     queries = [(one.name, query_of(workpiece, one, asked)) for one in vises]
-    first_run = is_first_run()
     from workhold.search.exploring import explore as try_all
 
     found: list[Explored] = []
-    with ask_to_stop() as cancel, search_progress(first_run) as progress:
-        if first_run:
+    with ask_to_stop() as cancel:
+        if is_first_run():
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(cancel)
-        for item in try_all(queries, cancel):
-            found.append(item)
-            progress(len(found) / len(vises), sum(one.fixtures for one in found))
-    print_explored(found, asked["ranking"], shown)
+        with search_progress() as progress:
+            for item in try_all(queries, cancel):
+                found.append(item)
+                progress(len(found) / len(vises), sum(one.fixtures for one in found))
+    types = list(dict.fromkeys(name for one in found for name in one.found))
+    print_explored(found, types, asked["ranking"], shown)
     if out is not None:
         with text_file(Path(out)) as stream:
-            stream.write(table_text(found))
+            stream.write(table_text(found, types))
         from workhold.cli.tables import print_tables
 
         print_tables(f"Written to {out}.")
@@ -167,7 +124,7 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
         return Query(
             workpiece,
             toolkit_of(named.kind, named.fields),
-            **asked | {"tolerance": asked["tolerance"] or named.tolerance},
+            **asked | {"tolerance": with_fit_of(asked["tolerance"], named.tolerance)},
         )
     except InputError as error:
         return error
@@ -175,7 +132,7 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
 
 def asked_vises(
     names: list[str] | None,
-    kind: str | None,
+    toolkit: str | None,
     pitch: str | None,
     columns: str | None,
     peg_radius: str | None,
@@ -189,8 +146,13 @@ def asked_vises(
         For words that mean nothing, lists that do not make a vise, and more than a thousand vises.
     """
     from workhold.files.toolkit.presets import load_vise, preset_names
-    from workhold.model.kinds import USUAL
+    from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of
+    from workhold.model.plate import Plate
 
+    is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
+    kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
+    if toolkit is not None and not is_kind:
+        names = [*(names or ()), toolkit]
     lists: list[list[tuple[str, dict[str, Any]]]] = []
     if pitch is not None:
         lists.append([(f"pitch {word}", {"pitch": pitch_of(word, unit)}) for word in words_of("--pitch", pitch)])
@@ -201,13 +163,16 @@ def asked_vises(
         radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
         lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
     if names is None and pitch is not None:
-        if columns is None or peg_radius is None:
+        if peg_radius is None or (columns is None and KINDS[kind or USUAL] is not Plate and "columns" not in said):
             raise InputError("a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise.")
-        bases = [Named("", kind or USUAL, {})]
+        bases = [Named("", kind or USUAL, dict(said))]
     else:
         asked = preset_names() if names is None else [name for words in names for name in words_of("--vise", words)]
+        # A kind picks those of the kind, and makes one sort of vise of another.
         bases = [
-            Named(loaded.name, kind or loaded.kind, loaded.fields, loaded.tolerance) for loaded in map(load_vise, asked)
+            Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
+            for one in map(load_vise, asked)
+            if kind is None or (KINDS[kind] is Plate) == (KINDS[one.kind] is Plate)
         ]
     vises = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
     if len(vises) > MOST_VISES:
@@ -249,45 +214,51 @@ def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> No
         face_of_segment(workpiece, number)
 
 
-def print_explored(found: list[Explored], ranking: tuple[str, ...], unit: Unit) -> None:
+def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
     """Write the table and say which vise is best."""
     from workhold.cli.tables import Table, figure_text, heading, print_tables
-    from workhold.model.quality import FIGURES
-    from workhold.search.exploring import best_of
+    from workhold.files.toolkit.presets import is_sold
+    from workhold.model.quality import FIGURES, LOCATION_ERROR
+    from workhold.search.exploring import first_choice
 
-    figures = [figure for figure in FIGURES if any(figure.key in item.best for item in found)]
+    keys = dict.fromkeys([*ranking, FIGURES[LOCATION_ERROR].key])
+    figures = [figure for key in keys for figure in FIGURES if figure.key == key]
     table = Table(
         (
             "vise",
             ">fixtures",
-            *(f">type {name}" for name in TYPES),
-            *(f">best {heading(figure, unit)}" for figure in figures),
+            *(f">type {name}" for name in types),
+            *(f">{heading(figure, unit)}" for figure in figures),
         )
     )
     for item in found:
-        counts = (f"{count:,}" for count in (item.fixtures, *(item.found.get(name, 0) for name in TYPES)))
-        values = (figure_text(f, item.best[f.key], unit) if f.key in item.best else "-" for f in figures)
+        if item.figures and not item.fit:
+            table.red.add(len(table.rows))
+        counts = (f"{count:,}" for count in (item.fixtures, *(item.found.get(name, 0) for name in types)))
+        values = (figure_text(f, item.figures[f.key], unit) if f.key in item.figures else "-" for f in figures)
         table.add_row(item.name, *counts, *values)
     print_tables(table)
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
-    best = best_of(found, ranking[0])
+    best = first_choice(found, ranking, is_sold)
     if best is not None:
-        print_tables(f"Best by {ranking[0].replace('_', ' ')}: {best.name}.")
+        told = [figure for figure in figures if figure.key in best.figures]
+        words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in told)
+        unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
+        print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
 
 
-def table_text(found: list[Explored]) -> str:
+def table_text(found: list[Explored], types: list[str]) -> str:
     """The table as comma-separated values; lengths in mm, forces in N."""
     from workhold.model.quality import FIGURES
 
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(
-        ["vise", "fixtures", "type_one", "type_two", *(f"best_{figure.key}" for figure in FIGURES), "reason"]
-    )
+    figures = [figure.key for figure in FIGURES]
+    writer.writerow(["vise", "fixtures", *(f"type_{name}" for name in types), *figures, "reason"])
     for item in found:
-        values = [f"{item.best[f.key]:.12g}" if f.key in item.best else "" for f in FIGURES]
-        counts = [item.found.get(name, 0) for name in TYPES]
+        values = [f"{item.figures[key]:.12g}" if key in item.figures else "" for key in figures]
+        counts = [item.found.get(name, 0) for name in types]
         writer.writerow([item.name, item.fixtures, *counts, *values, item.reason])
     return stream.getvalue()

@@ -3,22 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from workhold.cli.options import (
-    JOIN_TOLERANCE,
-    AxisOption,
-    DrawingUnitOption,
-    JoinToleranceOption,
-    LayerOption,
-    PartArgument,
-    PartNumberOption,
-    SectionOption,
-    UnitOption,
-    load_part,
-)
+from workhold.cli.commands import option, spread
+from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.values import length_unit, optional_length, picture_ending
 from workhold.errors import InputError
@@ -26,22 +13,14 @@ from workhold.errors import InputError
 __all__ = ["features"]
 
 
+@spread
 def features(
     part: PartArgument,
-    draw: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw them into this file, whose name ends in .svg or .png.")
-    ] = None,
+    *,
+    draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
     force: ForceOption = False,
-    peg_radius: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Draw also where the centres of pegs of this radius can be.")
-    ] = None,
-    unit: UnitOption = None,
-    layer: LayerOption = None,
-    part_number: PartNumberOption = None,
-    drawing_unit: DrawingUnitOption = None,
-    join_tolerance: JoinToleranceOption = JOIN_TOLERANCE,
-    axis: AxisOption = None,
-    section: SectionOption = None,
+    peg_radius: str | None = option(None, "LENGTH", "Draw also where the centres of pegs of this radius can be."),
+    reading: PartWords,
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
@@ -49,7 +28,7 @@ def features(
     """
     from workhold.files.atomic import write_bytes
 
-    shown_unit = length_unit(unit)
+    shown_unit = length_unit(reading.unit)
     radius = optional_length("--peg-radius", peg_radius, shown_unit)
     if radius is not None and radius < 0:
         raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
@@ -58,7 +37,7 @@ def features(
     if picture is not None:
         ending = picture_ending(picture)
         refuse_output(picture, (part,), force)
-    loaded = load_part(part, unit, layer, part_number, join_tolerance, drawing_unit, axis, section)
+    loaded = reading.load(part)
     workpiece = loaded.workpiece
 
     from workhold.cli.tables import face_table, plural, print_tables

@@ -6,24 +6,29 @@ from typing import TYPE_CHECKING
 
 from workhold.cli.tables import Table
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.statics.jaw import jaw_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from workhold.model.fixture import Fixture
+    from workhold.model.toolkit import Toolkit
     from workhold.statics.loads import LoadCase
 
 __all__ = ["load_tables"]
 
 
-def load_tables(cases: Sequence[LoadCase], fixture: Fixture, unit: Unit = MILLIMETRE) -> tuple[Table | str, ...]:
-    """For each load the jaw force it needs, and each peg's forces at the jaw force that is used."""
+def load_tables(
+    cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
+) -> tuple[Table | str, ...]:
+    """For each load the jaw or clamp force it needs, and each peg's forces at the one that is used."""
     if not cases:
         return ()
+    noun = toolkit.moving.noun
     with_friction = cases[0].needed_with_friction is not None
     columns = [
         "load",
-        ">jaw force needed N",
+        f">{noun} force needed N",
         "peg that lets go first",
         f">worst at {unit.abbreviation}",
         ">direction deg",
@@ -47,4 +52,13 @@ def load_tables(cases: Sequence[LoadCase], fixture: Fixture, unit: Unit = MILLIM
     notes = []
     if with_friction:
         notes.append("With friction the forces are not determined; what is needed with it is the best to be hoped for.")
-    return "", table, *notes, "", f"Peg forces at a jaw force of {cases[0].jaw_force:.1f} N:", forces
+    told = f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md tells both."
+    return (
+        "",
+        table,
+        *notes,
+        "",
+        f"Forces on the part at a {noun} force of {cases[0].jaw_force:.1f} N:",
+        forces,
+        told,
+    )

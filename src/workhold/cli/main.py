@@ -1,39 +1,33 @@
 """The command ``workhold``: its subcommands, and what happens when something goes wrong.
 
 Exit codes: 0 done (also when no fixture exists), 1 a fault of workhold, 2 bad input or a refuted result, 130
-interrupted, 141 nobody reads the output any more.
+interrupted, 141 nobody reads the output any more, 143 terminated.
 """
 
 from __future__ import annotations
 
-import errno
 import os
-import signal
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import suppress
-from types import FrameType
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from importlib import import_module
 from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.main import get_command
 
 from workhold import __version__
 from workhold.cli.commands import PlainCommand, PlainGroup
-from workhold.cli.design_command import design
-from workhold.cli.explore_command import explore
-from workhold.cli.features_command import features
-from workhold.cli.parts_command import parts
-from workhold.cli.saying import tell
-from workhold.cli.serve_command import serve
-from workhold.cli.sheet_command import sheet
-from workhold.cli.show_command import show
-from workhold.cli.verify_command import verify
-from workhold.cli.vises_command import vises
+from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
+from workhold.cli.saying import NO_ROOM, forget, tell
 from workhold.errors import InputError
+from workhold.limits import lacks_memory, refuse_little_space
 
-__all__ = ["app", "run"]
+__all__ = ["COMMANDS", "app", "run"]
 
-DONE, FAULT, BAD_INPUT, INTERRUPTED, TERMINATED, NO_READER = 0, 1, 2, 130, 143, 141
+DONE, FAULT, BAD_INPUT, NO_READER = 0, 1, 2, 141
+# Bytes of address space: with less, what NumPy brings along ends the process with a complaint of its own.
+LEAST_SPACE = 160_000_000
 
 # Typer has no public name for the base of its complaints about the command line itself.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -54,20 +48,73 @@ Lengths are in millimetres, or in the unit of --unit; a length may carry a unit
 of its own, such as 0.5in. workhold COMMAND --help explains a command.
 """
 
+# The commands, each with the first paragraph of its help. A command is the function of its name in the module of its name,
+# which is imported when it is asked for: nobody waits for the others.
+COMMANDS = {
+    "design": "Find every way to hold PART in a vise, or on a plate with a clamp.",
+    "show": (
+        "Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its "
+        "quality, and what loads do to it (those of the result, if none are given here)."
+    ),
+    "sheet": (
+        "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
+        "loads, cautions."
+    ),
+    "convert": (
+        "Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet."
+    ),
+    "explore": (
+        "Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each "
+        "with its figures."
+    ),
+    "features": "List the numbered faces of PART, as pictures and result files name them.",
+    "parts": "List the built-in parts.",
+    "vises": "List the vises and plates that come with workhold, or show all figures of one.",
+    "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
+    "verify": "Prove or refute every fixture of a result, and every number written with it.",
+    "serve": "Serve the page: from a drawing to a setup sheet in the browser.",
+}
+
+
+@contextmanager
+def outcomes() -> Iterator[None]:
+    """Two outcomes that Typer would handle in words, and with a code, of its own."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        say_interrupted()
+        raise typer.Exit(INTERRUPTED) from error
+    except BrokenPipeError as error:
+        forget(sys.stdout)
+        raise typer.Exit(NO_READER) from error
+
 
 class Workhold(PlainGroup):
     """The commands, with every outcome told in one plain sentence and an exit code."""
 
+    def __init__(self, **about: Any) -> None:
+        super().__init__(**about)
+        self.commands = {name: PlainCommand(name, help=words) for name, words in COMMANDS.items()}
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A command, imported now; None for a word that names none."""
+        if cmd_name not in COMMANDS:
+            return None
+        alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+        command = getattr(import_module(f"workhold.cli.{cmd_name}_command"), cmd_name)
+        alone.command(cmd_name, cls=PlainCommand)(command)
+        return get_command(alone)
+
+    def make_context(self, *args: Any, **extra: Any) -> Any:
+        """Take the arguments; a help that was asked for is shown here."""
+        with outcomes():
+            return super().make_context(*args, **extra)
+
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; Typer would handle these two outcomes in words of its own."""
-        try:
+        """Run the command."""
+        refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
+        with outcomes():
             return super().invoke(ctx)
-        except KeyboardInterrupt as error:
-            say("interrupted; no unfinished file was left behind.")
-            raise typer.Exit(INTERRUPTED) from error
-        except BrokenPipeError as error:
-            forget_output()
-            raise typer.Exit(NO_READER) from error
 
     def main(
         self,
@@ -95,15 +142,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command(cls=PlainCommand)(design)
-app.command(cls=PlainCommand)(show)
-app.command(cls=PlainCommand)(sheet)
-app.command(cls=PlainCommand)(explore)
-app.command(cls=PlainCommand)(features)
-app.command(cls=PlainCommand)(parts)
-app.command(cls=PlainCommand)(vises)
-app.command(cls=PlainCommand)(verify)
-app.command(cls=PlainCommand)(serve)
 
 
 def show_version(wanted: bool) -> None:
@@ -128,16 +166,11 @@ def run() -> NoReturn:
         # A part's name must not end the program on a terminal that lacks a letter.
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="replace")  # type: ignore[union-attr]
-    signal.signal(signal.SIGTERM, terminate)
+    end_on_signals()
     # Every matrix here is small; threads to multiply large ones would only be started and never used.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     code = int(app(standalone_mode=False))
-    try:
-        sys.stdout.flush()
-    except BrokenPipeError:
-        forget_output()
-        code = NO_READER
-    sys.exit(code)
+    leave(exit_code(sys.stdout.flush) or code)
 
 
 def exit_code(command: Callable[[], Any]) -> int:
@@ -150,31 +183,23 @@ def exit_code(command: Callable[[], Any]) -> int:
     except UsageError as error:
         return complain(error)
     except (KeyboardInterrupt, typer.Abort):
-        say("interrupted; no unfinished file was left behind.")
+        say_interrupted()
         return INTERRUPTED
     except BrokenPipeError:
-        forget_output()
+        forget(sys.stdout)
         return NO_READER
     except Exception as error:
         if lacks_memory(error):
-            say("error: this needs more memory than there is: close other programs, or raise the limit.")
+            say(
+                "error: this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
+            )
             return BAD_INPUT
-        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        if isinstance(error, OSError) and error.errno in NO_ROOM:
+            forget(sys.stdout)
             say(f"error: the output cannot be written: {error.strerror}.")
             return BAD_INPUT
         report_fault(error)
         return FAULT
-
-
-def lacks_memory(error: BaseException | None) -> bool:
-    """Whether an error comes of too little memory, which libraries that cannot be loaded tell in words of their own."""
-    while error is not None:
-        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
-            return True
-        if "failed to map segment" in str(error) or "annot allocate memory" in str(error):
-            return True
-        error = error.__cause__ or error.__context__
-    return False
 
 
 def complain(error: Exception) -> int:
@@ -213,15 +238,3 @@ def report_fault(error: Exception) -> None:
         except OSError:
             place = "shown with WORKHOLD_TRACEBACK=1"
     say(f"fault: a mistake of workhold, not of yours ({what}); please report it with the traceback {place}.")
-
-
-def forget_output() -> None:
-    """Nobody reads the output any more: send the rest nowhere, so that the interpreter ends in peace."""
-    with suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-
-
-def terminate(number: int, frame: FrameType | None) -> None:
-    """End on SIGTERM through the interpreter, so that temporary files are removed."""
-    raise SystemExit(TERMINATED)

@@ -1,34 +1,35 @@
-"""Arguments and options that several commands share."""
+"""The part and how its file is read, and the unit of what is shown: what several commands share."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from attrs import frozen
 
+from workhold.cli.commands import option
 from workhold.cli.saying import tell
-from workhold.cli.values import choice, counting_number, length, length_unit, optional_length
+from workhold.cli.values import choice, length, length_unit, optional_count, optional_length
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
 
-__all__ = [
-    "JOIN_TOLERANCE",
-    "AxisOption",
-    "DrawingUnitOption",
-    "JoinToleranceOption",
-    "LayerOption",
-    "PartArgument",
-    "PartNumberOption",
-    "SectionOption",
-    "ShownUnitOption",
-    "UnitOption",
-    "load_part",
-]
+__all__ = ["SHOWN_UNIT", "PartArgument", "PartWords"]
 
 READING = "Reading the part"
 # With its unit, so that it is the same whatever --unit says.
 JOIN_TOLERANCE = "0.001mm"
+
+# What the questions of a part's readers are called here.
+CALLED = {
+    "unit": "--unit",
+    "drawing_unit": "--drawing-unit",
+    "layers": "--layer",
+    "part_number": "--part",
+    "join_tolerance": "--join-tolerance",
+    "axis": "--axis",
+    "section": "--section",
+}
 
 PartArgument = Annotated[
     str,
@@ -36,99 +37,68 @@ PartArgument = Annotated[
         metavar="PART", help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see workhold parts)."
     ),
 ]
-UnitOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="UNIT",
-        help="Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm if not "
-        "given. A length may also carry its unit: 0.5in.",
-    ),
-]
-ShownUnitOption = Annotated[
-    str | None,
-    typer.Option("--unit", metavar="UNIT", help="Unit of the lengths shown (mm, cm, m, inch); mm if not given."),
-]
-DrawingUnitOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="UNIT",
-        help="Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
-        rich_help_panel=READING,
-    ),
-]
-LayerOption = Annotated[
-    list[str] | None,
-    typer.Option(metavar="NAME", help="Read only this layer; may be repeated.", rich_help_panel=READING),
-]
-PartNumberOption = Annotated[
-    str | None,
-    typer.Option(
-        "--part",
-        metavar="N",
-        help="Which part, when a drawing holds several; the largest if not given.",
-        rich_help_panel=READING,
-    ),
-]
-JoinToleranceOption = Annotated[
-    str,
-    typer.Option(metavar="LENGTH", help="Largest gap between ends of lines that is closed.", rich_help_panel=READING),
-]
-AxisOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="x|y|z",
-        help="STEP files: the direction that the pegs are parallel to; z if not given.",
-        rich_help_panel=READING,
-    ),
-]
-SectionOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="HEIGHT",
-        help="STEP files: take the section at this height above the part's lowest point, not the silhouette.",
-        rich_help_panel=READING,
-    ),
-]
+SHOWN_UNIT = option(None, "UNIT", "Unit of the lengths shown (mm, cm, m, inch); mm if not given.", "--unit")
 
 
-def load_part(
-    part: str,
-    unit: str | None,
-    layer: list[str] | None,
-    number: str | None,
-    tolerance: str,
-    drawing_unit: str | None = None,
-    axis: str | None = None,
-    section: str | None = None,
-) -> Loaded:
-    """Read the part and tell on stderr what a user should know about the drawing.
+@frozen
+class PartWords:
+    """What was typed about reading the part; None for options not given."""
 
-    Parameters
-    ----------
-    part, unit, layer, number, tolerance, drawing_unit : as typed; ``unit`` is that of ``tolerance``, and of a drawing
-        that does not say its own; ``drawing_unit`` is that of the drawing, whatever it says.
-
-    Raises
-    ------
-    InputError
-        When the part cannot be used.
-    """
-    join_tolerance = length("--join-tolerance", tolerance, length_unit(unit))
-    part_number = counting_number("--part", number, "a part")
-    direction = None if axis is None else choice("--axis", axis, ("x", "y", "z"))
-    height = optional_length("--section", section, length_unit(unit))
-    from workhold.files.part.load import read_workpiece
-
-    loaded = read_workpiece(
-        part,
-        unit=drawing_unit,
-        usual_unit=unit,
-        layers=layer or None,
-        part_number=part_number,
-        join_tolerance=join_tolerance,
-        axis=direction,
-        section=height,
+    unit: str | None = option(
+        None,
+        "UNIT",
+        "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm if not given. A "
+        "length may also carry its unit: 0.5in.",
     )
-    for remark in loaded.remarks:
-        tell(remark)
-    return loaded
+    layer: list[str] | None = option(READING, "NAME", "Read only this layer; may be repeated.")
+    part_number: str | None = option(
+        READING, "N", "Which part, when a drawing holds several; the largest if not given.", "--part"
+    )
+    drawing_unit: str | None = option(
+        READING, "UNIT", "Unit of the drawing, where it is not that of --unit, or where the file says a wrong one."
+    )
+    axis: str | None = option(
+        READING, "x|y|z", "STEP files: the direction that the pegs are parallel to; z if not given."
+    )
+    section: str | None = option(
+        READING,
+        "HEIGHT",
+        "STEP files: take the section at this height above the part's lowest point, not the silhouette.",
+    )
+    join_tolerance: str = option(
+        READING, "LENGTH", "Largest gap between ends of lines that is closed.", default=JOIN_TOLERANCE
+    )
+
+    def load(self, part: str) -> Loaded:
+        """Read a part and tell on stderr what a user should know about the drawing.
+
+        Parameters
+        ----------
+        part : a file or a built-in name.
+
+        Raises
+        ------
+        InputError
+            When the part cannot be used.
+        """
+        unit = length_unit(self.unit)
+        join_tolerance = length(CALLED["join_tolerance"], self.join_tolerance, unit)
+        part_number = optional_count(CALLED["part_number"], self.part_number)
+        axis = None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z"))
+        section = optional_length(CALLED["section"], self.section, unit)
+        from workhold.files.part.load import read_workpiece
+
+        loaded = read_workpiece(
+            part,
+            unit=self.drawing_unit,
+            usual_unit=self.unit,
+            layers=self.layer or None,
+            part_number=part_number,
+            join_tolerance=join_tolerance,
+            axis=axis,
+            section=section,
+            called=CALLED,
+        )
+        for remark in loaded.remarks:
+            tell(remark)
+        return loaded

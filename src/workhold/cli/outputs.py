@@ -22,8 +22,10 @@ ForceOption = Annotated[
 ENDS = 4096
 MARKS = (
     b'{"format": "workhold-result/',
+    b"\0workhold-result/",
     b"number,type,theta_deg,x,y,jaw_separation,",
-    b"vise,fixtures,type_one,type_two,best_",
+    b"vise,fixtures,type_",
+    b"hole,carrier,column,row,x,y,diameter,length,unit,dowel,face\n",
     b"<!-- workhold -->",
     b"tEXtSoftware\0workhold",
     b"/Producer (workhold)",

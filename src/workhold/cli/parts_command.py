@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from workhold.cli.options import ShownUnitOption
+from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.values import length_unit
 
 __all__ = ["parts"]
 
 
-def parts(unit: ShownUnitOption = None) -> None:
+def parts(unit: str | None = SHOWN_UNIT) -> None:
     """List the built-in parts.
 
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the

@@ -26,9 +26,9 @@ def picture_names() -> list[str]:
     return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
 
 
-def picture_name(rank: int) -> str:
-    """The name of the picture of the fixture of a rank, without its ending."""
-    return f"fixture-{rank:02d}"
+def picture_name(place: int) -> str:
+    """The name of the picture of the entry in a place, counted from 1, without its ending."""
+    return f"fixture-{place:02d}"
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
@@ -45,14 +45,14 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
-    svg = draw_fixture(fixture, result.workpiece, result.vise, title=title, unit=unit)
+    svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, unit=unit)
     return write_pictures({name: svg}, folder)
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
     """Write pictures, by name, as SVG and PNG; returns the files written. Where one cannot be written none is left."""
     from workhold.drawing.render import render
-    from workhold.files.atomic import write_bytes
+    from workhold.files.atomic import unfinished, write_bytes
 
     written = []
     try:
@@ -61,15 +61,18 @@ def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
                 path = folder / f"{name}{ending}"
                 write_bytes(path, render(svg, ending))
                 written.append(path)
+                unfinished.add(path)
     except BaseException:
         for path in written:
             path.unlink(missing_ok=True)
         raise
+    finally:
+        unfinished.difference_update(written)
     return written
 
 
 def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
-    """Draw the best twelve fixtures and the thumbnails into a folder, as SVG and PNG; returns the files written.
+    """Draw the best twelve entries and the thumbnails into a folder, as SVG and PNG; returns the files written.
 
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
     fewer fixtures; nothing else in the folder is touched.
@@ -81,6 +84,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     """
     from workhold.drawing.fixture_picture import draw_fixture
     from workhold.drawing.thumbnails import draw_thumbnails
+    from workhold.listing.alike import entries
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -88,13 +92,15 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
             (folder / old).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
-    fixtures = result[:BEST_DRAWN]
+    shown = entries(result)
+    indices, like = shown.index[:BEST_DRAWN].tolist(), shown.like[:BEST_DRAWN].tolist()
+    fixtures = [result[index] for index in indices]
     if not fixtures:
         return []
     pictures = {}
-    for rank, fixture in enumerate(fixtures, 1):
-        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=unit)
-        pictures[picture_name(rank)] = svg
-    titles = [str(rank) for rank in range(1, len(fixtures) + 1)]
-    pictures[THUMBNAILS] = draw_thumbnails(fixtures, result.workpiece, result.vise, titles, unit=unit)
+    for place, (index, fixture) in enumerate(zip(indices, fixtures, strict=True), 1):
+        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {index + 1}", unit=unit)
+        pictures[picture_name(place)] = svg
+    titles = [f"{index + 1}{f', and {more:,} like it' * bool(more)}" for index, more in zip(indices, like, strict=True)]
+    pictures[THUMBNAILS] = draw_thumbnails(fixtures, result.workpiece, result.toolkit, titles, unit=unit)
     return write_pictures(pictures, folder)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["RankArgument", "ResultArgument", "asked_rank", "result_with"]
 
 ResultArgument = Annotated[
-    str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
+    str, typer.Argument(metavar="RESULT", help="A result file (JSON or npz) written by workhold design.")
 ]
 RankArgument = Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")]
 

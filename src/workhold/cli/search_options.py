@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-from attrs import frozen
+from attrs import evolve, frozen
 
+from workhold.cli.commands import option
 from workhold.cli.load_option import LOAD_HELP, parse_load
-from workhold.cli.values import length, number, whole_number
+from workhold.cli.values import length, number, optional_force, whole_number
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
@@ -18,104 +18,72 @@ if TYPE_CHECKING:
     from workhold.model.restrictions import Zone
     from workhold.model.tolerance import Tolerance
 
-__all__ = [
-    "AngleOption",
-    "AvoidOption",
-    "ContactMarginOption",
-    "FrictionOption",
-    "JawForceOption",
-    "KeepOutOption",
-    "LoadOption",
-    "LoadsOption",
-    "RankByOption",
-    "QueryWords",
-    "ToleranceOption",
-    "asked_loads",
-]
+__all__ = ["FRICTION", "JAW", "JAW_FORCE", "LOAD", "LOADS_FILE", "QueryWords", "asked_loads", "with_fit_of"]
 
 RULING_OUT, LOADS, RANKING = "Ruling out", "Loads", "Ranking"
 
 
-def option(panel: str, *names: str, metavar: str, help: str) -> Any:
-    """An option of a section of the help."""
-    return typer.Option(*names, metavar=metavar, help=help, rich_help_panel=panel)
-
-
-AvoidOption = Annotated[
-    list[str] | None,
-    option(RULING_OUT, metavar="FACES", help="Faces that no peg may touch, such as 3,7 (see workhold features)."),
-]
-KeepOutOption = Annotated[
-    list[str] | None,
-    option(
-        RULING_OUT,
-        metavar="ZONE",
-        help="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. May be "
-        "repeated.",
-    ),
-]
-AngleOption = Annotated[
-    list[str] | None,
-    option(RULING_OUT, metavar="FROM..TO", help="Angles the part may lie at, in degrees: -10..10. May be repeated."),
-]
-ContactMarginOption = Annotated[
-    str,
-    option(RULING_OUT, metavar="LENGTH", help="Smallest distance from a contact to the end of its face."),
-]
-LoadOption = Annotated[
-    list[str] | None,
-    option(
-        LOADS,
-        metavar="LOAD",
-        help=LOAD_HELP,
-    ),
-]
-LoadsOption = Annotated[str | None, option(LOADS, metavar="FILE", help="Loads from a TOML file.")]
-JawForceOption = Annotated[
-    str | None,
-    option(
-        LOADS,
-        metavar="N",
-        help="Force in N that closes the vise; the one needed so that no peg lets go if not given.",
-    ),
-]
-FrictionOption = Annotated[
-    str | None,
-    option(
-        LOADS, metavar="MU", help="Coefficient of friction, to tell what friction could add; none counts elsewhere."
-    ),
-]
-RankByOption = Annotated[
-    str | None,
-    option(
-        RANKING,
-        metavar="FIGURES",
-        help="What makes a fixture good, the first counting most: location-error,clamp-amplification,closure-margin if not "
-        "given, with load-reaction in second place if there are loads; also wrench-radius, end-distance.",
-    ),
-]
-ToleranceOption = Annotated[
-    str | None,
-    option(
-        RANKING,
-        metavar="PEG[,FACE]",
-        help="How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
-    ),
-]
+LOAD = option(LOADS, "LOAD", LOAD_HELP)
+LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
+JAW_FORCE = option(
+    LOADS,
+    "FORCE",
+    "Force that closes the vise, in N or with its unit (3kN, 700lbf); the one needed so that no peg lets go if not given.",
+)
+JAW = option(
+    LOADS,
+    "KIND",
+    "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); or how many "
+    "times as stiff as one contact the locked jaw is.",
+    default="screw",
+)
+FRICTION = option(LOADS, "MU", "Coefficient of friction, to tell what friction could add; none counts elsewhere.")
 
 
 @frozen
 class QueryWords:
     """What was typed about what is asked for; None for options not given."""
 
-    avoid: list[str] | None
-    keep_out: list[str] | None
-    angle: list[str] | None
-    contact_margin: str
-    load: list[str] | None
-    loads: str | None
-    rank_by: str | None
-    tolerance: str | None
+    avoid: list[str] | None = option(
+        RULING_OUT, "FACES", "Faces that no peg may touch, such as 3,7 (see workhold features)."
+    )
+    keep_out: list[str] | None = option(
+        RULING_OUT,
+        "ZONE",
+        "Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. May be "
+        "repeated.",
+    )
+    angle: list[str] | None = option(
+        RULING_OUT, "FROM..TO", "Angles the part may lie at, in degrees: -10..10. May be repeated."
+    )
+    contact_margin: str = option(
+        RULING_OUT, "LENGTH", "Smallest distance from a contact to the end of its face.", default="0"
+    )
+    load: list[str] | None = LOAD
+    loads: str | None = LOADS_FILE
+    jaw_force: str | None = option(
+        LOADS,
+        "FORCE",
+        "Force that closes the vise, in N or with its unit (3kN, 700lbf), to warn of pegs that let go under the loads.",
+    )
+    rank_by: str | None = option(
+        RANKING,
+        "FIGURES",
+        "What makes a fixture good, the first counting most: warnings,penalty,clamp-amplification,closure-margin,"
+        "edge-distance if not given, with load-reaction in third place if there are loads; also location-error, tilt, "
+        "smallest-face, wrench-radius, end-distance, jaw-force-needed.",
+    )
+    prefer: str | None = option(
+        RANKING,
+        "square|strong|precise|roomy",
+        "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best location, or "
+        "contacts far from edges.",
+    )
+    tolerance: str | None = option(
+        RANKING,
+        "PEG[,FACE]",
+        "How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
+    )
 
     def asked(self, unit: Unit) -> dict[str, Any]:
         """Keyword arguments of a query; the tolerance is None where none was typed.
@@ -125,7 +93,7 @@ class QueryWords:
         InputError
             For words that mean nothing, figures that are not known, and a file that cannot be used.
         """
-        from workhold.model.query import chosen_ranking
+        from workhold.model.query import asked_ranking
         from workhold.model.restrictions import Restrictions
 
         loads = asked_loads(self.load, self.loads, unit)
@@ -137,9 +105,10 @@ class QueryWords:
                 zones=tuple(zone(text, unit) for text in self.keep_out or ()),
                 angles=tuple(angles(text) for text in self.angle or ()),
             ),
-            "ranking": chosen_ranking(names, loads),
+            "ranking": asked_ranking(names, self.prefer, loads),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
+            "jaw_force": optional_force("--jaw-force", self.jaw_force),
         }
 
 
@@ -211,6 +180,13 @@ def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
         raise InputError(f"--tolerance {text!r} has {len(words)} numbers: give one for pegs and faces, or PEG,FACE.")
     lengths = [length("--tolerance", word, unit) for word in words]
     return Tolerance(lengths[0], lengths[-1])
+
+
+def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
+    """The tolerance asked for, or that of a named vise; the fit of the named vise's dowels stays known."""
+    if asked is None or named is None:
+        return asked or named
+    return evolve(asked, fit=named.fit)
 
 
 def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:

@@ -21,7 +21,7 @@ OPEN_TO_ALL = (
     "workhold: everybody who reaches this machine can use the page, read what others search for if told its name, and keep "
     "the processors busy; --ask-token lets in only who has the address."
 )
-FIRST_RUN = "workhold: compiling for this machine, which takes about 20 seconds the first time."
+FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
 
 
 def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.options import ShownUnitOption
+from workhold.cli.commands import option
+from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
-from workhold.cli.values import choice, length_unit, positive_number
+from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.values import choice, length, length_unit, optional_force, optional_positive_length, positive_number
 from workhold.errors import InputError
+from workhold.limits import refuse_long
+from workhold.model.units import Unit
 
 if TYPE_CHECKING:
     from workhold.model.load import Load
@@ -22,11 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["sheet"]
 
 PAPER_ENDINGS = (".pdf", ".svg", ".png")
-MODEL_ENDINGS = (".dxf", ".step", ".stp")
+MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
 # A PNG is so many pixels wide; a second page makes it higher.
 PNG_WIDTH = 2400
 
-ON_PAPER = "On the paper"
+ON_PAPER, BODIES = "On the paper", "Part and pegs"
 
 
 def sheet(
@@ -35,33 +38,45 @@ def sheet(
     out: Annotated[
         str,
         typer.Option(
-            "--out", "-o", metavar="FILE", help="The file to write; its name ends in .pdf, .svg, .png, .dxf or .step."
+            "--out",
+            "-o",
+            metavar="FILE",
+            help="The file to write; its name ends in .pdf, .svg, .png, .dxf, .step or .csv.",
         ),
     ],
     force: ForceOption = False,
-    paper: Annotated[str, typer.Option(metavar="SIZE", help="a4 or letter.", rich_help_panel=ON_PAPER)] = "a4",
-    unit: ShownUnitOption = None,
-    part_name: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME", help="What to call the part; its own name if not given.", rich_help_panel=ON_PAPER
-        ),
-    ] = None,
-    day: Annotated[
-        str | None,
-        typer.Option(
-            "--date", metavar="YYYY-MM-DD", help="The date of the sheet; today if not given.", rich_help_panel=ON_PAPER
-        ),
-    ] = None,
-    load: LoadOption = None,
-    loads: LoadsOption = None,
-    jaw_force: JawForceOption = None,
-    friction: FrictionOption = None,
+    paper: str = option(ON_PAPER, "SIZE", "a4 or letter.", default="a4"),
+    unit: str | None = SHOWN_UNIT,
+    part_name: str | None = option(ON_PAPER, "NAME", "What to call the part; its own name if not given."),
+    day: str | None = option(ON_PAPER, "YYYY-MM-DD", "The date of the sheet; today if not given.", "--date"),
+    zero: str | None = option(
+        None,
+        "POINT",
+        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the origin of "
+        "the drawing where that is on the part, else the corner.",
+    ),
+    machine_position: str | None = option(
+        ON_PAPER, "X,Y", "Where the machine stands over hole A1 of the fixed jaw: gives the lines G10 L2 and G68."
+    ),
+    thickness: str | None = option(BODIES, "LENGTH", "Thickness of the part; a line to write it on if not given."),
+    peg_length: str | None = option(BODIES, "LENGTH", "Length of the pegs."),
+    peg_height: str | None = option(BODIES, "LENGTH", "How far the pegs stand out of the jaws."),
+    dowel: str | None = option(
+        BODIES, "WORDS", "What the pegs are and how they fit, such as '6 mm m6 in H7'; what --vise said if not given."
+    ),
+    clearance: str = option(
+        BODIES, "LENGTH", "How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf.", default="1mm"
+    ),
+    load: list[str] | None = LOAD,
+    loads: str | None = LOADS_FILE,
+    jaw_force: str | None = JAW_FORCE,
+    jaw: str = JAW,
+    friction: str | None = FRICTION,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
 
     Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. A .dxf or .step file holds
-    the set-up itself, in mm, for a CAM system.
+    the set-up itself, in mm, for a CAM system; a .csv file lists the pins.
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
@@ -70,22 +85,35 @@ def sheet(
     ending = path.suffix.lower()
     if ending not in PAPER_ENDINGS + MODEL_ENDINGS:
         raise InputError(
-            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf or .step."
+            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf, .step or .csv."
         )
     shown_unit = length_unit(unit)
+
+    from workhold.statics.jaw import jaw_stiffness
+
     settings = {
         "paper": choice("--paper", paper, ("a4", "letter")),
         "unit": shown_unit,
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
-        "jaw_force": positive_number("--jaw-force", jaw_force),
+        "jaw_force": optional_force("--jaw-force", jaw_force),
         "friction": positive_number("--friction", friction),
+        "jaw": jaw_stiffness(jaw),
+        "zero": zero,
+        "thickness": optional_positive_length("--thickness", thickness, shown_unit),
+        "peg_length": optional_positive_length("--peg-length", peg_length, shown_unit),
+        "peg_height": optional_positive_length("--peg-height", peg_height, shown_unit),
+        "dowel": dowel,
+        "machine_position": None if machine_position is None else position(machine_position, shown_unit),
     }
+    keep_off = length("--clearance", clearance, shown_unit)
+    if keep_off < 0:
+        raise InputError(f"--clearance {clearance} is negative: give 0 or more.")
     given = asked_loads(load, loads, shown_unit)
     refuse_output(path, (result_file, loads), force)
     result = result_with(result_file, rank)
     if ending in MODEL_ENDINGS:
-        write_model(path, ending, result, rank)
+        write_model(path, ending, result, rank, settings, keep_off)
     else:
         write_paper(path, ending, result, rank, given or result.query.loads, result_file, settings)
     from workhold.cli.tables import print_tables
@@ -107,17 +135,47 @@ def day_of(text: str) -> date:
         raise InputError(f"--date {text!r} is not a date: give it as YYYY-MM-DD, such as 2026-03-31.") from None
 
 
-def write_model(path: Path, ending: str, result: Result, rank: int) -> None:
-    """Write the set-up for a CAM system."""
-    setup = (result[rank - 1], result.workpiece, result.vise, path)
-    if ending == ".dxf":
+def position(text: str, unit: Unit) -> tuple[float, float]:
+    """The two lengths in mm of a position typed as X,Y.
+
+    Raises
+    ------
+    InputError
+        When it is none, or beyond all lengths.
+    """
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise InputError(f"--machine-position {text!r} is not a position: give it as X,Y, such as -312.5,-88.")
+    x, y = (length("--machine-position", part, unit) for part in parts)
+    for value in (x, y):
+        refuse_long("--machine-position", value)
+    return x, y
+
+
+def write_model(path: Path, ending: str, result: Result, rank: int, settings: dict[str, Any], clearance: float) -> None:
+    """Write the set-up for a CAM system, or the list of its pins."""
+    from workhold.model.part_zero import part_zero
+
+    fixture, toolkit, unit = result[rank - 1], result.toolkit, settings["unit"]
+    zero = part_zero(result.workpiece, settings["zero"], unit)
+    if ending == ".csv":
+        from workhold.files.atomic import write_bytes
+        from workhold.files.pin_list import pin_list
+        from workhold.model.dowel import fit_words
+
+        fit, diameter = result.query.tolerance.fit, 2 * toolkit.carriers[0].peg_radius
+        dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
+        text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
+        write_bytes(path, text.encode("utf-8"))
+    elif ending == ".dxf":
         from workhold.files.dxf.setup import write_setup_dxf
 
-        write_setup_dxf(*setup)
-        return
-    from workhold.files.step.setup import write_setup_step
+        write_setup_dxf(fixture, result.workpiece, toolkit, path, zero=zero, clearance=clearance)
+    else:
+        from workhold.files.step.setup import write_setup_step
 
-    write_setup_step(*setup)
+        sizes = {name: settings[name] for name in ("thickness", "peg_length", "peg_height")}
+        write_setup_step(fixture, result.workpiece, toolkit, path, zero=zero, **sizes)
 
 
 def write_paper(
@@ -130,14 +188,15 @@ def write_paper(
     settings: dict[str, Any],
 ) -> None:
     """Write the sheet."""
-    from hashlib import sha256
+    from hashlib import file_digest
 
     from workhold.drawing.render import svg_to_png
     from workhold.drawing.result_sheet import result_sheet
     from workhold.drawing.scene import stacked
     from workhold.files.atomic import write_bytes
 
-    digest = sha256(Path(result_file).read_bytes()).hexdigest()
+    with Path(result_file).open("rb") as stream:
+        digest = file_digest(stream, "sha256").hexdigest()
     pages = result_sheet(result, rank, result_hash=digest, loads=loads, **settings)
     if ending == ".pdf":
         from workhold.drawing.pdf import svg_to_pdf

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from workhold.cli.options import ShownUnitOption
+from workhold.cli.commands import option
+from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.saying import tell
-from workhold.cli.search_options import FrictionOption, JawForceOption, LoadOption, LoadsOption, asked_loads
-from workhold.cli.values import length_unit, picture_ending, positive_number
+from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.values import length_unit, optional_force, picture_ending, positive_number
 
 __all__ = ["show"]
 
@@ -20,15 +18,14 @@ __all__ = ["show"]
 def show(
     result_file: ResultArgument,
     number: RankArgument,
-    draw: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw it into this file, whose name ends in .svg or .png.")
-    ] = None,
+    draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
     force: ForceOption = False,
-    load: LoadOption = None,
-    loads: LoadsOption = None,
-    jaw_force: JawForceOption = None,
-    friction: FrictionOption = None,
-    unit: ShownUnitOption = None,
+    load: list[str] | None = LOAD,
+    loads: str | None = LOADS_FILE,
+    jaw_force: str | None = JAW_FORCE,
+    jaw: str = JAW,
+    friction: str | None = FRICTION,
+    unit: str | None = SHOWN_UNIT,
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its quality, and what
     loads do to it (those of the result, if none are given here).
@@ -41,7 +38,7 @@ def show(
 
     rank = asked_rank(number)
     shown_unit = length_unit(unit)
-    closing_force = positive_number("--jaw-force", jaw_force)
+    closing_force = optional_force("--jaw-force", jaw_force)
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = None if draw is None else Path(draw)
@@ -49,26 +46,38 @@ def show(
     if picture is not None:
         ending = picture_ending(picture)
         refuse_output(picture, (result_file, loads), force)
+
+    from workhold.statics.jaw import jaw_stiffness
+
+    stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
 
     from workhold.cli.load_tables import load_tables
     from workhold.cli.tables import fixture_tables, print_tables, quality_table
 
-    print_tables(*fixture_tables(fixture, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit))
+    print_tables(
+        *fixture_tables(fixture, result.toolkit, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit)
+    )
     if asked or result.query.loads:
         from workhold.statics.loads import load_cases
 
         cases = load_cases(
-            fixture, result.workpiece, result.vise, asked or result.query.loads, closing_force, coefficient
+            fixture,
+            result.workpiece,
+            result.toolkit,
+            asked or result.query.loads,
+            closing_force,
+            coefficient,
+            stiffness,
         )
-        print_tables(*load_tables(cases, fixture, shown_unit))
+        print_tables(*load_tables(cases, fixture, result.toolkit, shown_unit))
     if not result.complete:
         tell("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None and ending is not None:
         from workhold.drawing.fixture_picture import draw_fixture
         from workhold.drawing.render import render
 
-        svg = draw_fixture(fixture, result.workpiece, result.vise, title=f"Fixture {rank}", unit=shown_unit)
+        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit)
         write_bytes(picture, render(svg, ending))
         print_tables(f"Drawn in {picture}.")

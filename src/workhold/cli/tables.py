@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from math import degrees, hypot, pi
+from math import degrees, hypot, nan, pi
 from typing import TYPE_CHECKING, TextIO
 
 import typer
-from attrs import define, field
 
+from workhold.cli.table import Table
+from workhold.model.holes import hole_name
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.plain import plain, shortened
 
 if TYPE_CHECKING:
     from workhold.geometry.face import Face
-    from workhold.model.fixture import Fixture
+    from workhold.listing.alike import Entries
+    from workhold.model.fixture import Fixture, Peg
     from workhold.model.proof import Proof, Undecided
     from workhold.model.quality import Figure
     from workhold.model.result import Result
+    from workhold.model.toolkit import Toolkit
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -32,51 +36,45 @@ __all__ = [
     "proof_sentences",
     "quality_table",
     "result_table",
+    "rounded",
+    "unfit_sentence",
 ]
 
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
-
-
-@define
-class Table:
-    """Rows of words under a line of headings.
-
-    Parameters
-    ----------
-    columns : the headings; a column whose heading begins with ``>`` has its content on the right.
-    rows : the words, one for each column.
-    """
-
-    columns: tuple[str, ...]
-    rows: list[tuple[str, ...]] = field(factory=list)
-
-    def add_row(self, *words: str) -> None:
-        """Add a row at the end."""
-        self.rows.append(words)
-
-    def lines(self) -> list[str]:
-        """The table as text: the headings, a rule below them, and a line for each row."""
-        right = [column.startswith(">") for column in self.columns]
-        headings = tuple(column.lstrip(">") for column in self.columns)
-        widths = [max(map(len, column)) for column in zip(headings, *self.rows, strict=True)]
-
-        def line(words: tuple[str, ...]) -> str:
-            pairs = zip(words, widths, right, strict=True)
-            return "   ".join(f"{w:>{n}}" if at_right else f"{w:<{n}}" for w, n, at_right in pairs).rstrip()
-
-        return [line(headings), "─" * (sum(widths) + 3 * (len(widths) - 1)), *map(line, self.rows)]
+UNDECIDED = (
+    "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: another peg "
+    "radius or pitch decides it."
+)
 
 
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
-    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal."""
+    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal, and tables as wide as it
+    is at most."""
     stream = stream or sys.stdout
     for part in parts:
-        heading, *lines = map(plain, part.lines() if isinstance(part, Table) else (shortened(part),))
+        if isinstance(part, Table):
+            fitted = part.fitted(width_of(stream))
+            headings, lines, red = fitted.headings, fitted.lines, fitted.red
+        else:
+            headings, lines, red = [shortened(part)], [], set()
+        headings, lines = list(map(plain, headings)), list(map(plain, lines))
         if lines and stream.isatty():
-            heading = typer.style(heading, bold=True)
-        stream.write("\n".join([heading, *lines]) + "\n")
+            headings = [typer.style(line, bold=True) for line in headings]
+            lines = [typer.style(line, fg="red") if row in red else line for row, line in enumerate(lines)]
+        stream.write("\n".join([*headings, *lines]) + "\n")
     stream.flush()
+
+
+def width_of(stream: TextIO) -> int | None:
+    """How many columns a terminal has, or as many as the environment says; None where there is no limit."""
+    given = os.environ.get("COLUMNS", "")
+    if given.isascii() and given.isdigit() and int(given[:6]):
+        return int(given[:6])
+    try:
+        return os.get_terminal_size(stream.fileno()).columns if stream.isatty() else None
+    except (OSError, ValueError):
+        return None
 
 
 def plural(count: int, word: str) -> str:
@@ -92,12 +90,22 @@ def counts_sentence(result: Result) -> str:
     """How many fixtures there are, of which type, and how many differ under the part's symmetry."""
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
+    of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
     sentence = (
-        f"{plural(total, 'fixture')}: {kinds}; {sum(result.distinct.values())} distinct under the part's symmetry"
+        f"{plural(total, 'fixture')}{of_types}; {sum(result.distinct.values())} distinct under the part's symmetry"
     )
     if len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
+
+
+def unfit_sentence(unfit: int) -> str:
+    """How many fixtures are not shown because they are none for a workshop, and how to see them."""
+    are = "is no fixture" if unfit == 1 else "are no fixtures"
+    return (
+        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly holds) and not shown: "
+        "see them with --unfit."
+    )
 
 
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
@@ -119,7 +127,7 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
         others = "The other one is" if lost == MOST_NAMED + 1 else f"The other {lost - MOST_NAMED} are"
         where = f'under "proof" in {written}' if written else 'under "proof" in a JSON file written with --out'
         named.append(f"  {others} {where}.")
-    return [f"{sentence}, {lost} undecided:", *named]
+    return [f"{sentence}, {lost} undecided:", *named, UNDECIDED]
 
 
 def proof_head(proof: Proof, complete: bool) -> str:
@@ -147,34 +155,76 @@ def undecided_words(item: Undecided) -> str:
     return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
 
 
-def result_table(result: Result, count: int, unit: Unit = MILLIMETRE) -> Table:
-    """The best fixtures, one line each, with lengths in a unit."""
-    opening = f">opening {unit.abbreviation}"
-    figures = listed_figures(result)
+def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
+    """The best entries of a result, one line each, with lengths in a unit.
+
+    What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the table looks as
+    sorted as it is.
+    """
+    from workhold.model.quality import FIGURES, LOCATION_ERROR
+    from workhold.statics.judging import unfit
+
+    ranked = [figure for key in result.query.ranking for figure in FIGURES if figure.key == key]
+    others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
+    figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].quality]
     headings = [f">{heading(figure, unit)}" for figure in figures]
-    table = Table((">rank", "type", "left holes", "right holes", opening, ">angle deg", *headings))
-    for rank, fixture in enumerate(result[:count], 1):
-        holes = {jaw: " ".join(peg.hole for peg in fixture.pegs if peg.jaw == jaw) for jaw in ("left", "right")}
+    toolkit = result.toolkit
+    groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
+    columns = (">rank", ">like it", *groups, opening, ">angle deg", *headings, "type")
+    table = Table(columns, spare=max(len(headings) - 1, 0) + 1)
+    red = unfit(result.table.quality, result.query.tolerance)
+    for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
+        fixture = result[index]
+        if red[index]:
+            table.red.add(len(table.rows))
         table.add_row(
-            str(rank),
-            fixture.type,
-            holes["left"],
-            holes["right"],
-            unit.number(fixture.jaw_separation),
-            f"{fixture.pose.theta_deg:.3f}",
-            *(figure_text(figure, fixture.quality[figure.key], unit) for figure in figures),
+            str(index + 1),
+            f"+{like:,}" if like else "",
+            *(
+                " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
+                for names in groups.values()
+            ),
+            unit.number(length_set(fixture, toolkit)),
+            rounded(fixture.pose.theta_deg, 3),
+            *(
+                (counted_text if figure in ranked[:-1] else figure_text)(
+                    figure, fixture.quality.get(figure.key, nan), unit
+                )
+                for figure in figures
+            ),
+            toolkit.arrangement(fixture.type, fixture.direction).title,
         )
     return table
 
 
-def listed_figures(result: Result) -> list[Figure]:
-    """The figures of quality shown with each fixture: those it is ranked by, and the closure margin."""
-    from workhold.model.quality import FIGURES
+def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
+    """The names of the carriers whose pegs stand in one column of a table, by its heading: all clamps in one.
 
-    by_key = {figure.key: figure for figure in FIGURES}
-    known = result[0].quality if len(result) else {}
-    keys = dict.fromkeys([*result.query.ranking, "closure_margin"])
-    return [by_key[key] for key in keys if key in known]
+    >>> from workhold import Plate, Vise
+    >>> peg_groups(Vise(pitch=10, columns=2, peg_radius=3))
+    {'left holes': ['left'], 'right holes': ['right']}
+    >>> peg_groups(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
+    {'locators': ['plate'], 'clamp': ['clamp -x', 'clamp -y']}
+    """
+    clamps = [carrier for carrier in toolkit.carriers if carrier.on is not None]
+    groups: dict[str, list[str]] = {}
+    for carrier in toolkit.carriers:
+        word = carrier.noun if carrier in clamps else f"{carrier.peg}s" if clamps else f"{carrier.name} holes"
+        groups.setdefault(word, []).append(carrier.name)
+    return groups
+
+
+def place_of(peg: Peg, toolkit: Toolkit) -> str:
+    """The name of a peg's hole or line, without the noun of a clamp."""
+    return peg.hole.removeprefix(f"{toolkit.carrier(peg.carrier).noun} ")
+
+
+def length_set(fixture: Fixture, toolkit: Toolkit) -> float:
+    """The length to set, in mm."""
+    from workhold.model.setting import setting_of
+
+    setting = setting_of(fixture, toolkit)
+    return fixture.jaw_separation if setting is None else setting.length
 
 
 def heading(figure: Figure, unit: Unit) -> str:
@@ -183,11 +233,32 @@ def heading(figure: Figure, unit: Unit) -> str:
     return f"{figure.words} {of}".rstrip()
 
 
+def rounded(value: float, decimals: int) -> str:
+    """A number with so many decimals, zero without a sign.
+
+    >>> rounded(-1e-15, 3), rounded(-0.5, 1)
+    ('0.000', '-0.5')
+    """
+    text = f"{value:.{decimals}f}"
+    return text.removeprefix("-") if float(text) == 0 else text
+
+
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
     """A figure's value as a number of its unit."""
-    if figure.unit == "mm":
-        return unit.number(value, unit.decimals + 1)
-    return f"{value:.1f}" if figure.unit == "N" else f"{value:.4f}"
+    return unit.number(value, unit.decimals + 1) if figure.unit == "mm" else rounded(value, figure.decimals)
+
+
+def counted_text(figure: Figure, value: float, unit: Unit) -> str:
+    """A figure's value as it counts in an order, which is in mm, as a number of a unit."""
+    from math import floor, log10
+
+    counts = float(f"{round(value, 9):.1e}")
+    shown = counts / unit.millimetres if figure.unit == "mm" else counts
+    if figure.decimals == 0 or shown == 0:
+        return rounded(shown, 0)
+    # In mm two digits are all there is to show; in another unit one more keeps what differs apart.
+    digits = 2 if figure.unit != "mm" or unit.millimetres == 1 else 3
+    return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))
 
 
 def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
@@ -204,20 +275,39 @@ def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
     return table
 
 
-def fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit = MILLIMETRE) -> tuple[Table | str, ...]:
+def fixture_tables(
+    fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
+) -> tuple[Table | str, ...]:
     """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    first, noun, clamped = toolkit.carriers[0], toolkit.moving.noun, fixture.direction is not None
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
-    pegs = Table(("hole", "jaw", x, y, ">face", ">force per jaw force"))
+    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", f">force per {noun} force"))
     for peg in fixture.pegs:
-        pegs.add_row(peg.hole, peg.jaw, unit.number(peg.x), unit.number(peg.y), str(peg.face), f"{peg.force:.3f}")
+        stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
+        where = unit.number(peg.x), unit.number(peg.y)
+        pegs.add_row(place_of(peg, toolkit), stands_on, *where, str(peg.face), f"{peg.force:.3f}")
     pose = fixture.pose
     return (
-        f"Fixture {rank} of {total}, type {fixture.type}",
-        f"Jaw separation {unit.text(fixture.jaw_separation)}",
-        f"The part is turned by {pose.theta_deg:.3f} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
-        f"{unit.abbreviation} from the left jaw's hole L-A1",
+        f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
+        setting_sentence(fixture, toolkit, unit),
+        f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
+        f"{unit.abbreviation} from the {first.title}'s hole {hole_name(first.name, 0, 0)}",
         pegs,
     )
+
+
+def setting_sentence(fixture: Fixture, toolkit: Toolkit, unit: Unit) -> str:
+    """What there is to set on what moves, and of a clamp where it is bolted and which way it pushes."""
+    from workhold.model.setting import mover_of, setting_of
+
+    mover, setting = mover_of(fixture, toolkit), setting_of(fixture, toolkit)
+    assert setting is not None
+    length = unit.text(setting.length)
+    if mover.on is None:
+        return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
+    towards, where = toolkit.arrangement(fixture.type, fixture.direction).towards, place_of(fixture.pegs[-1], toolkit)
+    place = f"bolted in {where}" if mover.has_a_hole else f"on {where}"
+    return f"The {mover.noun}, {place}, pushes {towards}; {setting.title} {length}"
 
 
 def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:

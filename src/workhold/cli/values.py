@@ -8,14 +8,17 @@ from math import inf, isfinite, nan
 from pathlib import Path
 
 from workhold.errors import InputError
-from workhold.model.units import MILLIMETRE, Unit, unit_named
+from workhold.model.real import counting_number
+from workhold.model.units import MILLIMETRE, POUND, Unit, unit_named
 
 __all__ = [
     "choice",
-    "counting_number",
     "length",
     "length_unit",
     "number",
+    "optional_count",
+    "optional_force",
+    "optional_positive_length",
     "optional_length",
     "picture_ending",
     "positive_number",
@@ -26,6 +29,8 @@ __all__ = [
 PICTURE_ENDINGS = (".svg", ".png")
 # A number and perhaps its unit: 12.5, 0.5in, 1/2", 1-1/4 inch. The units are those of workhold.model.units.
 LENGTH = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>mm|cm|m|inch|in|\")?\s*", re.IGNORECASE | re.DOTALL)
+FORCE = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kN|N|lbf)?\s*", re.IGNORECASE | re.DOTALL)
+FORCE_UNITS = {"n": 1.0, "kn": 1000.0, "lbf": POUND}
 FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]+)/(?P<below>[0-9]+)")
 
 
@@ -90,6 +95,20 @@ def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> f
     return None if text is None else length(option, text, unit)
 
 
+def optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
+    """A length above zero in mm, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    value = optional_length(option, text, unit)
+    if value is not None and value <= 0:
+        raise InputError(f"{option} {text!r} is not above 0: give a positive length.")
+    return value
+
+
 def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
     """The x and y pitch in mm, from one length or two.
 
@@ -134,7 +153,7 @@ def whole_number(option: str, text: str) -> int:
         raise InputError(f"{option} {text!r} is not a whole number.") from None
 
 
-def counting_number(option: str, text: str | None, what: str) -> int | None:
+def optional_count(option: str, text: str | None) -> int | None:
     """A number of things, from 1, or None where the option is not given.
 
     Raises
@@ -142,12 +161,7 @@ def counting_number(option: str, text: str | None, what: str) -> int | None:
     InputError
         Below 1, or when it is no whole number.
     """
-    if text is None:
-        return None
-    value = whole_number(option, text)
-    if value < 1:
-        raise InputError(f"{option} {text} is not a number of {what}: give 1 or more.")
-    return value
+    return None if text is None else counting_number(option, whole_number(option, text))
 
 
 def positive_number(option: str, text: str | None) -> float | None:
@@ -163,6 +177,30 @@ def positive_number(option: str, text: str | None) -> float | None:
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
+    return value
+
+
+def optional_force(option: str, text: str | None) -> float | None:
+    """A force above zero in N, or None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> optional_force("--jaw-force", "3kN"), optional_force("--jaw-force", "1000 lbf")
+    (3000.0, 4448.2216152605)
+    """
+    if text is None:
+        return None
+    match = FORCE.fullmatch(text)
+    value = nan if match is None else number(match["number"]) * FORCE_UNITS[(match["unit"] or "n").lower()]
+    if not (isfinite(value) and value > 0):
+        raise InputError(
+            f"{option} {text!r} is not a force above 0: give it in N, or with its unit, such as 3kN or 700lbf."
+        )
     return value
 
 

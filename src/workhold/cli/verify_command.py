@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.progress import progress_bar
-from workhold.cli.values import whole_number
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.progress import progress_bar, search_progress
+from workhold.cli.ranked import ResultArgument
+from workhold.cli.values import optional_count, whole_number
 
 if TYPE_CHECKING:
     from workhold.verification import Verification
+    from workhold.verification.listing import Listing
 
 __all__ = ["verify"]
 
@@ -19,35 +22,78 @@ REFUTED = 2
 
 
 def verify(
-    result_file: Annotated[
-        str, typer.Argument(metavar="RESULT", help="A result file (JSON) written by workhold design.")
-    ],
+    result_file: ResultArgument,
     list_: Annotated[
         str,
         typer.Option("--list", metavar="N", help="How many fixtures that are not proven to list on the terminal."),
     ] = "5",
+    complete: Annotated[
+        bool,
+        typer.Option("--complete", help="Also search again, and compare: which fixtures, how many, and the account."),
+    ] = False,
+    threads: Annotated[
+        str | None, typer.Option(metavar="N", help="Threads of that search; as many as processors if not given.")
+    ] = None,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 
-    Each fixture is derived again from workpiece, vise, pegs and faces alone, in arithmetic whose rounding errors are
-    bounded, with nothing of the search. Coincidences such as a jaw separation of just the smallest gap are decided: the
-    edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. The exit code is 0 when
-    nothing is refuted and 2 otherwise.
+    Each fixture is derived again from workpiece, toolkit, pegs and faces alone, in arithmetic whose rounding errors are
+    bounded, with nothing of the search. Coincidences such as an opening of just the smallest gap are decided: the
+    edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. What a file alone cannot
+    show, such as fixtures left out, --complete does, by the search of the file's own query. The exit code is 0 when nothing
+    is refuted and 2 otherwise.
 
     Example: workhold verify part.json
     """
     listed = whole_number("--list", list_)
+    workers = optional_count("--threads", threads)
 
     from workhold.cli.tables import print_tables
-    from workhold.verification import verify_file
+    from workhold.verification.listing import read_listing
+    from workhold.verification.verify import verify_listing
 
     start = perf_counter()
+    listing = read_listing(result_file)
     with progress_bar("Verifying", "not proven") as progress:
-        outcome = verify_file(result_file, progress)
+        outcome = verify_listing(listing, progress)
+    if complete:
+        outcome = compared(outcome, listing, workers)
     seconds = perf_counter() - start
-    print_tables(*unproven_sentences(outcome, listed), f"{summary(outcome)}; {seconds:.1f} s")
+    print_tables(
+        *unproven_sentences(outcome, listed),
+        f"{summary(outcome)}; {seconds:.1f} s",
+        *scope(outcome, complete, listing),
+    )
+    if complete and not outcome.is_compared:
+        raise typer.Exit(INTERRUPTED)
     if not outcome.holds:
         raise typer.Exit(REFUTED)
+
+
+def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
+    """The verification with what a search of the same query finds."""
+    from workhold.completeness import completed
+    from workhold.kernels.base.compiling import is_first_run
+
+    with ask_to_stop("nothing is compared") as cancel:
+        if is_first_run():
+            from workhold.cli.warming import compile_kernels
+
+            compile_kernels(cancel)
+        with search_progress() as progress:
+            return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
+
+
+def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
+    """What is shown beyond the fixtures, or what is not."""
+    from workhold.verification.verify import not_shown
+
+    if outcome.is_compared:
+        return ["A search of the same query was compared with the file."]
+    if asked:
+        return ["The search was interrupted, so nothing was compared."]
+    points = not_shown(listing.query.toolkit)
+    return ["What a file alone cannot show, and --complete does:", *(f"  - {point}" for point in points)]
 
 
 def summary(outcome: Verification) -> str:

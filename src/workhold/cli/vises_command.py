@@ -1,12 +1,13 @@
-"""``workhold vises``: the vises that come with workhold, and what a vise file says."""
+"""``workhold vises``: the vises and plates that come with workhold, and what a file of one says."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.options import ShownUnitOption
+from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.values import length_unit
 
 if TYPE_CHECKING:
@@ -23,12 +24,12 @@ def vises(
         str | None,
         typer.Argument(metavar="[VISE]", help="Show all figures of this one: a name, or a TOML file of your own."),
     ] = None,
-    unit: ShownUnitOption = None,
+    unit: str | None = SHOWN_UNIT,
 ) -> None:
-    """List the vises that come with workhold, or show all figures of one.
+    """List the vises and plates that come with workhold, or show all figures of one.
 
-    They are plates with a lattice of dowel holes, one on each jaw. The number of columns is a usual one: your jaws may
-    have more or fewer.
+    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp. The others are such plates, one
+    on each jaw of a vise; their number of columns is a usual one: your jaws may have more or fewer.
 
     Example: workhold vises plate-one-inch --unit inch
     """
@@ -55,12 +56,12 @@ def vises_table(unit: Unit) -> Table:
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
     for name in preset_names():
         loaded = load_vise(name)
-        vise = loaded.vise
+        first = loaded.toolkit.carriers[0]
         table.add_row(
             name,
-            pitch_words(vise.pitch, unit),
-            unit.figure(2 * vise.peg_radius),
-            str(vise.columns),
+            pitch_words(first.pitch, unit),
+            unit.figure(2 * first.peg_radius),
+            "any" if first.columns is None else str(first.columns),
             unit.number(loaded.tolerance.peg, unit.decimals + 1),
             loaded.title,
         )
@@ -68,25 +69,20 @@ def vises_table(unit: Unit) -> Table:
 
 
 def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
-    """Every figure of a vise, one line each."""
+    """Every figure of a vise or plate, one line each."""
     from workhold.cli.tables import Table
+    from workhold.model.vise import Vise
 
-    vise, of = loaded.vise, unit.abbreviation
-    finest = unit.decimals + 1
+    toolkit, of = loaded.toolkit, unit.abbreviation
+    first, finest = toolkit.carriers[0], unit.decimals + 1
+    each = f"on each {first.noun}" if isinstance(toolkit, Vise) else f"on the {first.noun}"
     table = Table(("figure", "value"))
-    table.add_row("distance between holes", f"{pitch_words(vise.pitch, unit)} {of}")
-    table.add_row("columns on each jaw", str(vise.columns))
-    table.add_row("rows on each jaw", "as many as needed" if vise.rows is None else str(vise.rows))
-    table.add_row("peg radius", f"{unit.figure(vise.peg_radius, finest)} {of}")
-    table.add_row("smallest gap between left and right pegs", f"{unit.figure(vise.min_gap)} {of}")
-    opening = "no limit" if vise.max_opening is None else f"{unit.figure(vise.max_opening)} {of}"
-    table.add_row("largest opening", opening)
-    if vise.row_offset:
-        table.add_row("right rows above left rows", f"{unit.figure(vise.row_offset)} {of}")
-    if vise.body_radius != vise.peg_radius:
-        table.add_row("radius of the pegs' bodies", f"{unit.figure(vise.body_radius)} {of}")
-    if vise.blocked:
-        table.add_row("blocked", " ".join(holes.name for holes in vise.blocked))
+    table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
+    for words, count in (("columns", first.columns), ("rows", first.rows)):
+        table.add_row(f"{words} {each}", "as many as needed" if count is None else str(count))
+    table.add_row("peg radius", f"{unit.figure(first.peg_radius, finest)} {of}")
+    for words, value in own_figures(loaded, unit):
+        table.add_row(words, value)
     if loaded.fit is not None:
         table.add_row("pin diameter", limits_words(loaded.fit.pin, unit))
         table.add_row("hole diameter", limits_words(loaded.fit.hole, unit))
@@ -96,6 +92,34 @@ def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
     table.add_row("peg's surface off by at most", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}")
     table.add_row("part's face off by at most", f"{unit.figure(loaded.tolerance.face, finest)} {of}")
     return table
+
+
+def own_figures(loaded: LoadedVise, unit: Unit) -> Iterator[tuple[str, str]]:
+    """What only a toolkit of its kind has, and its value in words."""
+    from workhold.model.plate import Plate
+    from workhold.model.vise import Vise
+
+    toolkit, of = loaded.toolkit, unit.abbreviation
+    assumed = dict.fromkeys(loaded.assumed, " (assumed: no source says)")
+    if isinstance(toolkit, Plate):
+        tip = f"{unit.figure(toolkit.clamp_radius, unit.decimals + 1)} {of}"
+        yield "radius of the clamp's tip", tip + assumed.get("clamp_radius", "")
+        reach = "any" if toolkit.travel is None else " to ".join(unit.figure(length) for length in toolkit.travel)
+        yield (
+            "from the clamp's hole to its tip",
+            f"{reach} {of if toolkit.travel else ''}".strip() + assumed.get("travel", ""),
+        )
+        yield "the clamp pushes along", " or ".join(toolkit.directions)
+    if isinstance(toolkit, Vise):
+        yield "smallest gap between left and right pegs", f"{unit.figure(toolkit.min_gap)} {of}"
+        most = toolkit.max_opening
+        yield "largest opening", "no limit" if most is None else f"{unit.figure(most)} {of}"
+        if toolkit.row_offset:
+            yield "right rows above left rows", f"{unit.figure(toolkit.row_offset)} {of}"
+        if toolkit.body_radius != toolkit.peg_radius:
+            yield "radius of the pegs' bodies", f"{unit.figure(toolkit.body_radius)} {of}"
+        if toolkit.blocked:
+            yield "blocked", " ".join(holes.name for holes in toolkit.blocked)
 
 
 def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:

@@ -1,7 +1,7 @@
-"""Compiling on a first run, shared with a second process.
+"""Compiling on a first run, shared with a second process, where the package was not built with its kernels.
 
 The second process compiles the kernels of the search while this one compiles those that come before and after it; the cache
-folder hands the code over. It changes nothing but the wait.
+folder hands the code over, and a bar tells how many are done. It changes nothing but the wait.
 """
 
 from __future__ import annotations
@@ -9,14 +9,26 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from threading import Event
+from collections.abc import Callable
+from contextlib import suppress
+from threading import Event, Lock, Thread
 from time import sleep
 
+from workhold.cli.progress import progress_bar
 from workhold.kernels.base.compiling import cache_folder
 
 __all__ = ["compile_kernels"]
 
-SECOND_PROCESS = "from workhold.kernels.preparing import prepare_crossings; prepare_crossings()"
+WORDS = "Compiling the kernels, on the first run only"
+# The part for the second process; the first compiles all others.
+LONGEST = "crossings"
+# Writes a line for each kernel that is done, and ends with this process, however that ends.
+SECOND_PROCESS = f"""
+from workhold.files.apart import end_with_starter
+from workhold.kernels.preparing import prepared
+end_with_starter()
+for _ in prepared({LONGEST!r}): print(flush=True)
+"""
 # Seconds between looks at the second process.
 NAP = 0.05
 
@@ -28,23 +40,50 @@ def compile_kernels(cancel: Event) -> None:
     ----------
     cancel : when set, the rest is left to the search.
     """
-    if (os.cpu_count() or 1) < 2 or cache_folder() is None or not sys.executable:
-        return
-    from workhold.kernels.preparing import prepare_table_and_listing
+    from workhold.kernels.preparing import KERNEL_COUNT, PARTS, prepared
 
-    silent = subprocess.DEVNULL
+    done, counting = 0, Lock()
+    with progress_bar(WORDS, f"of {KERNEL_COUNT} kernels", WORDS) as progress:
+
+        def one_more() -> None:
+            nonlocal done
+            with counting:
+                done += 1
+                progress(done / KERNEL_COUNT, done)
+
+        helped = (os.cpu_count() or 1) > 1 and cache_folder() is not None and bool(sys.executable)
+        process, listener = second_process(one_more) if helped else (None, None)
+        try:
+            for part in PARTS:
+                for _ in () if helped and part == LONGEST else prepared(part):
+                    one_more()
+                    if cancel.is_set():
+                        return
+            while process is not None and process.poll() is None and not cancel.is_set():
+                sleep(NAP)
+        finally:
+            if process is not None and listener is not None:
+                process.terminate()
+                process.wait()
+                listener.join()
+
+
+def second_process(one_more: Callable[[], None]) -> tuple[subprocess.Popen[bytes], Thread]:
+    """Start the second process, and a thread that calls ``one_more`` for each kernel that it has compiled."""
     path = os.pathsep.join(entry for entry in sys.path if entry)
     process = subprocess.Popen(
         [sys.executable, "-P", "-c", SECOND_PROCESS],
         env={**os.environ, "PYTHONPATH": path},
-        stdin=silent,
-        stdout=silent,
-        stderr=silent,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
     )
-    try:
-        prepare_table_and_listing()
-        while process.poll() is None and not cancel.is_set():
-            sleep(NAP)
-    finally:
-        process.terminate()
-        process.wait()
+
+    def listen() -> None:
+        with suppress(ValueError):
+            for _ in process.stdout or ():
+                one_more()
+
+    listener = Thread(target=listen, daemon=True)
+    listener.start()
+    return process, listener

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import pi
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from math import pi, tau
+from threading import Event, Thread
+from typing import Any
 
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import LOOSE
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.columns import (
     CENTER,
     END_STRETCH,
     FIRST_STRETCH,
+    FROM,
     HEAD,
+    SHIFT,
     TAIL,
+    TO,
     Curves,
     SlidingPairs,
 )
@@ -42,6 +49,11 @@ class LatticeSteps:
     steps: NDArray[np.int64]
     angles: NDArray[np.float64]
 
+    @property
+    def none(self) -> LatticeSteps:
+        """No steps."""
+        return LatticeSteps(self.lengths[:0], self.starts[:1], self.steps[:0], self.angles[:0])
+
 
 @define(frozen=True, eq=False)
 class CurveTable:
@@ -53,38 +65,100 @@ class CurveTable:
     def __len__(self) -> int:
         return len(self.curves.integers)
 
+    @cached_property
+    def spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The orientations (N,) in radians from and to which curves exist, the former in [0, 2 pi)."""
+        reals = self.curves.reals
+        first = (reals[:, FROM] - reals[:, SHIFT]) % tau
+        return first, first + (reals[:, TO] - reals[:, FROM])
+
 
 def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Feature rows (F, 8) with their ends moved out by a hair; whole circles have none."""
     out = np.array(rows)
-    lines, arcs = rows[:, 0] == 0.0, (rows[:, 0] != 0.0) & (rows[:, 5] < pi)
-    out[lines, 5] += LOOSE
-    out[arcs, 5] = np.minimum(rows[arcs, 5] + LOOSE / rows[arcs, 6], pi)
+    lines, arcs = rows[:, IS_ARC] == 0.0, (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] < pi)
+    out[lines, HALF_EXTENT] += LOOSE
+    out[arcs, HALF_EXTENT] = np.minimum(rows[arcs, HALF_EXTENT] + LOOSE / rows[arcs, RADIUS], pi)
     return out
 
 
 def center_numbers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
     """For (F, 8) rows the index of the first feature with the same centre, -1 for lines."""
     numbers = np.full(len(rows), -1, dtype=np.int64)
-    arcs = np.flatnonzero(rows[:, 0] != 0.0)
+    arcs = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     for position, k in enumerate(arcs):
         numbers[k] = next((int(j) for j in arcs[:position] if are_concentric(rows[j], rows[k])), int(k))
     return numbers
 
 
-def curve_table(rows: NDArray[np.float64], steps: LatticeSteps, tails: Sequence[int] | None = None) -> CurveTable:
-    """Chord curves between (F, 8) loosened feature rows, or those with their tails on some features."""
+def curve_table(
+    rows: NDArray[np.float64],
+    steps: LatticeSteps,
+    tails: Sequence[int] | None = None,
+    threads: int = 1,
+    cancel: Event | None = None,
+) -> CurveTable:
+    """Chord curves between (F, 8) loosened feature rows, or those with their tails on some features.
+
+    Parameters
+    ----------
+    threads : how many threads share the work; the outcome does not depend on it.
+    cancel : when set, curves whose turn has not come are left out.
+    """
     centers = center_numbers(rows)
-    parts = [
-        tail_curves(tail, rows, centers, steps.lengths, steps.starts, steps.steps, steps.angles)
-        for tail in (range(len(rows)) if tails is None else tails)
-    ]
+
+    def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
+        few = steps if cancel is None or not cancel.is_set() else steps.none
+        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles)
+
+    parts = made_by_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0
     for integers, _, _, _, stretches in parts:
         integers[:, [FIRST_STRETCH, END_STRETCH]] += before
         before += len(stretches)
     integers, reals, whole, sliding, stretches = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))
+
+
+def made_by_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: int) -> list[Any]:
+    """What is made of each number, by this thread and some more.
+
+    Where memory runs out a thread may end without a word, and an executor would wait for it for ever.
+
+    Raises
+    ------
+    MemoryError
+        When there is not enough memory; and what ``make`` raises.
+    """
+    made: list[Any] = [None] * len(numbers)
+    turns, errors = iter(range(len(numbers))), list[BaseException]()
+
+    def work() -> None:
+        try:
+            for turn in turns:
+                if errors:
+                    return
+                made[turn] = make(numbers[turn])
+        except BaseException as error:
+            errors.append(error)
+
+    others = []
+    for _ in range(threads - 1):
+        other = Thread(target=work)
+        try:
+            other.start()
+        except RuntimeError:
+            # There is no room for another thread.
+            break
+        others.append(other)
+    work()
+    for other in others:
+        other.join()
+    if errors:
+        raise errors[0]
+    if any(one is None for one in made):
+        raise MemoryError
+    return made
 
 
 def joined(one: CurveTable, other: CurveTable, before: int) -> CurveTable:

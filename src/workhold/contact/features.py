@@ -16,6 +16,7 @@ from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
@@ -119,12 +120,13 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     rows : (..., 8 or more) kernel rows of the features.
     points : (..., 2) in mm.
     """
-    dx, dy = points[..., 0] - rows[..., 1], points[..., 1] - rows[..., 2]
-    along, across = dx * rows[..., 3] + dy * rows[..., 4], rows[..., 3] * dy - rows[..., 4] * dx
-    is_arc = rows[..., 0] != 0.0
-    place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., 6], 1.0)
-    ends = np.stack([rows[..., 5] + place, rows[..., 5] - place], axis=-1) * unit[..., None]
-    return np.where((is_arc & (rows[..., 5] >= np.pi))[..., None], np.inf, ends)
+    dx, dy = points[..., 0] - rows[..., X], points[..., 1] - rows[..., Y]
+    along, across = dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y], rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx
+    is_arc = rows[..., IS_ARC] != 0.0
+    place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., RADIUS], 1.0)
+    half = rows[..., HALF_EXTENT]
+    ends = np.stack([half + place, half - place], axis=-1) * unit[..., None]
+    return np.where((is_arc & (half >= np.pi))[..., None], np.inf, ends)
 
 
 def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:

@@ -30,7 +30,13 @@ ROUNDING = 1e-12
 
 @frozen
 class Frame:
-    """A toolkit as the search sees it.
+    """A toolkit as the search sees it: one carrier stands still, one slides along its rows or columns.
+
+    What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks for
+    heights that differ by whole row pitches (``kernels.base.given.Lattice``). Chords are made of the steps of one
+    lattice alone: a carrier of another pitch needs lattice steps and curves of its own (``search.toolkit_search``,
+    ``CurveTable.joined``), and ``equations.take_pegs`` its pitch. A single moving peg, such as a clamp on a line of
+    holes of the locators' own plate, needs the pitch of its rows and their offset only.
 
     Parameters
     ----------
@@ -45,8 +51,8 @@ class Frame:
     moving: Carrier
 
     @classmethod
-    def of(cls, toolkit: Toolkit) -> Frame:
-        """The frame of a toolkit.
+    def of(cls, toolkit: Toolkit, farthest: float) -> Frame:
+        """The frame of a toolkit; two pegs on the part are at most ``farthest`` mm apart.
 
         Raises
         ------
@@ -63,7 +69,7 @@ class Frame:
                 f"that of the {standing.name} one: give both one pitch, and a direction of whole quarter turns."
             )
         quarters = round(turns) % 4
-        return cls(toolkit, quarters, turned(standing, quarters), turned(moving, quarters))
+        return cls(toolkit, quarters, turned(standing, quarters, farthest), turned(moving, quarters, farthest))
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
@@ -90,8 +96,13 @@ class Frame:
     @property
     def travel_at_rest(self) -> float:
         """Travel in mm at which the moving carrier's first column would be in the last one of the other."""
-        (x, _), (first, _) = self.standing.place(self.standing.columns - 1, 0), self.moving.offset
+        (x, _), (first, _) = self.standing.place(self.standing.column_count - 1, 0), self.moving.offset
         return float(x - first)
+
+    def step_back(self, column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
+        """Differences of columns and rows in the toolkit from those in the frame."""
+        cosine, sine = QUARTERS[self.quarters]
+        return cosine * column - sine * row, sine * column + cosine * row
 
     def holes(self, standing: NDArray[np.bool_], column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
         """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` tells of which carrier.
@@ -122,19 +133,22 @@ def hole_back(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[A
     return (row, flipped(column, carrier.columns)) if quarters else (column, row)
 
 
-def turned(carrier: Carrier, quarters: int) -> Carrier:
-    """A carrier as it is in the frame.
+def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
+    """A carrier as it is in the frame; without an end along the travel it has as many columns as two pegs on the part can be
+    apart.
 
     Raises
     ------
     InputError
-        When it has no end along the travel, or holes are blocked where it has none across.
+        When holes are blocked where it has no end.
     """
     swaps = quarters % 2 == 1
     columns, rows = (carrier.rows, carrier.columns) if swaps else (carrier.columns, carrier.rows)
-    if columns is None or (quarters and rows is None and carrier.blocked):
+    if carrier.blocked and (columns is None or (quarters and rows is None)):
         raise InputError(f"the {carrier.name} carrier has no end: give the number of its columns and rows of holes.")
     pitch = carrier.pitch[::-1] if swaps else carrier.pitch
+    if columns is None:
+        columns = int(farthest / pitch[0]) + 1
     travel = carrier.travel and Travel(0.0, carrier.travel.least, carrier.travel.most)
     out = evolve(carrier, pitch=pitch, columns=columns, rows=rows, travel=travel)
     x, y = evolve(carrier, travel=None).place(*hole_back(out, quarters, 0, 0))

@@ -13,13 +13,13 @@ from workhold.contact.features import ContactFeature, allowed_features, contact_
 from workhold.contact.frame import Frame
 from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.feature import RADIUS, X, Y
 from workhold.kernels.base.given import Limits, Setting
 from workhold.limits import refuse_many_steps
 from workhold.model.diameter import outline_diameter
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
-from workhold.model.toolkit import Carrier
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Problem", "Progress"]
@@ -36,7 +36,7 @@ class Problem:
     Parameters
     ----------
     query : what is asked.
-    locus : all contact features, also those that are ruled out, ordered by face.
+    loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out, ordered by face.
     rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the same for both
@@ -46,7 +46,7 @@ class Problem:
     """
 
     query: Query
-    locus: tuple[ContactFeature, ...]
+    loci: tuple[tuple[ContactFeature, ...], ...]
     rows: NDArray[np.float64]
     faces: NDArray[np.int64]
     standing: tuple[int, int]
@@ -55,7 +55,7 @@ class Problem:
     diameter: float
 
     def __attrs_post_init__(self) -> None:
-        for carrier in self.vise.carriers:
+        for carrier in self.toolkit.carriers:
             refuse_many_steps(carrier.pitch, carrier.columns, carrier.rows, self.diameter, len(self.rows))
 
     @classmethod
@@ -69,7 +69,9 @@ class Problem:
             can stand in too many ways (``limits``).
         """
         workpiece, restrictions = query.workpiece, query.restrictions
-        standing, moving = carriers = Frame.of(query.toolkit).carriers
+        radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
+        diameter = outline_diameter(workpiece) + 2 * radius
+        standing, moving = carriers = Frame.of(query.toolkit, diameter).carriers
         alike = (standing.peg_radius, standing.body_radius) == (moving.peg_radius, moving.body_radius)
         loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if alike else 2]]
         allowed = loci
@@ -82,7 +84,7 @@ class Problem:
         center = workpiece.center
         return cls(
             query,
-            tuple(sorted((feature for locus in loci for feature in locus), key=lambda feature: feature.face)),
+            (tuple(loci[0]), tuple(loci[-1])),
             rows=np.concatenate(
                 [centered(feature_rows(features), center), np.concatenate([end_slacks(part) for part in allowed])],
                 axis=1,
@@ -91,7 +93,7 @@ class Problem:
             standing=(0, len(allowed[0])),
             moving=(len(features) - len(allowed[-1]), len(features)),
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
-            diameter=outline_diameter(workpiece) + 2 * max(carrier.peg_radius for carrier in carriers),
+            diameter=diameter,
         )
 
     @property
@@ -100,9 +102,8 @@ class Problem:
         return self.query.workpiece
 
     @property
-    def vise(self) -> Vise:
-        """What to hold it in, which is a vise."""
-        assert isinstance(self.query.toolkit, Vise)
+    def toolkit(self) -> Toolkit:
+        """What to hold it in."""
         return self.query.toolkit
 
     @property
@@ -124,12 +125,12 @@ class Problem:
     def backward_error(self) -> float:
         """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
         center = self.workpiece.center
-        return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [1, 2, 6]]).max()))
+        return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max()))
 
     @cached_property
     def frame(self) -> Frame:
         """The toolkit as the search sees it."""
-        return Frame.of(self.vise)
+        return Frame.of(self.toolkit, self.diameter)
 
     @cached_property
     def limits(self) -> Limits:
@@ -139,8 +140,8 @@ class Problem:
             frame.gap,
             self.contact_margin,
             self.wrench_length,
-            most_column_steps=frame.standing.columns - 1.0,
-            clamping=float(self.vise.clamping),
+            most_column_steps=frame.standing.column_count - 1.0,
+            clamping=float(self.toolkit.clamping),
             least_margin=0.0,
             most_listed=0.0,
         )
@@ -173,7 +174,6 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
 def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
     """Rows (N, 8) of segments moved so that a point becomes the origin; read-only."""
     out = np.array(rows)
-    out[:, 1] -= center[0]
-    out[:, 2] -= center[1]
+    out[:, [X, Y]] -= center
     out.setflags(write=False)
     return out

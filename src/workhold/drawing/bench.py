@@ -8,6 +8,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.drawing.clamps import draw_clamp
 from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
 from workhold.drawing.plates import draw_holes, draw_plate, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
@@ -56,9 +57,10 @@ class Bench:
         """(N, 2) page points around each loop of the part, about ``step`` page units apart."""
         return [sampled_loop(loop, view, step) for loop in self.loops]
 
-    def radius(self, view: View) -> float:
+    def radius(self, view: View, index: int) -> float:
         """Radius of a peg on the page."""
-        return max(self.toolkit.carriers[0].peg_radius * view.scale, THINNEST_PEG)
+        carrier = self.toolkit.carrier(self.fixture.pegs[index].carrier)
+        return max(carrier.peg_radius * view.scale, THINNEST_PEG)
 
 
 def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
@@ -100,11 +102,12 @@ def draw_bench(
     holes = scene.group("holes")
     for carrier in bench.shown.carriers:
         draw_holes(holes, carrier, view, most_holes(view, bench.shown))
-    if axes:
+    if axes and bench.shown.measured is not None:
         group = scene.group("axes")
-        for _, *between in bench.shown.travels:
-            for low, high in between:
-                group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
+        for low, high in bench.shown.measured.axes:
+            group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
+    for clamp in bench.shown.clamps:
+        draw_clamp(scene, clamp, bench.shown.carriers[0], view, weight)
     draw_part(scene, bench, view, weight)
     arrows = scene.group("forces")
     for index in range(4):
@@ -113,7 +116,7 @@ def draw_bench(
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
             arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if bench.radius(view) > 7.0 * weight:
+    if min(bench.radius(view, index) for index in range(4)) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
             contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
@@ -132,15 +135,13 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     """Draw the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
-    radius = bench.radius(view)
-    cross = min(0.55 * radius, 6.0 * weight)
-    for carrier in bench.shown.carriers:
-        hole = view.scale * carrier.hole_radius
-        for peg in carrier.pegs:
-            x, y = view((peg.x, peg.y))
-            if carrier.carrier.peg_radius == 0 and hole > radius:
-                pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
-            pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
-            if cross > 2.0 * weight:
-                pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
-                pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)
+    holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
+    for index, peg in enumerate(bench.fixture.pegs):
+        (x, y), radius, hole = view((peg.x, peg.y)), bench.radius(view, index), holes.get(peg.carrier, 0.0)
+        cross = min(0.55 * radius, 6.0 * weight)
+        if bench.toolkit.carrier(peg.carrier).peg_radius == 0 and hole > radius:
+            pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
+        pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+        if cross > 2.0 * weight:
+            pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
+            pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)

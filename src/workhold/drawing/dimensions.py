@@ -6,16 +6,27 @@ from math import cos, floor, hypot, log10, pi, radians, sin
 
 from workhold.drawing.fonts import text_width
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.scene import BLACK, GREY, Scene, number
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, number
 from workhold.geometry.segment import Point
 
 __all__ = ["angle_mark", "dimension", "round_length", "scale_bar"]
 
 TIGHT = 34.0
+# How far beyond the end of a line a text too long for it stands, page units.
+BEYOND = 8.0
 
 
-def dimension(scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False) -> None:
-    """Draw a dimension line between two page points, its text above it, readable from below or the right."""
+def dimension(
+    scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False, above: bool = False
+) -> Box:
+    """Draw a dimension line between two page points, its text above it, readable from below or the right.
+
+    Parameters
+    ----------
+    above : write a text that is longer than an upright line beyond its upper end.
+
+    Returns the box of the text.
+    """
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = hypot(dx, dy)
     ux, uy = (dx / length, dy / length) if length > 0 else (1.0, 0.0)
@@ -29,9 +40,12 @@ def dimension(scene: Scene, start: Point, end: Point, text: str, size: float = 1
     middle = ((start[0] + end[0]) / 2 + 0.75 * size * uy, (start[1] + end[1]) / 2 - 0.85 * size * abs(ux))
     if abs(ux) < abs(uy):
         middle = (min(start[0], end[0]) - 0.75 * size, (start[1] + end[1]) / 2)
+        if above and text_width(text, size, bold) > length:
+            middle = (middle[0], min(start[1], end[1]) - text_width(text, size, bold) / 2 - BEYOND)
         scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
-    else:
-        scene.text(middle, text, size, "middle", bold, halo=3)
+        return Box.about(middle, size, text_width(text, size, bold))
+    scene.text(middle, text, size, "middle", bold, halo=3)
+    return Box.about(middle, text_width(text, size, bold), size)
 
 
 def round_length(length: float) -> float:

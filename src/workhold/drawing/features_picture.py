@@ -78,7 +78,7 @@ def draw_header(scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: flo
     words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
     if peg_radius is not None:
-        size = lengths.plain(2 * peg_radius)
+        size = lengths.short(2 * peg_radius)
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
     line = " · ".join(words)
     group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)

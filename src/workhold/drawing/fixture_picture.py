@@ -86,8 +86,8 @@ def draw_panel(
     column = Column(group, panel.x0, panel.y0, panel.width)
     draw_title(column, fixture, workpiece, bench.toolkit, title)
     draw_settings(column, fixture, bench.toolkit, lengths)
-    draw_peg_table(column, fixture, lengths)
-    draw_legend(column)
+    draw_peg_table(column, fixture, bench.toolkit, lengths)
+    draw_legend(column, bench.toolkit)
     if not most_holes(view, bench.shown):
         column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)
     column.rule()

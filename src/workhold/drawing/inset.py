@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+from workhold.conventions import AGREEMENT
 from workhold.drawing.bench import ARROW, PART_FILL, TOUCHED
 from workhold.drawing.part import contact_of, face_of, outline_path, segment_path
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
+from workhold.model.part_zero import hole_centers
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_inset", "draw_zero"]
 
 # Flatter than this, in page units, there is no room for a picture.
 LOWEST = 90.0
+# Size of the number of a hole.
+NUMBER = 10.0
 
 
-def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, zero: bool = False) -> None:
+def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, zero: Point | None = None) -> None:
     """Draw the unturned part with its touched faces and contacts into a page box.
 
     Parameters
     ----------
-    zero : mark the part's zero point too, where it lies within the part's extent.
+    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are numbered too.
     """
     if box.height < LOWEST:
         return
@@ -36,13 +41,24 @@ def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, z
     group.path(d, BLACK, 1.4)
     for point in contacts(workpiece, fixture):
         group.circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
-    if zero and bounds.contains(Box(0.0, 0.0, 0.0, 0.0)):
-        draw_zero(group, view((0.0, 0.0)))
+    if zero is not None:
+        number_holes(group, view, workpiece)
+        if bounds.grown(AGREEMENT).contains(Box(*zero, *zero)):
+            draw_zero(group, view(zero))
     corner = (box.x0 + 4, box.y1 - 4)
     group.arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
     group.arrow(corner, (corner[0], corner[1] - 30), GREY, 1.2, 8)
     group.text((corner[0] + 34, corner[1] - 1), "x", 12, fill=GREY)
     group.text((corner[0] + 5, corner[1] - 33), "y", 12, fill=GREY)
+
+
+def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
+    """Write the number of each hole at its centre, where it has room for it."""
+    for count, (loop, center) in enumerate(zip(workpiece.loop_segments[1:], hole_centers(workpiece), strict=True), 1):
+        boxes = [bounding_box(segment) for segment in loop]
+        room = min(max(box[k + 2] for box in boxes) - min(box[k] for box in boxes) for k in (0, 1)) * view.scale
+        if room >= NUMBER + 2:
+            scene.text(view(center), str(count), NUMBER, "middle", fill=GREY)
 
 
 def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:

@@ -52,14 +52,14 @@ class LengthUnit:
         """A length in mm with the sign of the unit."""
         return f"{self.number(length)} {self.sign}"
 
-    def plain(self, length: float, digits: int = 6) -> str:
+    def short(self, length: float, digits: int = 6) -> str:
         """A length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
 
-        >>> LengthUnit.mm().plain(12.7), LengthUnit.mm().plain(10.0)
+        >>> LengthUnit.mm().short(12.7), LengthUnit.mm().short(10.0)
         ('12.7 mm', '10 mm')
         """
-        return f"{self.plain_number(length, digits)} {self.sign}"
+        return f"{self.short_number(length, digits)} {self.sign}"
 
-    def plain_number(self, length: float, digits: int = 6) -> str:
-        """As :meth:`plain`, without the sign of the unit."""
+    def short_number(self, length: float, digits: int = 6) -> str:
+        """As `short`, without the sign of the unit."""
         return f"{length / self.unit.millimetres:.{digits}g}"

@@ -5,23 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
+from workhold.drawing.clamps import block_arrow, draw_sign
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.scene import BLACK, GREY, Scene
-from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.holes import hole_name
+from workhold.model.setting import mover_of, setting_of
+from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "FACT_NAME",
     "NUMBERS",
     "Column",
     "arrangement_words",
+    "clamp_place",
     "closure_margin",
+    "diameter_words",
     "draw_legend",
     "draw_peg_table",
     "draw_settings",
     "draw_title",
+    "fixture_words",
+    "holes_words",
     "offset_words",
+    "pegs_words",
     "plural",
 ]
 
@@ -89,19 +98,30 @@ def closure_margin(fixture: Fixture) -> str:
     return f"{margin:.4f}" if margin >= 0.001 else f"{margin:.2e}".replace("-", "−")
 
 
-def arrangement_words(name: str, toolkit: Toolkit) -> str:
+def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     """A toolkit's arrangement of pegs in words.
 
-    >>> from workhold.model.vise import Vise
-    >>> [arrangement_words(name, Vise(pitch=10, columns=2, peg_radius=3)) for name in ("I", "II")]
+    >>> from workhold import Plate, Vise
+    >>> vise, plate = Vise(pitch=10, columns=2, peg_radius=3), Plate(pitch=20, peg_radius=5)
+    >>> [arrangement_words(one, vise) for one in vise.arrangements]
     ['Type I: two pegs on each jaw', 'Type II: three pegs left, one right']
+    >>> arrangement_words(plate.arrangements[0], plate)
+    'Three locators, the clamp pushes to the left'
     """
-    counts, carriers = toolkit.arrangement(name).pegs, toolkit.carriers
+    counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
+    if arrangement.direction is not None:
+        standing = plural(counts[0], carriers[0].peg, NUMBERS).capitalize()
+        return f"{standing}, the {carriers[arrangement.carriers[-1]].noun} pushes {arrangement.towards}"
     if len(counts) > 1 and len(set(counts)) == 1:
         return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
     words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
     words[0] = f"{plural(counts[0], 'peg', NUMBERS)} {carriers[0].name}"
     return f"Type {name}: {', '.join(words)}"
+
+
+def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
+    """The arrangement of a fixture in words."""
+    return arrangement_words(toolkit.arrangement(fixture.type, fixture.direction), toolkit)
 
 
 def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
@@ -125,63 +145,124 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
     fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
     column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
     column.words(title or "Fixture", 18, gap=0.5)
-    column.words(arrangement_words(fixture.type, toolkit), 14, fill=GREY)
+    column.words(fixture_words(fixture, toolkit), 14, fill=GREY)
     column.rule(2.0)
 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, moving = toolkit.carriers[0], toolkit.moving
-    column.words(f"{moving.noun.capitalize()} separation S", 13, fill=GREY, gap=0.8)
-    column.words(lengths.words(fixture.jaw_separation), 32, bold=True, gap=0.4)
+    first, moving, setting = toolkit.carriers[0], mover_of(fixture, toolkit), setting_of(fixture, toolkit)
+    if setting is not None:
+        column.words(setting.title[0].upper() + setting.title[1:], 13, fill=GREY, gap=0.8)
+        column.words(lengths.words(setting.length), 32, bold=True, gap=0.4)
+    if moving.on is not None:
+        column.fact(*clamp_place(fixture.pegs[-1], moving))
+        column.fact(f"{moving.noun.capitalize()} pushes", toolkit.arrangement(fixture.type, fixture.direction).towards)
     column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()
-    pitch = f"pitch {lengths.plain_number(first.pitch[0])} × {lengths.plain(first.pitch[1])}"
-    column.fact(f"Each {first.noun}", f"{plural(first.columns, 'column')}, {pitch}")
-    column.fact("Pegs", f"Ø {lengths.plain(2 * first.peg_radius)}" if first.peg_radius else "points, no diameter")
+    pitch = f"pitch {lengths.short_number(first.pitch[0])} × {lengths.short(first.pitch[1])}"
+    if moving.on is None:
+        column.fact(f"Each {first.noun}", f"{plural(first.column_count, 'column')}, {pitch}")
+    else:
+        column.fact(first.title.capitalize(), f"{holes_words(first)}, {pitch}")
+        column.fact(f"Tip of the {moving.noun}", diameter_words(moving, lengths))
+    column.fact(f"{first.peg.capitalize()}s", diameter_words(first, lengths))
     if offset := offset_words(toolkit, lengths):
         column.fact(f"{moving.letter} rows over {first.letter} rows", offset)
     column.rule()
 
 
-def draw_peg_table(column: Column, fixture: Fixture, lengths: LengthUnit) -> None:
+def clamp_place(tip: Peg, clamp: Carrier) -> tuple[str, str]:
+    """Where a clamp goes: what is told, and the hole or the line."""
+    name = clamp.place_name(tip.column, tip.row).removeprefix(f"{clamp.noun} ")
+    return f"{clamp.noun.capitalize()} {'bolted in' if clamp.has_a_hole else 'along'}", name
+
+
+def holes_words(carrier: Carrier) -> str:
+    """How many holes a plate has.
+
+    >>> from workhold import Plate
+    >>> [holes_words(Plate(pitch=20, peg_radius=5, columns=c, rows=6).carriers[0]) for c in (8, None)]
+    ['8 × 6 holes', '6 rows']
+    """
+    if carrier.columns is not None and carrier.rows is not None:
+        return f"{carrier.columns} × {carrier.rows} holes"
+    named = (("column", carrier.columns), ("row", carrier.rows))
+    return next((plural(count, noun) for noun, count in named if count is not None), "any size")
+
+
+def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
+    """The diameter of a carrier's pegs."""
+    return f"Ø {lengths.short(2 * carrier.peg_radius)}" if carrier.peg_radius else "points, no diameter"
+
+
+def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write the four pegs: hole, face, place and force."""
-    ends = (0.32, 0.575, 0.82, 1.0)
+    ends, first = (0.32, 0.575, 0.82, 1.0), toolkit.carriers[0]
     places = [(lengths.number(peg.x), lengths.number(peg.y)) for peg in fixture.pegs]
     widest = max(text_width(cell, 14) for place in places for cell in place)
     size = 14 if widest < 0.24 * column.width else 11
-    column.row(["Peg in", "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
+    where = "Peg in" if first.letter else "In hole"
+    column.row([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
     for peg, place in zip(fixture.pegs, places, strict=True):
-        force = f"{peg.force:z.3f}".replace("-", "−")
-        column.row([peg.hole, str(peg.face), *place, force], ends, size)
+        carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
+        column.row([peg.hole if carrier.on is None else carrier.noun, str(peg.face), *place, force], ends, size)
     column.y += 2
-    column.words("x, y: peg centre, from the centre of hole L-A1.", 11, fill=GREY)
+    origin = hole_name(first.name, 0, 0)
+    column.words(f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}.", 11, fill=GREY)
     column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
     column.rule()
 
 
-def draw_legend(column: Column, fill: str = GREY) -> None:
+def pegs_words(toolkit: Toolkit) -> str:
+    """What its pegs are called, such as "peg" or "locator or clamp"."""
+    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers))
+
+
+def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
     """Explain the signs; ``fill`` is the colour of the words."""
-    scene, x = column.scene, column.x + 16
-    words = [
-        "peg to place, with its hole: jaw, column, row",
-        "hole, left empty",
-        "force of the peg on the part, longer if larger",
-        "face touched, with its number",
+    first = toolkit.carriers[0]
+    named = f"{first.noun}, column, row" if first.letter else "column, row"
+
+    def peg(scene: Scene, x: float, y: float) -> None:
+        scene.circle((x, y), 7, PEG_FILL, BLACK, 1.2)
+
+    def hole(scene: Scene, x: float, y: float) -> None:
+        scene.circle((x, y), 7, "#ffffff", GREY, 0.9)
+
+    def clamp(scene: Scene, x: float, y: float) -> None:
+        draw_sign(scene, (x, y))
+
+    def push(scene: Scene, x: float, y: float) -> None:
+        block_arrow(scene, (x, y), (-1.0, 0.0), 0.55)
+
+    def force(scene: Scene, x: float, y: float) -> None:
+        scene.circle((x - 14, y), 2.8, ARROW)
+        scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
+
+    def face(scene: Scene, x: float, y: float) -> None:
+        scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
+        scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
+
+    def line(scene: Scene, x: float, y: float) -> None:
+        scene.line([(x - 15, y), (x + 16, y)], BLACK, 1.0, stroke_dasharray="7 4")
+
+    signs = [(peg, f"{first.peg} to place, with its hole: {named}"), (hole, "hole, left empty")]
+    if toolkit.carriers[-1].on is not None:
+        has_a_hole = toolkit.carriers[-1].has_a_hole
+        signs.append(
+            (clamp, "clamp: bolt, body and tip") if has_a_hole else (line, "line of holes that the clamp is on")
+        )
+        signs.append((push, "which way the clamp pushes"))
+    signs += [
+        (force, f"force of the {pegs_words(toolkit)} on the part, longer if larger"),
+        (face, "face touched, with its number"),
     ]
-    for k, line in enumerate(words):
+    for draw, words in signs:
         y = column.y + 8
-        if k == 0:
-            scene.circle((x, y), 7, PEG_FILL, BLACK, 1.2)
-        elif k == 1:
-            scene.circle((x, y), 7, "#ffffff", GREY, 0.9)
-        elif k == 2:
-            scene.circle((x - 14, y), 2.8, ARROW)
-            scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
-        else:
-            scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
-            scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
-        scene.text((x + 28, y), line, 11.5, fill=fill)
+        draw(column.scene, column.x + 16, y)
+        size = min(11.5, 11.5 * (column.width - 44) / text_width(words, 11.5))
+        column.scene.text((column.x + 44, y), words, size, fill=fill)
         column.y += 21

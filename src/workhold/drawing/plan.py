@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
+from itertools import pairwise
 from math import atan2, cos, hypot, pi, radians, sin
 
 import numpy as np
 
 from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow
+from workhold.drawing.clamps import avoid_clamp, block_arrow
 from workhold.drawing.dimensions import angle_mark, dimension
 from workhold.drawing.fonts import text_width
 from workhold.drawing.inset import draw_zero
@@ -15,7 +18,6 @@ from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, l
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.plates import labelled
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
-from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Point
 from workhold.model.holes import column_letters
 from workhold.model.shown import ShownCarrier
@@ -32,6 +34,10 @@ TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
 ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
 RIM_WORD = 10.0
+# Between the names of carriers, page units.
+CAPTION_GAP = 16.0
+# Size of the names of columns and rows without and with pegs.
+NAME_SIZE = (12.0, 14.0)
 
 # In denser lattices labels cannot help covering holes.
 MOST_HOLES_AVOIDED = 2000
@@ -52,16 +58,16 @@ def draw_plan(
     Parameters
     ----------
     angle : what to write at the part's turn; its size if not given.
-    marks : points in the vise frame (mm) to mark, each with its name; those outside the picture are left out.
+    marks : points in the vise frame (mm) to mark, each with its name.
     """
-    frame = view.box(bench.extent)
+    frame = view.box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
-    draw_travel(scene, bench, view, frame, lengths)
+    names += draw_travel(scene, bench, view, frame, lengths)
     names += draw_captions(scene, bench, view, frame, bounds)
     center = view(bench.fixture.pose.apply(*workpiece.center))
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
-    marks = [(view(point), name) for point, name in marks if bench.extent.contains(Box(*point, *point))]
+    marks = [(view(point), name) for point, name in marks]
     angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
     draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle)
 
@@ -72,24 +78,44 @@ def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[
 
     Returns where they stand.
     """
-    group, boxes = scene.group("hole-names"), []
+    group, names = scene.group("hole-names"), []
     for shown in bench.shown.carriers:
         plate = view.box(shown.plate)
         rows = [(row, view((0.0, y))[1]) for row, y in zip(shown.rows, shown.y, strict=True)]
-        for row, y, used in labelled(rows, {peg.row for peg in shown.pegs}, 15.0):
+        for row, y, used in labelled(rows, shown.used_rows, 15.0):
             rim, inner, way = (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
             ruling(group, (rim, y), (inner, y))
-            anchor = "end" if way < 0 else "start"
-            boxes.append(write_name(group, (rim + 10 * way, y), str(row + 1), used, anchor))
+            names.append(((rim + 10 * way, y), str(row + 1), used, "end" if way < 0 else "start"))
         columns = [(column, view((x, 0.0))[0]) for column, x in zip(shown.columns, shown.x, strict=True)]
         rims = (("top", frame.y0, plate.y0, -1), ("bottom", frame.y1, plate.y1, 1))
-        for column, x, used in labelled(columns, {peg.column for peg in shown.pegs}, 17.0):
+        for column, x, used in labelled(columns, shown.used_columns, 17.0):
             anchor = inner_anchor(shown, column, bench.fixture.jaw_separation * view.scale)
             for side, rim, inner, way in rims:
                 if side not in shown.facing:
                     ruling(group, (x, rim), (x, inner))
-                    boxes.append(write_name(group, (x, rim + 14 * way), column_letters(column), used, anchor))
+                    names.append(((x, rim + 14 * way), column_letters(column), used, anchor))
+    boxes = write_names(group, names)
     return boxes + write_rim_words(group, frame, boxes)
+
+
+def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
+    """Write column letters and row numbers, those of pegs (the third entry) first and beside their place where another
+    stands on it; of the others those that have room. Returns where they stand.
+    """
+    boxes: list[Box] = []
+    for at, name, used, wanted in sorted(names, key=lambda each: not each[2]):
+        places = [(at, anchor) for anchor in dict.fromkeys((wanted, "end", "start") if used else (wanted,))]
+        for other in boxes if used else []:
+            places += [((other.x0 - 3, at[1]), "end"), ((other.x1 + 3, at[1]), "start")]
+        placed = [
+            (abs(place[0] - at[0]), place, anchor, name_box(place, name, used, anchor)) for place, anchor in places
+        ]
+        free = [each for each in placed if all(each[3].grown(1.5).overlap(other) == 0 for other in boxes)]
+        if free:
+            _, place, anchor, box = min(free, key=lambda each: each[0])
+            scene.text(place, name, NAME_SIZE[used], anchor, bold=used, fill=BLACK if used else GREY)
+            boxes.append(box)
+    return boxes
 
 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
@@ -119,55 +145,79 @@ def ruling(scene: Scene, rim: Point, plate: Point) -> None:
         scene.line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
 
 
-def write_name(scene: Scene, at: Point, name: str, used: bool, anchor: str) -> Box:
-    """Write a column letter or row number, bold when a peg stands there, and return its box."""
-    size = 14.0 if used else 12.0
-    scene.text(at, name, size, anchor, bold=used, fill=BLACK if used else GREY)
+def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
+    """The box of a column letter or row number."""
+    size = NAME_SIZE[used]
     width = text_width(name, size, used)
     left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
     return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
 
 
-def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> None:
-    """Dimension how far each carrier has slid, above the plates or at their left."""
-    group = scene.group("jaw-separation")
-    for shown, *axes in bench.shown.travels:
-        start, end = (
-            (frame.x0 - 42, y) if shown.upright else (x, frame.y0 - 42) for x, y in (view(high) for _, high in axes)
-        )
-        for x, y in (start, end):
-            group.line([(x + 19, y), (x - 3, y)] if shown.upright else [(x, y + 19), (x, y - 3)], BLACK, 0.7)
-        dimension(group, start, end, f"S = {lengths.words(shown.travelled)}", 17, bold=True)
+def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> list[Box]:
+    """Dimension the length to set, above the plates or at their right, and return where the words stand."""
+    group, measured = scene.group("opening"), bench.shown.measured
+    if measured is None:
+        return []
+    upright, setting = measured.is_upright, measured.setting
+    start, end = (
+        (frame.x1 + 42, y) if upright else (x, frame.y0 - 42) for x, y in (view(high) for _, high in measured.axes)
+    )
+    for x, y in (start, end):
+        group.line([(x - 19, y), (x + 3, y)] if upright else [(x, y + 19), (x, y - 3)], BLACK, 0.7)
+    return [
+        dimension(group, start, end, f"{setting.sign} = {lengths.words(setting.length)}", 17, bold=True, above=True)
+    ]
 
 
 def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Name the carriers below them and show with an arrow which way one slides to clamp.
+    """Name the carriers below them and show with an arrow which way one slides to clamp; where clamps are drawn they and
+    the one plate need no names.
 
     Returns the room this takes.
     """
-    group, boxes = scene.group("captions"), []
+    if bench.shown.clamps:
+        return []
+    group = scene.group("captions")
+    boxes: list[Box] = []
     y = frame.y1 + 40
     verb = "closing" if bench.toolkit.clamping > 0 else "opening"
-    for shown in bench.shown.carriers:
-        plate, carrier = view.box(shown.plate), shown.carrier
-        caption = f"{'fixed' if shown.clamping is None else 'sliding'} {carrier.noun} ({carrier.letter})"
-        width, anchor = text_width(caption, 14), "start"
-        left = right = min(plate.x0 + 6, bounds.x1 - width)
-        if "right" in shown.facing:
-            right, anchor = max(plate.x1 - 6, bounds.x0 + width), "end"
-            left = right - width
-        group.text((right, y), caption, 14, anchor)
+    captions = [
+        f"{'fixed' if shown.clamping is None else 'sliding'} {shown.carrier.noun} ({shown.carrier.letter})"
+        for shown in bench.shown.carriers
+    ]
+    widths = [text_width(caption, 14) for caption in captions]
+    lefts = []
+    for shown, width in zip(bench.shown.carriers, widths, strict=True):
+        plate = view.box(shown.plate)
+        lefts.append(max(plate.x1 - 6 - width, bounds.x0) if "right" in shown.facing else plate.x0 + 6)
+    for shown, caption, left, width in zip(
+        bench.shown.carriers, captions, side_by_side(lefts, widths, bounds.x1), widths, strict=True
+    ):
+        group.text((left, y), caption, 14)
         box = Box(left, y - 8, left + width, y + 8)
         if shown.clamping is not None:
             tip = min(left, bounds.x1 - 66 - text_width(verb, 13))
-            outline = [(-29, 0), (-11, -11), (-11, -5), (29, -5), (29, 5), (-11, 5), (-11, 11)]
-            turn = atan2(shown.clamping[1], -shown.clamping[0])
-            corners = [rotated(*corner, turn) for corner in outline]
-            group.polygon([(tip + 29 + dx, y + 24 + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4)
+            block_arrow(group, (tip + 29, y + 24), shown.clamping)
             group.text((tip + 66, y + 24), verb, 13)
             box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 38))
         boxes.append(box)
     return boxes
+
+
+def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
+    """Where pieces of some widths begin, from left to right near where they would, apart and not beyond the right.
+
+    >>> side_by_side([0.0, 10.0], [20.0, 20.0], 100.0), side_by_side([50.0, 60.0], [30.0, 30.0], 100.0)
+    ([0.0, 36.0], [24.0, 70.0])
+    """
+    order, placed = sorted(range(len(lefts)), key=lambda k: lefts[k]), list(lefts)
+    for before, k in pairwise(order):
+        placed[k] = max(placed[k], placed[before] + widths[before] + CAPTION_GAP)
+    end = right
+    for k in reversed(order):
+        placed[k] = min(placed[k], end - widths[k])
+        end = placed[k] - CAPTION_GAP
+    return placed
 
 
 def draw_labels(
@@ -201,9 +251,8 @@ def draw_labels(
         ]
     )
     group = scene.group("labels")
-    radius = bench.radius(view)
-    for peg, place in zip(pegs, places, strict=False):
-        draw_flag(group, place, radius, peg.hole)
+    for index, (peg, place) in enumerate(zip(pegs, places, strict=False)):
+        draw_flag(group, place, bench.radius(view, index), peg.hole)
     for face, place in zip(numbers, places[4:], strict=False):
         draw_tag(group, place, str(face))
     group.text(places[4 + len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
@@ -216,9 +265,8 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     for outline in bench.outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
-    radius = bench.radius(view)
     for index, peg in enumerate(bench.fixture.pegs):
-        x, y = view((peg.x, peg.y))
+        (x, y), radius = view((peg.x, peg.y)), bench.radius(view, index)
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
         placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
     turn = radians(bench.fixture.pose.theta_deg)
@@ -227,9 +275,10 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
     arc = np.linspace(0.0, turn, 24)
     placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
-    for _, *between in bench.shown.travels:
-        for low, high in between:
-            placer.avoid_line(view(low), view(high), 0.5)
+    for low, high in bench.shown.measured.axes if bench.shown.measured else ():
+        placer.avoid_line(view(low), view(high), 0.5)
+    for clamp in bench.shown.clamps:
+        avoid_clamp(placer, clamp, view)
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
@@ -242,12 +291,13 @@ def spread(count: int) -> list[float]:
 
 
 def peg_label(bench: Bench, index: int, view: View) -> Label:
-    """Candidates for the label of a peg: best away from the part, close by."""
+    """Candidates for the label of a peg: best away from the part, close by; that of a clamp at its hole."""
     peg = bench.fixture.pegs[index]
     nx, ny = bench.contacts[index][1]
     size = (text_width(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
-    distances = [bench.radius(view) + gap for gap in (5, 14, 26, 42, 64, 90)]
-    return around(view((peg.x, peg.y)), atan2(-ny, nx), size, distances, spread(24))
+    distances = [bench.radius(view, index) + gap for gap in (5, 14, 26, 42, 64, 90)]
+    at = next((clamp.back for clamp in bench.shown.clamps if clamp.tip == peg), (peg.x, peg.y))
+    return around(view(at), atan2(-ny, nx), size, distances, spread(24))
 
 
 def mark_label(point: Point, name: str) -> Label:
@@ -269,7 +319,7 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
         parameter = share * half
         nx, ny = face.normal(parameter)
         extra = 4 * abs(parameter - near) / half
-        labels.append(around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24), (0.0, 0.5, -0.5), extra))
+        labels.append(around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24, 40, 60), spread(8), extra))
     return joined(labels)
 
 

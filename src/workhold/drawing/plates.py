@@ -9,7 +9,7 @@ from workhold.drawing.scene import GREY, Scene, View
 from workhold.geometry.segment import Point
 from workhold.model.shown import Shown, ShownCarrier, Side
 
-__all__ = ["draw_holes", "draw_plate", "labelled", "most_holes"]
+__all__ = ["SLIDING", "draw_holes", "draw_plate", "labelled", "most_holes"]
 
 # Fill and edge of a plate that stands still, and of one that slides.
 STILL, SLIDING = ("#dbe4ee", "#7c8da1"), ("#f1e7d6", "#a8946f")

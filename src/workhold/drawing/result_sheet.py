@@ -4,48 +4,87 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from datetime import date
+from typing import Any
 
+from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import same_holes
+from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances, same_holes
+from workhold.model.fixture import Fixture
 from workhold.model.load import Load
+from workhold.model.part_zero import part_zero
 from workhold.model.result import Result
-from workhold.model.units import Unit
+from workhold.model.toolkit import Toolkit
+from workhold.model.units import MILLIMETRE, Unit
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
 from workhold.version import __version__
 
-__all__ = ["result_sheet"]
+__all__ = ["result_cautions", "result_details", "result_sheet"]
 
 
-def result_sheet(
+def result_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]:
+    """The pages of the setup sheet of one fixture, as SVG text; what is asked is told by :func:`result_details`, which also
+    says what is raised.
+    """
+    fixture, details = result_details(result, rank, **asked)
+    return draw_sheet(fixture, result.workpiece, result.toolkit, details)
+
+
+def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
+    """What the setup sheet of one fixture says to beware of; see :func:`result_details`."""
+    fixture, details = result_details(result, rank, **asked)
+    lengths = LengthUnit.suiting(details.unit, smallest_pitch(result.toolkit))
+    distances = edge_distances(fixture, result.workpiece, result.toolkit)
+    return cautions_of(fixture, result.toolkit, distances, details, lengths)
+
+
+def smallest_pitch(toolkit: Toolkit) -> float:
+    """The smallest distance between neighbouring holes, in mm."""
+    return min(min(carrier.pitch) for carrier in toolkit.carriers)
+
+
+def result_details(
     result: Result,
     rank: int,
     *,
-    result_hash: str,
-    day: date,
-    paper: str,
-    unit: Unit,
+    result_hash: str = "",
+    day: date = date.min,
+    paper: str = "a4",
+    unit: Unit = MILLIMETRE,
     part_name: str | None = None,
     jaw_force: float | None = None,
     friction: float | None = None,
+    jaw: str | float = "screw",
     loads: Sequence[Load] | None = None,
-) -> tuple[str, ...]:
-    """The pages of the setup sheet of one fixture, as SVG text.
+    zero: str | Sequence[float] | None = None,
+    machine_position: tuple[float, float] | None = None,
+    thickness: float | None = None,
+    peg_length: float | None = None,
+    peg_height: float | None = None,
+    dowel: str | None = None,
+    others: int | None = None,
+) -> tuple[Fixture, SheetDetails]:
+    """One fixture with all figures of quality, and what its setup sheet tells besides.
 
     Parameters
     ----------
     rank : of the fixture, from 1.
     loads : instead of those of the result, if given.
-    result_hash, day, paper, unit, part_name, jaw_force, friction : see :class:`SheetDetails`.
+    jaw : what closes the vise, see :func:`workhold.statics.jaw.jaw_stiffness`.
+    zero : part zero, see :func:`workhold.model.part_zero.part_zero`; its numbers are in ``unit``.
+    others : how many other fixtures use the same holes; counted in the result if None.
+    result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position, thickness, peg_length, peg_height,
+        dowel : see :class:`SheetDetails`.
 
     Raises
     ------
     InputError
-        For a jaw force or a coefficient of friction that cannot be.
+        For a jaw force, a coefficient of friction or a part zero that cannot be.
     """
     asked = result.query.loads if loads is None else loads
-    fixture, workpiece, vise = measured_fixture(result, rank - 1, asked), result.workpiece, result.vise
+    jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
+    fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
     details = SheetDetails(
         number=rank,
         count=len(result),
@@ -58,7 +97,13 @@ def result_sheet(
         tolerance=result.query.tolerance,
         jaw_force=jaw_force,
         friction=friction,
-        loads=load_cases(fixture, workpiece, vise, asked, jaw_force, friction),
-        others=same_holes(result.table, rank - 1),
+        loads=load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw),
+        zero=part_zero(workpiece, zero, unit),
+        machine_position=machine_position,
+        thickness=thickness,
+        peg_length=peg_length,
+        peg_height=peg_height,
+        dowel=dowel,
+        others=same_holes(result.table, rank - 1) if others is None else others,
     )
-    return draw_sheet(fixture, workpiece, vise, details)
+    return fixture, details

@@ -19,6 +19,7 @@ from attrs import frozen
 from workhold.drawing.fonts import FAMILY
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Point
+from workhold.plain import plain
 
 __all__ = [
     "BLACK",
@@ -97,11 +98,6 @@ class View:
     def matrix(self) -> str:
         """The map as an SVG ``matrix(a b c d e f)``."""
         return f"matrix({self.scale:.12g} 0 0 {-self.scale:.12g} {self.left:.12g} {self.top:.12g})"
-
-
-def plain(content: str) -> str:
-    """Text without the control characters that XML forbids."""
-    return "".join(c for c in content if c >= " " and c not in "\x7f\ufffe\uffff" and not "\ud800" <= c <= "\udfff")
 
 
 def stacked(pages: Sequence[str]) -> str:

@@ -6,20 +6,23 @@ with the rest.
 
 from __future__ import annotations
 
+from attrs import evolve
+
 from workhold.drawing.bench import bench_of
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.fonts import shortened, text_width
-from workhold.drawing.inset import draw_inset
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import Column
 from workhold.drawing.plan import draw_plan
 from workhold.drawing.plates import most_holes
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, Scene, View
 from workhold.drawing.sheet_arrangement import FOOT, MARGIN, Arrangement, Filled, arranged, plan_room
-from workhold.drawing.sheet_blocks import Sheet, blocks_of, height_of
+from workhold.drawing.sheet_blocks import blocks_of
 from workhold.drawing.sheet_details import PAPERS, SheetDetails
 from workhold.drawing.sheet_facts import cautions_of, edge_distances
+from workhold.drawing.sheet_writing import Sheet
 from workhold.model.fixture import Fixture
+from workhold.model.part_zero import part_zero
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -28,7 +31,8 @@ __all__ = ["draw_sheet"]
 PAPER_NAMES = {"a4": "A4", "letter": "Letter"}
 # A cell for the part's name narrower than this, in page units, is left out of the foot.
 NARROWEST_NAME = 90.0
-LOWEST_INSET, HIGHEST_INSET, INSET_GAP = 170.0, 320.0, 16.0
+# Part zero and the hole that places are told from are shown on the plan up to so many pitches beside it.
+NEAR = 2
 
 
 def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails) -> tuple[str, ...]:
@@ -42,19 +46,25 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details
     tuple of str
         SVG text of every page, each of the paper's size.
     """
-    bench, zero = bench_of(fixture, workpiece, toolkit), (fixture.pose.x, fixture.pose.y)
+    bench = bench_of(fixture, workpiece, toolkit)
+    details = details if details.zero else evolve(details, zero=part_zero(workpiece))
     lengths = LengthUnit.suiting(details.unit, bench.shown.pitch)
-    cautions = cautions_of(fixture, edge_distances(fixture, workpiece, toolkit), details, lengths)
-    zero_shown = bench.extent.contains(Box(*zero, *zero))
-    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), zero_shown)
+    cautions = cautions_of(fixture, toolkit, edge_distances(fixture, workpiece, toolkit), details, lengths)
+    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions))
+    zero = sheet.zero_place
+    near = bench.extent.grown(NEAR * bench.shown.pitch)
+    zero_box, origin_box = Box(*zero, *zero), Box(0.0, 0.0, 0.0, 0.0)
+    sheet = evolve(sheet, zero_shown=near.contains(zero_box), origin_shown=near.contains(origin_box))
+    extent = bench.extent.union(zero_box) if sheet.zero_shown else bench.extent
+    extent = extent.union(origin_box) if sheet.origin_shown else extent
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
-    arrangement = arranged((width, height), bench.extent, *blocks_of(sheet))
+    arrangement = arranged((width, height), extent, *blocks_of(sheet))
     scene = new_page(arrangement, sheet)
     room = arrangement.plan
-    view = View.fitting(bench.extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
-    marks = [(zero, "part zero")]
+    view = View.fitting(extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
+    marks = [(zero, "X0 Y0")] if sheet.zero_shown else []
     origin = sheet.origin
-    if all(peg.hole != origin for peg in fixture.pegs):
+    if sheet.origin_shown and all(peg.hole != origin for peg in fixture.pegs):
         marks.append(((0.0, 0.0), f"{origin} (0, 0)"))
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ")
     words = f", scale {arrangement.scale.name}"
@@ -66,7 +76,6 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details
     if arrangement.second:
         pages.append(new_page(arrangement, sheet))
         write_columns(pages[1], arrangement.second)
-    write_inset(pages[-1], arrangement.second or arrangement.columns, sheet)
     for number, page in enumerate(pages, 1):
         draw_foot(page, arrangement, sheet, f"{number} of {len(pages)}")
     return tuple(page.svg() for page in pages)
@@ -84,16 +93,6 @@ def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
         column = Column(group, box.x0, box.y0, box.width)
         for block in blocks:
             block(column)
-
-
-def write_inset(scene: Scene, columns: tuple[Filled, ...], sheet: Sheet) -> None:
-    """Draw the part as it was drawn below the shortest of the columns, if that leaves room."""
-    used = [sum(height_of(block, box.width) for block in blocks) for box, blocks in columns]
-    box = columns[used.index(min(used))][0]
-    top = box.y0 + min(used) + INSET_GAP
-    room = Box(box.x0, top, box.x1, min(box.y1, top + HIGHEST_INSET))
-    if room.height >= LOWEST_INSET:
-        draw_inset(scene, room, sheet.workpiece, sheet.fixture, zero=True)
 
 
 def draw_foot(scene: Scene, arrangement: Arrangement, sheet: Sheet, page: str) -> None:

@@ -16,8 +16,8 @@ from attrs import frozen
 
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP
 from workhold.drawing.scene import UNITS_PER_MM, Box
-from workhold.drawing.sheet_blocks import Block, height_of
 from workhold.drawing.sheet_scale import StandardScale, standard_scale
+from workhold.drawing.sheet_writing import Block, height_of
 
 __all__ = ["FOOT", "MARGIN", "Arrangement", "Filled", "arranged", "plan_room"]
 

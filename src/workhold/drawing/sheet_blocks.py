@@ -2,89 +2,53 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from collections.abc import Callable, Sequence
-from math import ceil
-
-from attrs import frozen
+from collections.abc import Callable
 
 from workhold.drawing.fonts import shortened, text_width, wrapped
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.panel import NUMBERS, Column, arrangement_words, draw_legend, offset_words
-from workhold.drawing.scene import BLACK, Scene
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import Caution, caliper_check
-from workhold.model.fixture import Fixture
+from workhold.drawing.panel import NUMBERS, Column, draw_legend, fixture_words, offset_words
+from workhold.drawing.scene import BLACK
+from workhold.drawing.sheet_clamp import clamp_steps, write_clamp, write_locators, write_plate
+from workhold.drawing.sheet_facts import caliper_check
+from workhold.drawing.sheet_figures import write_loads, write_quality
+from workhold.drawing.sheet_side import write_part, write_side
+from workhold.drawing.sheet_writing import (
+    BODY,
+    NOTE,
+    Block,
+    Sheet,
+    heading,
+    inside_words,
+    lies_words,
+    listed,
+    peg_rows,
+    write_dowel,
+    write_table,
+)
 from workhold.model.holes import column_letters, hole_name
-from workhold.model.quality import FIGURES
-from workhold.model.toolkit import Toolkit
-from workhold.model.workpiece import Workpiece
+from workhold.model.units import INCH
 
-__all__ = ["Block", "Sheet", "blocks_of", "height_of"]
+__all__ = ["blocks_of"]
 
-BODY, NOTE, HEADING = 12.5, 11.0, 14.0
 NAME_SIZES = (26.0, 22.0, 18.0)
 MOST_NAME_LINES = 3
-# More loads than this are left to the command line; the hardest are shown.
-MOST_LOADS = 6
-# Of the width of a column, how much the name of a load may take.
-WIDEST_LOAD = 0.3
-ROUNDING = 1e-9
-KILO = 1000.0
-
-Block = Callable[[Column], None]
-
-
-@frozen
-class Sheet:
-    """What the blocks speak of; ``zero_shown`` tells whether the part's zero point lies within the plan."""
-
-    fixture: Fixture
-    workpiece: Workpiece
-    toolkit: Toolkit
-    details: SheetDetails
-    lengths: LengthUnit
-    cautions: tuple[Caution, ...]
-    zero_shown: bool = True
-
-    @property
-    def name(self) -> str:
-        """The part's name."""
-        return self.details.part_name or self.workpiece.name
-
-    @property
-    def origin(self) -> str:
-        """The name of the hole that places are told from."""
-        return hole_name(self.toolkit.carriers[0].name, 0, 0)
 
 
 def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     """All blocks of a sheet in reading order: those needed beside the plan, and the others."""
-    needed, others = [write_title, write_pegs, write_opening, write_zero], [write_quality]
+    clamped = sheet.fixture.direction is not None
+    held = [write_locators, write_clamp] if clamped else [write_pegs, write_opening]
+    needed, others = [write_title, *held, write_zero], [write_side, write_part, write_steps]
     if sheet.cautions:
         needed.append(write_cautions)
     if sheet.details.loads:
         others.append(write_loads)
-    others += [write_steps, write_counting, write_legend]
+    others += [write_quality, write_plate if clamped else write_counting, write_legend]
     return [bound(writer, sheet) for writer in needed], [bound(writer, sheet) for writer in others]
 
 
 def bound(writer: Callable[[Column, Sheet], None], sheet: Sheet) -> Block:
     """A writer with its sheet."""
     return lambda column: writer(column, sheet)
-
-
-def height_of(block: Block, width: float) -> float:
-    """Height of a block in a column of a width, page units."""
-    column = Column(Scene(ET.Element("g")), 0.0, 0.0, width)
-    block(column)
-    return column.y
-
-
-def heading(column: Column, words: str) -> None:
-    """Write the heading of a block above a line."""
-    column.rule(1.4)
-    column.words(words, HEADING, bold=True, gap=0.65)
 
 
 def write_title(column: Column, sheet: Sheet) -> None:
@@ -98,50 +62,27 @@ def write_title(column: Column, sheet: Sheet) -> None:
         column.words(line, size, bold=True, gap=0.4)
     column.y += 4
     column.words(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
-    column.words(arrangement_words(sheet.fixture.type, sheet.toolkit), BODY, gap=0.3)
-
-
-def write_table(column: Column, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Write a table, its first column from the left and the others flush right, in type that fits the width."""
-    size = BODY
-    while True:
-        widths = [
-            max(text_width(header[k], size, bold=True), *(text_width(row[k], size, bold=k == 0) for row in rows))
-            for k in range(len(header))
-        ]
-        gap = (column.width - sum(widths)) / (len(header) - 1)
-        if gap >= 0.6 * size or size <= 7.0:
-            break
-        size -= 0.5
-    ends, x = [], widths[0]
-    for width in widths[1:]:
-        x += gap + width
-        ends.append(x / column.width)
-    column.row(header, ends, size, bold=True)
-    for row in rows:
-        column.row(row, ends, size)
+    column.words(fixture_words(sheet.fixture, sheet.toolkit), BODY, gap=0.3)
+    x0, y0, x1, y1 = sheet.workpiece.bounds
+    lengths = sheet.lengths
+    column.words(f"Outside {lengths.number(x1 - x0)} × {lengths.words(y1 - y0)}, as drawn", BODY, gap=0.3)
 
 
 def write_pegs(column: Column, sheet: Sheet) -> None:
     """Write the four pegs."""
     heading(column, f"Pegs{peg_size(sheet)}")
-    force, unit = sheet.details.jaw_force, sheet.lengths.sign
     first = sheet.toolkit.carriers[0]
-    header = ["Hole", first.noun, "face", f"x {unit}", f"y {unit}", "N per kN"]
-    if force is not None:
-        header.append(f"at {newtons(force)}")
-    rows = []
-    for peg in sheet.fixture.pegs:
-        number = sheet.lengths.number
-        row = [peg.hole, peg.jaw, str(peg.face), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
-        rows.append(row if force is None else [*row, newtons(force * peg.force)])
-    write_table(column, header, rows)
+    header, rows, per = peg_rows(sheet, [peg.hole for peg in sheet.fixture.pegs])
+    stands_on = [first.noun, *(peg.carrier for peg in sheet.fixture.pegs)]
+    table = [[row[0], word, *row[1:]] for row, word in zip([header, *rows], stands_on, strict=True)]
+    write_table(column, table[0], table[1:])
     column.paragraph(
-        f"x, y: centre of the peg, from the centre of hole {sheet.origin} of the fixed {first.noun}.", NOTE
+        f"x, y: centre of the peg, from the centre of hole {sheet.origin} of the fixed {first.noun}"
+        f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",
+        NOTE,
     )
-    column.paragraph(
-        f"N per kN: force of the peg on the part for each kN of {first.noun} force, without friction.", NOTE
-    )
+    column.paragraph(f"{per} of {first.noun} force, without friction.", NOTE)
+    write_dowel(column, sheet)
 
 
 def peg_size(sheet: Sheet) -> str:
@@ -149,15 +90,15 @@ def peg_size(sheet: Sheet) -> str:
     carrier, lengths = sheet.toolkit.carriers[0], sheet.lengths
     if not carrier.peg_radius:
         return " (points, no diameter)"
-    body = f", body Ø {lengths.plain(2 * carrier.body_radius)}" if carrier.body_radius > carrier.peg_radius else ""
-    return f" Ø {lengths.plain(2 * carrier.peg_radius)}{body}"
+    body = f", body Ø {lengths.short(2 * carrier.body_radius)}" if carrier.body_radius > carrier.peg_radius else ""
+    return f" Ø {lengths.short(2 * carrier.peg_radius)}{body}"
 
 
 def write_opening(column: Column, sheet: Sheet) -> None:
-    """Write the jaw opening and how to measure it."""
+    """Write the opening and how to measure it."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.carriers[0], toolkit.moving
-    heading(column, f"{moving.noun.capitalize()} opening S")
+    heading(column, f"Opening S of the {moving.noun}s")
     column.words(lengths.words(fixture.jaw_separation), 28, bold=True, gap=0.4)
     check = caliper_check(fixture, toolkit)
     one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
@@ -179,82 +120,33 @@ def write_opening(column: Column, sheet: Sheet) -> None:
 
 
 def write_zero(column: Column, sheet: Sheet) -> None:
-    """Write where the part's zero point lies and how it is turned."""
-    pose, lengths = sheet.fixture.pose, sheet.lengths
-    heading(column, "Part zero and angle")
-    column.fact(f"x from hole {sheet.origin}", lengths.words(pose.x), bold=True)
-    column.fact(f"y from hole {sheet.origin}", lengths.words(pose.y), bold=True)
-    column.fact("turned by θ, counter-clockwise", f"{pose.theta_deg:.4f}°", bold=True)
-    place = "" if sheet.zero_shown else ", here outside the plan"
-    column.paragraph(f"Part zero is (0, 0) of the part's drawing{place}. x runs to the right, y upward.", NOTE)
-
-
-def write_quality(column: Column, sheet: Sheet) -> None:
-    """Write the figures of quality that are known."""
-    heading(column, "Quality")
-    for figure in FIGURES:
-        value = sheet.fixture.quality.get(figure.key)
-        if value is None:
-            continue
-        match figure.unit:
-            case "mm":
-                words = sheet.lengths.words(value)
-            case "N":
-                words = newtons(value)
-            case _:
-                words = f"{value:.4f}" if value >= 0.001 else f"{value:.2e}".replace("-", "−")
-        column.fact(figure.words + (" (largest peg force)" if figure.key == "load_reaction" else ""), words)
-    tolerance, lengths = sheet.details.tolerance, sheet.lengths
-    if "location_error" in sheet.fixture.quality:
-        allowed = f"pegs off by up to {lengths.plain(tolerance.peg, 3)}, faces by {lengths.plain(tolerance.face, 3)}"
-        column.paragraph(f"Location error: {allowed}.", NOTE)
-
-
-def write_loads(column: Column, sheet: Sheet) -> None:
-    """Write what acts on the part, the jaw force it needs and each peg's largest force, the hardest load first."""
-    details = sheet.details
-    heading(column, "Loads and reactions, N")
-    cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
-    friction = [] if details.friction is None else [f"µ {details.friction:g}"]
-    header = ["Load", "jaws", *friction, *(peg.hole for peg in sheet.fixture.pegs)]
-    rows = []
-    for number, case in cases[:MOST_LOADS]:
-        name = shortened(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
-        more = [] if details.friction is None else [optional_force(case.needed_with_friction)]
-        rows.append([name, plain_force(case.needed.value), *more, *map(plain_force, case.largest)])
-    write_table(column, header, rows)
-    if len(cases) > MOST_LOADS:
-        column.paragraph(f"The other {len(cases) - MOST_LOADS} loads need no more jaw force than these.", NOTE)
-    at = newtons(cases[0][1].jaw_force)
-    column.paragraph("Jaws: the jaw force below which a peg lets go, without friction.", NOTE)
-    if details.friction is not None:
-        column.paragraph(
-            f"µ {details.friction:g}: the least jaw force that could hold at all with that friction.", NOTE
-        )
-    column.paragraph(f"Under each peg: its largest force on the part at a jaw force of {at}.", NOTE)
-
-
-def optional_force(force: float | None) -> str:
-    """A force, or a dash where it is not known."""
-    return "–" if force is None else plain_force(force)
-
-
-def plain_force(force: float) -> str:
-    """A force in N without the sign of the unit, rounded up so that nothing is promised that does not hold.
-
-    >>> plain_force(1234.2), plain_force(0.0)
-    ('1235', '0')
-    """
-    return f"{ceil(force - ROUNDING * abs(force)):d}"
-
-
-def newtons(force: float) -> str:
-    """A force in whole newtons, or with three figures when it is small.
-
-    >>> newtons(1234.5), newtons(0.01234)
-    ('1234 N', '0.0123 N')
-    """
-    return f"{force:.0f} N" if force >= 100 or force == 0 else f"{force:.3g} N"
+    """Write what the part's zero is, where it lies and how the part is turned, and the lines that tell a control."""
+    zero, lengths = sheet.zero, sheet.lengths
+    (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.theta_deg:.4f}"
+    heading(column, "Part zero X0 Y0 and angle")
+    column.fact("X0 Y0 is the", zero.words, BODY, bold=True)
+    column.fact(f"x from hole {sheet.origin}", lengths.words(x), bold=True)
+    column.fact(f"y from hole {sheet.origin}", lengths.words(y), bold=True)
+    column.fact("turned by θ, counter-clockwise", f"{turn}°", bold=True)
+    drawn = ", y ".join(map(lengths.words, zero.point))
+    place = "" if sheet.zero_shown else " It lies outside the plan."
+    column.paragraph(f"In the part's drawing it is at x {drawn}.{place} x runs to the right, y upward.", NOTE)
+    # Haas takes three places behind the point (Mill Operator's Manual, G68).
+    word = f"{sheet.fixture.pose.theta_deg:.3f}"
+    turning = f"G68 X0 Y0 R{word}" if float(word) else "no G68, as the part is not turned"
+    machine = sheet.details.machine_position
+    if machine is None:
+        words = f"G54: the machine's position over the centre of {sheet.origin}, plus this x and y; then {turning}."
+        column.paragraph(words, NOTE)
+        return
+    gx, gy = (lengths.number(start + way).replace("−", "-") for start, way in zip(machine, (x, y), strict=True))
+    unit = "G20" if sheet.lengths.unit is INCH else "G21"
+    column.paragraph(
+        f"{sheet.origin} at machine {' and '.join(map(lengths.words, machine))}, x along the machine's X:", NOTE
+    )
+    column.y += 3
+    column.words(f"{unit} G10 L2 P1 X{gx} Y{gy}", BODY, bold=True)
+    column.words(f"G54 {turning}" if float(word) else "G54", BODY, bold=True)
 
 
 def write_cautions(column: Column, sheet: Sheet) -> None:
@@ -270,7 +162,7 @@ def write_cautions(column: Column, sheet: Sheet) -> None:
 def write_steps(column: Column, sheet: Sheet) -> None:
     """Write what to do, in order."""
     heading(column, "Setting up")
-    for number, step in enumerate(steps(sheet), 1):
+    for number, step in enumerate(steps(sheet) if sheet.fixture.direction is None else clamp_steps(sheet), 1):
         column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
         column.paragraph(step, BODY, indent=18)
         column.y += 2
@@ -282,48 +174,34 @@ def steps(sheet: Sheet) -> list[str]:
     toolkit, moving = sheet.toolkit, sheet.toolkit.moving
     there, more, back = ("Open", "wider", "Close") if toolkit.clamping > 0 else ("Close", "narrower", "Open")
     put = [
-        f"{listed([peg.hole for peg in fixture.pegs if peg.jaw == carrier.name])} of the "
+        f"{listed([peg.hole for peg in fixture.pegs if peg.carrier == carrier.name])} of the "
         f"{'fixed' if carrier.travel is None else 'sliding'} {carrier.title}"
         for carrier in toolkit.carriers
     ]
-    outer = len(sheet.workpiece.loops[0])
-    inside = [peg.hole for peg in fixture.pegs if peg.face >= outer]
-    around = (
-        f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part." if inside else ""
-    )
-    turn = f"turned {fixture.pose.theta_deg:.1f}° counter-clockwise from its drawing"
     touch = listed([f"face {peg.face} at {peg.hole}" for peg in fixture.pegs])
-    force = "" if sheet.details.jaw_force is None else f" with {newtons(sheet.details.jaw_force)}"
+    force = sheet.details.jaw_force
+    with_force = "" if force is None else f" with {lengths.unit.force_words(force)}"
     return [
         f"Put pegs in {listed(put)}.",
         f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and lay the part in "
-        f"as drawn, {turn}.{around}",
-        f"{back} the {moving.title} until all {NUMBERS[len(fixture.pegs)]} pegs touch. The opening is then S; if not, the "
-        "part lies another way.",
-        f"Clamp{force}. The pegs touch: {touch}. A strip of paper at each must not pull out.",
-        f"Set the machine's zero by {sheet.origin} or by the part, as given under part zero and angle.",
+        f"as drawn, {lies_words(sheet)}.{inside_words(sheet)}",
+        f"{back} the {moving.title} until all {NUMBERS[len(fixture.pegs)]} pegs touch. The opening is then S; if "
+        "not, the part lies another way.",
+        f"Clamp{with_force}. The pegs touch: {touch}. A strip of paper at each must not pull out.",
+        f"Set the machine's zero, G54, from {sheet.origin} as given under part zero X0 Y0, or touch off the part there.",
     ]
-
-
-def listed(words: Sequence[str]) -> str:
-    """Words with commas and a last "and".
-
-    >>> listed(["a"]), listed(["a", "b", "c"])
-    ('a', 'a, b and c')
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def write_counting(column: Column, sheet: Sheet) -> None:
     """Write how holes are counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.carriers[0], sheet.toolkit.moving
     heading(column, "Counting holes")
-    pitch_x, pitch_y = (lengths.plain(pitch) for pitch in first.pitch)
+    pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
     size, where = f"one column of holes, {pitch_y} apart", f"A on both {first.noun}s"
-    if first.columns > 1:
-        size = f"{first.columns} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
-        where = f"A to {column_letters(first.columns - 1)} from left to right, on each {first.noun}"
+    if first.column_count > 1:
+        size = f"{first.column_count} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
+        where = f"A to {column_letters(first.column_count - 1)} from left to right, on each {first.noun}"
     example = f"{peg.hole} is the {first.title}'s column {column_letters(peg.column)}, row {peg.row + 1}"
     column.paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
     rows = f"Row 1 is the lowest; any row of the vise will do, the same for both {first.noun}s."
@@ -337,4 +215,4 @@ def write_counting(column: Column, sheet: Sheet) -> None:
 def write_legend(column: Column, sheet: Sheet) -> None:
     """Explain the signs of the plan."""
     heading(column, "Signs")
-    draw_legend(column, BLACK)
+    draw_legend(column, sheet.toolkit, BLACK)

@@ -6,6 +6,7 @@ from datetime import date
 
 from attrs import field, frozen
 
+from workhold.model.part_zero import PartZero
 from workhold.model.tolerance import Tolerance
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.statics.loads import LoadCase
@@ -33,6 +34,11 @@ class SheetDetails:
     jaw_force : in N; None when it is left open.
     friction : coefficient of friction that was asked for with the loads.
     loads : what acts on the part, and the peg forces that answer it.
+    zero : what the machinist programs from; the drawing's origin if None.
+    machine_position : of the hole that places are told from, in mm in the machine's own coordinates; None when not known.
+    thickness : of the part, in mm; None where it is to be written on the paper, as are the next three.
+    peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
+    dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
     others : how many other fixtures of the result use the same holes.
     """
 
@@ -48,4 +54,10 @@ class SheetDetails:
     jaw_force: float | None = None
     friction: float | None = None
     loads: tuple[LoadCase, ...] = ()
+    zero: PartZero | None = None
+    machine_position: tuple[float, float] | None = None
+    thickness: float | None = None
+    peg_length: float | None = None
+    peg_height: float | None = None
+    dowel: str | None = None
     others: int = 0

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, dist, inf
+from math import dist, inf
 
-import numpy as np
 from attrs import frozen
 
-from workhold.contact.features import contact_features, end_distances, end_slacks, feature_rows
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.fixture import Fixture
 from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.statics.contact_matrix import Touched
+from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
 
 __all__ = [
-    "LARGE_AMPLIFICATION",
-    "LARGE_LOCATION_ERROR",
-    "NEAR_END",
-    "WEAK_CLOSURE",
     "CaliperCheck",
     "Caution",
     "caliper_check",
@@ -29,14 +25,7 @@ __all__ = [
     "same_holes",
 ]
 
-# A contact nearer than this to an edge, in mm, is warned of: edges are commonly broken by some tenths of a millimetre.
-NEAR_END = 1.0
-# Below this closure margin the weakest contact has less than a twelfth of the even share, a quarter.
-WEAK_CLOSURE = 0.02
-# A peg that pushes with more than so many times the jaw force wedges the part and marks its face.
-LARGE_AMPLIFICATION = 3.0
-# A location error of more than so many times the sum of the tolerances of peg and face: the contacts guide badly.
-LARGE_LOCATION_ERROR = 5.0
+UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."
 
 
 @frozen
@@ -45,7 +34,7 @@ class Caution:
 
     Parameters
     ----------
-    kind : "edge", "closure", "amplification", "location", "load" or "pose".
+    kind : "unfit", "edge", "closure", "amplification", "location", "load" or "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -78,8 +67,8 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
     """
     first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
-    used = {(peg.jaw, peg.column, peg.row) for peg in fixture.pegs}
-    last, travelled = first.columns - 1, fixture.jaw_separation
+    used = {(peg.carrier, peg.column, peg.row) for peg in fixture.pegs}
+    last, travelled = first.column_count - 1, fixture.jaw_separation
     shift = round((second.offset[1] - first.offset[1]) / first.pitch[1])
     best: tuple[float, int, int, int] | None = None
     for low, high in {(row + a, row + a + b - shift) for row in [*rows, 0] for a in (-1, 0, 1) for b in (-1, 0, 1)}:
@@ -98,18 +87,9 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
 
 def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
     """How far in mm each peg's centre is from the nearer end of its contact feature at which an edge or another face
-    waits; infinite where the feature ends in no edge (a whole circle, tangent joints).
+    waits; infinite where it ends in none (a whole circle, tangent joints).
     """
-    back, distances = fixture.pose.inverse, []
-    features = {carrier.name: contact_features(workpiece, carrier.peg_radius) for carrier in toolkit.carriers}
-    for peg in fixture.pegs:
-        known = features[peg.jaw]
-        smooth, rows, point = end_slacks(known) > 0, feature_rows(known), back.apply(peg.x, peg.y)
-        to_ends = end_distances(rows, np.array(point))
-        on_face = [k for k, feature in enumerate(known) if feature.face == peg.face]
-        nearest = min(on_face, key=lambda k: -to_ends[k].min())
-        distances.append(float(np.where(smooth[nearest], np.inf, np.maximum(to_ends[nearest], 0.0)).min()))
-    return distances
+    return [float(edge) for edge in Touched.of(workpiece, toolkit).of_fixture(fixture, toolkit).edges[0]]
 
 
 def same_holes(table: FixtureTable, index: int) -> int:
@@ -121,40 +101,53 @@ def same_holes(table: FixtureTable, index: int) -> int:
 
 
 def cautions_of(
-    fixture: Fixture, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
+    fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """What to beware of, the contacts first.
+    """What to beware of, the contacts first; those of ``statics.judging``, and other ways to lie in the same holes.
 
     Parameters
     ----------
     distances : of the four contacts from edges, see :func:`edge_distances`.
     """
     found: list[Caution] = []
+    margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
+    off = details.tolerance.peg + details.tolerance.face
+    if is_unfit(margin, error, off):
+        found.append(Caution("unfit", UNFIT))
     for peg, distance in zip(fixture.pegs, distances, strict=True):
-        if distance < NEAR_END:
+        if is_near_edge(distance):
             place = f"{peg.hole} touches face {peg.face} only {lengths.words(distance)} from its end"
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
-    margin = fixture.quality.get("closure_margin", inf)
-    if margin < WEAK_CLOSURE:
+    if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
         found.append(
             Caution("closure", f"Weak closure: {weakest.hole} has only {margin:.2%} of the hold (even would be 25%).")
         )
     largest = max(fixture.pegs, key=lambda peg: peg.force)
-    if largest.force > LARGE_AMPLIFICATION:
-        words = f"{largest.hole} pushes {largest.force:.1f} times as hard as the jaws: tighten gently"
+    if is_strong(largest.force):
+        words = (
+            f"{largest.hole} pushes {largest.force:.1f} times as hard as the {toolkit.moving.pushers}: tighten gently"
+        )
         found.append(Caution("amplification", f"{words}, it may mark face {largest.face}."))
-    error, off = fixture.quality.get("location_error", 0.0), details.tolerance.peg + details.tolerance.face
-    if error > LARGE_LOCATION_ERROR * off:
+    if is_astray(error, off):
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
     if details.jaw_force is not None:
-        for number, case in enumerate(details.loads, 1):
-            if not case.keeps_contact:
-                name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
-                words = f"Under {name} {peg.hole} lets go at the {details.jaw_force:.0f} N given"
-                found.append(Caution("load", f"{words}: clamp with more than {ceil(case.needed.value)} N."))
+        lifting = [
+            (n, case) for n, case in enumerate(details.loads, 1) if lets_go(case.needed.value, details.jaw_force)
+        ]
+        for number, case in sorted(lifting, key=lambda pair: -pair[1].needed.value)[:1]:
+            name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
+            more = lengths.unit.force_above(case.needed.value)
+            words = f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
+            found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.others:
+        holes = "four holes" if fixture.direction is None else "holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"
-        found.append(Caution("pose", f"The same four holes hold this part in {ways}: make sure of angle and faces."))
+        found.append(
+            Caution(
+                "pose",
+                f"The same {holes} hold this part in {ways}: make sure of angle and faces.",
+            )
+        )
     return found

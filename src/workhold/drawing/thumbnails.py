@@ -34,7 +34,7 @@ def draw_thumbnails(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve fixtures on one A4 sheet, all to the same scale, with type, closure margin and jaw separation.
+    """Draw up to twelve fixtures on one A4 sheet, all to the same scale, with type, closure margin and opening.
 
     Parameters
     ----------
@@ -92,10 +92,14 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, len
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
     fixture, width = bench.fixture, cell.width - 20
-    kind = f"Type {fixture.type}"
+    kind = (
+        f"Type {fixture.type}" if fixture.direction is None else f"{fixture.type} {fixture.direction}".replace("-", "−")
+    )
     name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
     group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
-    separation = lengths.words(fixture.jaw_separation)
     group.text((cell.x0 + 10, cell.y1 - 12), f"margin {closure_margin(fixture)}", 12, fill=GREY)
-    group.text((cell.x1 - 10, cell.y1 - 12), f"S = {separation}", 12, "end", fill=GREY)
+    if bench.shown.measured is not None:
+        setting = bench.shown.measured.setting
+        words = f"{setting.sign} = {lengths.words(setting.length)}"
+        group.text((cell.x1 - 10, cell.y1 - 12), words, 12, "end", fill=GREY)

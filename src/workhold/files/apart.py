@@ -16,10 +16,11 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from importlib import import_module
-from threading import Timer
+from threading import Event, Timer
 from typing import Any
 
 from workhold.errors import InputError
+from workhold.limits import lacks_memory
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
 
@@ -54,7 +55,13 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
     command = [sys.executable, "-P", "-c", f"import sys; sys.path[:] = sys.argv[1:]; {START}", *sys.path]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         assert process.stdin is not None and process.stdout is not None
-        clock = Timer(WALL_FACTOR * seconds, process.kill)
+        late = Event()
+
+        def give_up() -> None:
+            late.set()
+            process.kill()
+
+        clock = Timer(WALL_FACTOR * seconds, give_up)
         clock.start()
         try:
             with suppress(BrokenPipeError):
@@ -68,11 +75,12 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             clock.cancel()
             with suppress(BrokenPipeError):
                 process.stdin.close()
-    return outcome(told, process.returncode, seconds, memory, what)
+    given_up = late.is_set() or process.returncode == -getattr(signal, "SIGXCPU", 0)
+    return outcome(told, process.returncode, given_up, (seconds, memory), what)
 
 
-def outcome(told: bytes, code: int, seconds: float, memory: int, what: str) -> Any:
-    """What a process that has ended answered.
+def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
+    """What a process that has ended answered; its limits are seconds and bytes.
 
     Raises
     ------
@@ -80,6 +88,7 @@ def outcome(told: bytes, code: int, seconds: float, memory: int, what: str) -> A
         See :func:`run_apart`.
     """
     kind, value = "", ""
+    seconds, memory = limits
     with suppress(ValueError):
         kind, value = json.loads(told)
     if kind == "done":
@@ -90,10 +99,13 @@ def outcome(told: bytes, code: int, seconds: float, memory: int, what: str) -> A
         raise RuntimeError(f"in the process that reads {what}:\n{value}")
     if kind == "memory":
         raise InputError(f"{what} needs more than {memory / 1e9:.1f} GB of memory to read: save less in it.")
-    if code in (-getattr(signal, "SIGXCPU", 0), -getattr(signal, "SIGKILL", 0)):
+    if given_up:
         raise InputError(
             f"{what} was given up after {seconds:.0f} s of reading: it is damaged, or holds too much; save less in it."
         )
+    if code == -getattr(signal, "SIGKILL", 0):
+        # Nobody else ends a process so: the system does, when it has no memory left for all.
+        raise InputError(f"{what} ran out of memory while it was read: close other programs, or save less in it.")
     raise InputError(f"{what} is damaged so that the library that reads it breaks down: save it anew.")
 
 
@@ -110,12 +122,10 @@ def answer() -> None:
         told = ("done", worked(order, content))
     except InputError as error:
         told = ("refused", str(error))
-    except MemoryError:
-        told = ("memory", "")
-    except Exception:
+    except Exception as error:
         import traceback
 
-        told = ("fault", traceback.format_exc())
+        told = ("memory", "") if lacks_memory(error) else ("fault", traceback.format_exc())
     with os.fdopen(out, "wb") as stream:
         stream.write(json.dumps(told).encode())
     # A library that a damaged file has upset may break down while it tidies up.

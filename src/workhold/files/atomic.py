@@ -12,13 +12,24 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from secrets import token_hex
-from typing import IO
+from typing import IO, BinaryIO
 
 from workhold.errors import InputError
 
-__all__ = ["refuse_unwritable", "refuse_unwritable_folder", "text_file", "write_bytes"]
+__all__ = [
+    "binary_file",
+    "plain_errors",
+    "refuse_unwritable",
+    "refuse_unwritable_folder",
+    "remove_unfinished",
+    "text_file",
+    "unfinished",
+    "write_bytes",
+]
 
 NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+# What stands on the disk and is not to stay if the process ends now.
+unfinished: set[Path] = set()
 
 
 def refuse_unwritable(path: str | Path) -> None:
@@ -70,6 +81,21 @@ def text_file(path: str | Path) -> Iterator[IO[str]]:
         yield stream
 
 
+@contextmanager
+def binary_file(path: str | Path) -> Iterator[BinaryIO]:
+    """A file of bytes, written in any order, that takes its name only when the block ends without an error.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written, or is a pipe, in which nobody can go back.
+    """
+    with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
+        if not stream.seekable():
+            raise InputError(f"{path} is a pipe: write a file in columns to a disk.")
+        yield stream
+
+
 def write_bytes(path: str | Path, content: bytes) -> None:
     """Write a whole file of bytes, or leave an earlier one as it was.
 
@@ -91,6 +117,7 @@ def replacement(path: Path) -> Iterator[int]:
             yield os.open(target, os.O_WRONLY)
             return
         temporary = temporary_name(target)
+        unfinished.add(temporary)
         descriptor = os.open(temporary, NEW_FILE, 0o666)
         try:
             yield descriptor
@@ -101,6 +128,15 @@ def replacement(path: Path) -> Iterator[int]:
             with suppress(OSError):
                 temporary.unlink()
             raise
+        finally:
+            unfinished.discard(temporary)
+
+
+def remove_unfinished() -> None:
+    """Remove what is not to stay, when the process ends out of turn; callable from any thread."""
+    for path in tuple(unfinished):
+        with suppress(OSError):
+            path.unlink()
 
 
 def resolved(path: Path) -> Path:

@@ -18,6 +18,12 @@ class Box:
     x1: float
     y1: float
 
+    @classmethod
+    def about(cls, center: Point, width: float, height: float) -> Box:
+        """The box of a width and a height about a point."""
+        x, y = center
+        return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
     @property
     def width(self) -> float:
         """Extent along x."""

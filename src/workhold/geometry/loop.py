@@ -17,7 +17,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.conventions import MEETS_AGAIN, SAME_CARRIER, SAME_DIRECTION, SHORTEST, TOUCHING
+from workhold.conventions import MEETS_AGAIN, READING, SAME_CARRIER, SAME_DIRECTION, SHORTEST, STRAIGHT, TOUCHING
 from workhold.errors import InputError
 from workhold.geometry.intersect import bounding_box, common_points
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
@@ -80,7 +80,7 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
 
     Returns
     -------
-    (N, 3) array, read-only; an arc that is nowhere farther from its chord than points that touch is a line in it.
+    (N, 3) array, read-only; an arc that is nowhere farther than ``READING``, or a millionth of it, from its chord is a line.
 
     Raises
     ------
@@ -119,10 +119,15 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
             "(a full circle is drawn as two halves)."
         )
     refuse_out_of_reach(array, steps, place)
-    # The middle of an arc is so far from its chord; an arc as near to it as points that touch is no arc.
-    array[np.abs(array[:, 2]) * steps / 2.0 < TOUCHING, 2] = 0.0
+    array[~is_curved(array[:, 2], steps), 2] = 0.0
     array.setflags(write=False)
     return array
+
+
+def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which arcs (N,) with chords (N,) are no lines: the middle of an arc is bulge * chord / 2 from its chord."""
+    size = np.abs(bulge)
+    return (size * steps / 2.0 >= READING) & (size >= STRAIGHT)
 
 
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
@@ -134,7 +139,7 @@ def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], 
         Naming the place of the first.
     """
     bulge = np.minimum(np.abs(array[:, 2]), 1e30)
-    curved = bulge * steps / 2.0 >= TOUCHING
+    curved = is_curved(bulge, steps)
     radius = np.where(curved, steps * (bulge + 1.0 / np.where(curved, bulge, 1.0)) / 4.0, 0.0)
     for k in np.flatnonzero(radius > np.where(bulge > 1.0, MOST_LENGTH, MOST_RADIUS))[:1]:
         most = MOST_LENGTH if bulge[k] > 1.0 else MOST_RADIUS

@@ -67,6 +67,7 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[in
     raw = [raw_offset(segment, radius) for segment in segments]
     joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
     boxes = np.array([bounding_box(segment) for segment in segments])
+    joint_boxes = np.array([(*joint, *joint) for joint in joints]).reshape(-1, 4)
     pieces: list[tuple[int, Segment]] = []
 
     def is_clear(points: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -78,8 +79,8 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[in
         # Only what comes within a diameter of the segment can touch the disc beside it.
         near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
         others = [r for k in near if k != index and (r := raw[k]) is not None]
-        close_joints = [j for j in joints if point_apart(j, bounding_box(piece)) <= radius + CLEARANCE]
-        points = cut_points(piece, others, close_joints, radius)
+        close = np.flatnonzero(boxes_apart(joint_boxes, bounding_box(piece)) <= radius + CLEARANCE)
+        points = cut_points(piece, others, [joints[k] for k in close], radius)
         pieces += [(index, kept) for kept in kept_parts(piece, points, is_clear)]
     return pieces
 
@@ -128,8 +129,3 @@ def boxes_apart(boxes: NDArray[np.float64], box: tuple[float, float, float, floa
     x0, y0, x1, y1 = box
     gaps = np.stack([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
     return np.asarray(gaps.max(axis=0))
-
-
-def point_apart(point: Point, box: tuple[float, float, float, float]) -> float:
-    """Largest of the gaps in x and y between a point and a bounding box."""
-    return max(box[0] - point[0], point[0] - box[2], box[1] - point[1], point[1] - box[3])

@@ -19,14 +19,11 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
+from workhold.kernels.base.feature import SEGMENT_LENGTH
 
-__all__ = ["LINE", "ARC", "ROW_LENGTH", "Arc", "Line", "Point", "Segment", "segment_from_bulge", "segment_rows"]
+__all__ = ["Arc", "Line", "Point", "Segment", "segment_from_bulge", "segment_rows"]
 
 Point = tuple[float, float]
-
-LINE = 0.0
-ARC = 1.0
-ROW_LENGTH = 8
 
 
 @frozen
@@ -79,7 +76,7 @@ class Line:
 
     def row(self) -> tuple[float, ...]:
         """The segment as a kernel row."""
-        return (LINE, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0)
+        return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0)
 
     def part(self, low: float, high: float) -> Line:
         """The piece between two parameters in mm."""
@@ -148,7 +145,7 @@ class Arc:
 
     def row(self) -> tuple[float, ...]:
         """The segment as a kernel row."""
-        return (ARC, *self.center, cos(self.mid_angle), sin(self.mid_angle), self.half_sweep, self.radius, self.sign)
+        return (1.0, *self.center, cos(self.mid_angle), sin(self.mid_angle), self.half_sweep, self.radius, self.sign)
 
     def part(self, low: float, high: float) -> Arc:
         """The piece between two parameters in radians."""
@@ -184,10 +181,8 @@ def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
 
     Returns
     -------
-    (N, 8) array, read-only
-        Columns: kind (0 line, 1 arc); middle of the line or centre of the arc (x, y); tangent of the line or direction
-        from the centre to the arc's middle (x, y); largest parameter; radius (0 for a line); sign of the normal.
+    (N, 8) array, read-only, its columns as in ``kernels.base.feature``
     """
-    rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, ROW_LENGTH)
+    rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
     rows.setflags(write=False)
     return rows

@@ -1,9 +1,14 @@
-"""Rotations that carry an outline onto itself."""
+"""Rotations and mirror images that carry an outline onto itself.
+
+The rotations form a cyclic group (those of a bounded figure do; H. S. M. Coxeter, *Introduction to Geometry*, 1969, section
+2.7), so the smallest of them makes all others by being repeated; and one mirror image makes all others by being turned.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, hypot, pi, tau
+from functools import cached_property
+from math import gcd, tau
 
 import numpy as np
 from attrs import define
@@ -13,7 +18,12 @@ from workhold.conventions import SAME_AFTER_TURN
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["Rotation", "rotations_onto_itself"]
+__all__ = ["Rotation", "centroid_of_joints", "is_own_mirror_image", "middle_of", "rotations_onto_itself", "symmetries"]
+
+Array = NDArray[np.float64]
+
+# A direction in which no two points of a drawing are likely to lie level.
+ALONG = (0.7548776662, 0.5698402910)
 
 
 @define(frozen=True, eq=False)
@@ -33,34 +43,89 @@ class Rotation:
 def centroid_of_joints(segments: Sequence[Segment]) -> Point:
     """Mean of the segments' middles, each with its length's weight: a point every rotation onto itself keeps."""
     total = sum(s.length for s in segments)
-    middles = [s.center if isinstance(s, Arc) and s.is_full else s.at(0.0) for s in segments]
+    middles = [middle_of(s) for s in segments]
     x = sum(s.length * m[0] for s, m in zip(segments, middles, strict=True)) / total
     y = sum(s.length * m[1] for s, m in zip(segments, middles, strict=True)) / total
     return x, y
 
 
-def turned(point: Point, about: Point, angle: float) -> Point:
-    """A point turned about another."""
-    x, y = rotated(point[0] - about[0], point[1] - about[1], angle)
-    return about[0] + x, about[1] + y
+def middle_of(segment: Segment) -> Point:
+    """A point that moves with a segment: its middle, or the centre of a whole circle."""
+    return segment.center if isinstance(segment, Arc) and segment.is_full else segment.at(0.0)
 
 
-def near(p: Point, q: Point) -> bool:
-    """Whether two points agree."""
-    return hypot(p[0] - q[0], p[1] - q[1]) <= SAME_AFTER_TURN
+@define(frozen=True, eq=False)
+class Outline:
+    """N segments about a point that every rotation onto itself keeps.
 
+    Parameters
+    ----------
+    points : (N, 4, 2) anchor (the middle, or the centre of a whole circle), start, end and centre (of a line its middle); of
+        a whole circle all are its centre.
+    kinds : (N, 2) signed radius (0 for a line), and 1 for a whole circle.
+    """
 
-def carries(a: Segment, b: Segment, about: Point, angle: float) -> bool:
-    """Whether a rotation carries segment a onto segment b."""
-    if isinstance(a, Line) and isinstance(b, Line):
-        return near(turned(a.start, about, angle), b.start) and near(turned(a.end, about, angle), b.end)
-    if isinstance(a, Arc) and isinstance(b, Arc):
-        if abs(a.radius - b.radius) > SAME_AFTER_TURN or a.sign != b.sign or a.is_full != b.is_full:
-            return False
-        if not near(turned(a.center, about, angle), b.center):
-            return False
-        return a.is_full or (near(turned(a.start, about, angle), b.start) and near(turned(a.end, about, angle), b.end))
-    return False
+    points: Array
+    kinds: Array
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment]) -> Outline:
+        """The outline of some segments."""
+        points, kinds = [], []
+        for s in segments:
+            if isinstance(s, Arc):
+                points.append((s.center,) * 4 if s.is_full else (s.at(0.0), s.start, s.end, s.center))
+                kinds.append((s.sign * s.radius, float(s.is_full)))
+            else:
+                points.append((s.at(0.0), s.start, s.end, s.at(0.0)))
+                kinds.append((0.0, 0.0))
+        return cls(np.array(points) - centroid_of_joints(segments), np.array(kinds))
+
+    @cached_property
+    def levels(self) -> tuple[Array, NDArray[np.int64]]:
+        """The anchors' places (N,) along one direction in ascending order, and whose they are."""
+        level = self.points[:, 0] @ ALONG
+        order = np.argsort(level, kind="stable")
+        return level[order], order
+
+    @property
+    def first(self) -> int | None:
+        """The first segment whose anchor is not in the middle; None where all are."""
+        off_center = np.flatnonzero(np.hypot(*self.points[:, 0].T) > SAME_AFTER_TURN)
+        return int(off_center[0]) if len(off_center) else None
+
+    def angles(self, other: Outline) -> Array:
+        """By what angles (M,) in [0, 2 pi) the anchor of the first segment may be carried to those of another outline."""
+        assert self.first is not None
+        x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
+        return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
+
+    def image(self, other: Outline, angle: float) -> NDArray[np.int64] | None:
+        """The segment of another outline that a rotation carries each to, or None when one has no image."""
+        assert self.first is not None
+        # One segment tells of most angles that they cannot be.
+        one = self.images(other, angle, slice(self.first, self.first + 1))
+        found = one if (one < 0).any() else self.images(other, angle, slice(None))
+        return None if (found < 0).any() else found
+
+    def images(self, other: Outline, angle: float, chosen: slice) -> NDArray[np.int64]:
+        """The segment of another outline that a rotation carries each of some to, -1 for those without an image."""
+        points, kinds = self.points[chosen], self.kinds[chosen]
+        turned = np.stack(rotated(points[..., 0], points[..., 1], angle), axis=-1)
+        level, order = other.levels
+        # The anchor of an image is at most so far off, and so is its level, the direction being no longer than 1.
+        first, end = (
+            np.searchsorted(level, turned[:, 0] @ ALONG + hair) for hair in (-SAME_AFTER_TURN, SAME_AFTER_TURN)
+        )
+        found = np.full(len(turned), -1)
+        for step in range(int((end - first).max(initial=0))):
+            open_ = np.flatnonzero((found < 0) & (first + step < end))
+            there = order[first[open_] + step]
+            apart = np.hypot(*np.moveaxis(turned[open_] - other.points[there], -1, 0))
+            alike = np.abs(kinds[open_] - other.kinds[there]) <= SAME_AFTER_TURN
+            good = (apart <= SAME_AFTER_TURN).all(axis=1) & alike.all(axis=1)
+            found[open_[good]] = there[good]
+        return found
 
 
 def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
@@ -68,47 +133,51 @@ def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
 
     An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for it.
     """
-    about = centroid_of_joints(segments)
-    identity = Rotation(0.0, np.arange(len(segments), dtype=np.int64))
-    anchors = [k for k, s in enumerate(segments) if not near(anchor(s), about)]
-    if not anchors:
-        return [identity]
-    first = anchors[0]
-    start = anchor(segments[first])
-    found = [identity]
-    for k in anchors:
-        end = anchor(segments[k])
-        angle = atan2(end[1] - about[1], end[0] - about[0]) - atan2(start[1] - about[1], start[0] - about[0])
-        angle = snapped(angle % tau, len(segments))
-        if angle == 0.0 or any(abs(angle - r.angle) < 1e-9 for r in found):
-            continue
-        # The first segment tells of most angles that they cannot be.
-        image = permutation(segments, about, angle) if carries(segments[first], segments[k], about, angle) else None
-        if image is not None:
-            found.append(Rotation(angle, image))
-    return sorted(found, key=lambda rotation: rotation.angle)
+    outline = Outline.of(segments)
+    rotations = [Rotation(0.0, np.arange(len(segments), dtype=np.int64))]
+    if outline.first is None:
+        return rotations
+    angles = outline.angles(outline)
+    orders = (n for n in range(len(segments), 1, -1) if np.abs(angles - tau / n).min() <= SAME_AFTER_TURN)
+    found = ((order, outline.image(outline, tau / order)) for order in orders)
+    order, generator = next(((order, image) for order, image in found if image is not None), (1, None))
+    for k in range(1, order):
+        assert generator is not None
+        shared = gcd(k, order)
+        rotations.append(Rotation(k // shared * tau / (order // shared), generator[rotations[-1].image]))
+    return rotations
 
 
-def anchor(segment: Segment) -> Point:
-    """A point that moves with a segment: its middle, or the centre of a whole circle."""
-    return segment.center if isinstance(segment, Arc) and segment.is_full else segment.at(0.0)
+def symmetries(segments: Sequence[Segment]) -> list[NDArray[np.int64]]:
+    """Indices (N,) of the segments that each is carried to by every rotation and mirror image of an outline onto itself.
+
+    The identity comes first. Of concentric circles alone, which every motion about their centre carries, it is the only one.
+    """
+    images = [rotation.image for rotation in rotations_onto_itself(segments)]
+    outline = Outline.of(segments)
+    mirror = None if outline.first is None else mirrored_onto(outline, segments)
+    return images if mirror is None else [*images, *(image[mirror] for image in images)]
 
 
-def snapped(angle: float, count: int) -> float:
-    """The whole fraction of a turn nearest to an angle: rotations onto itself form a cyclic group."""
-    for order in range(1, count + 1):
-        k = round(angle / tau * order)
-        if abs(angle - k * tau / order) < 1e-6:
-            return (k % order) * tau / order
-    return angle % (2 * pi)
+def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
+    """Whether an outline turned over looks as before, once it is turned round as well."""
+    outline = Outline.of(segments)
+    return outline.first is None or mirrored_onto(outline, segments) is not None
 
 
-def permutation(segments: Sequence[Segment], about: Point, angle: float) -> NDArray[np.int64] | None:
-    """Index of the segment each is carried to, or None when one has no image."""
-    image = []
-    for a in segments:
-        k = next((j for j, b in enumerate(segments) if carries(a, b, about, angle)), None)
-        if k is None:
-            return None
-        image.append(k)
-    return np.array(image, dtype=np.int64)
+def mirrored_onto(outline: Outline, segments: Sequence[Segment]) -> NDArray[np.int64] | None:
+    """The segment of an outline that a mirror image carries each to, or None where none carries it onto itself."""
+    mirrored = Outline.of([mirror_image(segment) for segment in segments])
+    found = (mirrored.image(outline, angle) for angle in mirrored.angles(outline).tolist())
+    return next((image for image in found if image is not None), None)
+
+
+def mirror_image(segment: Segment) -> Segment:
+    """A segment reflected in the x axis, with the material on its left again."""
+
+    def over(point: Point) -> Point:
+        return point[0], -point[1]
+
+    if isinstance(segment, Line):
+        return Line(over(segment.end), over(segment.start))
+    return Arc(over(segment.center), segment.radius, -segment.mid_angle, segment.half_sweep, segment.sign)

@@ -16,11 +16,13 @@ from workhold.listing.placing import placed
 from workhold.listing.ranking import best_marked, measured
 from workhold.model.quality import CLOSURE_MARGIN
 from workhold.proof.deciding import Account
+from workhold.statics.judging import unfit
 
 __all__ = ["BestFixtures"]
 
-# Records are decided when so many are waiting, or as many as are to be kept if that is more.
-WAITING = 64
+# Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they tell a margin
+# that further ones must reach, else in blocks that cost the least.
+WAITING, WAITING_LONG = 64, 1 << 13
 
 
 @define(eq=False)
@@ -50,13 +52,14 @@ class BestFixtures:
     def add(self, records: NDArray[np.float64]) -> float:
         """Take records (N, 19) from the search; the closure margin that further ones must reach."""
         self.waiting.append(records)
-        if sum(map(len, self.waiting)) >= max(WAITING, self.most):
+        least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
+        if sum(map(len, self.waiting)) >= max(least, self.most):
             self.decide()
         return self.margin
 
     def decide(self) -> None:
         """Decide the records that wait, and keep the best."""
-        fresh, account = finish(self.waiting, self.problem, None, self.cancel)
+        fresh, account = finish(self.waiting, self.problem, self.cancel)
         self.waiting = []
         self.accounts.append(account)
         everything = fresh if self.kept is None else listed_once(joined([self.kept, fresh]))
@@ -67,9 +70,11 @@ class BestFixtures:
         if len(everything.standing) <= self.most:
             return everything
         table = measured(placed(everything, self.problem), self.problem)
-        chosen = best_marked(table.quality, self.problem.query.ranking, self.most, ties)
+        query = self.problem.query
+        chosen = best_marked(table.quality, query.ranking, query.tolerance, self.most, ties)
         self.has_dropped |= not chosen.all()
-        if self.problem.query.by_margin_alone:
+        # One that is none for a workshop is worse than any that is, whatever its margin.
+        if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
 

@@ -12,6 +12,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.kernels.contact import record
 from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
+from workhold.kernels.contact.equations import WORK_LENGTH
 from workhold.proof.deciding import peg_integers
 
 __all__ = [
@@ -21,7 +22,9 @@ __all__ = [
     "joined",
     "listed_once",
     "packed",
+    "packed_holes",
     "canonical_form",
+    "most_holes",
 ]
 
 Array = NDArray[np.float64]
@@ -69,7 +72,8 @@ def candidates_of(records: Array, problem: Problem) -> Candidates:
     count = len(records)
     feature, column, row = peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
-    contacts_of(records, problem.rows, problem.setting, point, gap, null, force)
+    work = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2))
+    contacts_of(records, problem.rows, problem.setting, point, gap, null, force, *work)
     standing = records[:, record.STANDING].astype(np.int64)
     return Candidates(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
 
@@ -110,11 +114,18 @@ def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
     return words
 
 
-def packed_holes(c: Candidates) -> list[IntArray]:
-    """Arrangements and holes of candidates, packed."""
-    return packed(
-        (c.standing[:, None], MOST_PEGS), *((numbers, numbers.max(initial=0)) for numbers in (c.column, c.row))
-    )
+def most_holes(problem: Problem) -> tuple[int, int]:
+    """The largest column and row that candidates in the listed form can have: no two pegs are farther apart than the part
+    is wide."""
+    lattice = problem.frame.lattice
+    reach = problem.diameter + abs(lattice.row_offset)
+    return int(reach / lattice.pitch_x) + 2, int(reach / lattice.pitch_y) + 2
+
+
+def packed_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[IntArray]:
+    """Arrangements and holes of candidates, packed; ``most`` are the largest column and row that may be packed alike."""
+    column, row = (c.column.max(initial=0), c.row.max(initial=0)) if most is None else most
+    return packed((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
 
 
 def changes(words: list[IntArray]) -> NDArray[np.bool_]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 
 import numpy as np
@@ -12,15 +13,17 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.listing.best import BestFixtures
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.distinct import count_distinct
-from workhold.listing.finish import finish
-from workhold.listing.placing import placed
-from workhold.listing.ranking import measured, rank
+from workhold.listing.gathering import Gathering
+from workhold.model.notes import best_note, undecided_note
 from workhold.model.proof import Proof
-from workhold.model.result import Result
+from workhold.model.result import FixtureTable, Result
 from workhold.proof.deciding import Account
 
-__all__ = ["Work", "best_result", "listed_result", "result_of"]
+__all__ = ["MEASURED", "Work", "best_result", "gathered_result", "listed_result", "result_of", "stage"]
+
+
+# The parts of the work after the search, as progress tells it, when all is decided and when all is measured.
+DECIDED, MEASURED = 0.5, 0.8
 
 
 @frozen
@@ -39,6 +42,13 @@ class Work:
     statistics: Mapping[str, int]
     cells: int = 0
     examined: int | None = None
+
+
+def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
+    """The progress of one stage of the work, from one fraction of the whole to another."""
+    if progress is None:
+        return None
+    return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
 def listed_result(
@@ -60,9 +70,45 @@ def listed_result(
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     threads : how many threads share the deciding.
     """
-    candidates, account = finish(records, problem, progress, cancel, threads)
-    result = result_of(problem, candidates, account, work, threads)
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        gathering = Gathering(problem, pool, 2 * threads, cancel)
+        with gathering.given_up_on_errors():
+            for array in records:
+                gathering.take(array)
+            result = gathered_result(gathering, work, stage(progress, 0.0, MEASURED))
+            result = with_table(result, gathering.tables(stage(progress, MEASURED, 1.0)))
     return evolve(result, table=result.table.take(slice(0, problem.query.best)))
+
+
+def gathered_result(gathering: Gathering, work: Work, progress: Progress | None = None) -> Result:
+    """The result of what a gathering was given, without its fixtures; those it hands over.
+
+    Parameters
+    ----------
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    """
+    account = gathering.finish_deciding(stage(progress, 0.0, DECIDED))
+    whole = gathering.measure(stage(progress, DECIDED, 1.0))
+    query = gathering.problem.query
+    names = [one.name for one in query.toolkit.arrangements]
+    found, distinct = (
+        dict(zip(names, counts.tolist(), strict=True)) for counts in (gathering.found, gathering.distinct)
+    )
+    return Result(
+        query=query,
+        table=FixtureTable.empty(),
+        found=found,
+        distinct=distinct,
+        complete=work.complete and account.left == 0 and whole,
+        notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
+        statistics=work.statistics,
+        proof=proof_of(account, work),
+    )
+
+
+def with_table(result: Result, tables: Iterable[FixtureTable]) -> Result:
+    """A result with its fixtures."""
+    return evolve(result, table=FixtureTable.joined(list(tables)))
 
 
 def best_result(kept: BestFixtures, work: Work) -> Result:
@@ -74,24 +120,15 @@ def best_result(kept: BestFixtures, work: Work) -> Result:
     result = result_of(kept.problem, candidates, account, work)
     if not (work.complete and kept.has_dropped):
         return result
-    note = f"Only the best {kept.most} were sought, so how many fixtures there are in all was not counted."
-    return evolve(result, notes=(note, *result.notes))
+    return evolve(result, notes=(best_note(kept.most), *result.notes))
 
 
-def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work, threads: int = 1) -> Result:
-    """The result of fixtures that are listed once."""
-    everything = measured(placed(candidates, problem), problem, threads)
-    ranked = everything.take(rank(everything.quality, problem.query.ranking))
-    return Result(
-        query=problem.query,
-        table=ranked,
-        found=problem.query.toolkit.arrangements_counted(ranked.arrangement),
-        distinct=count_distinct(candidates, problem, threads),
-        complete=work.complete and account.left == 0,
-        notes=notes(len(account.undecided)),
-        statistics=work.statistics,
-        proof=proof_of(account, work),
-    )
+def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work) -> Result:
+    """The result of fixtures that are decided."""
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        gathering = Gathering(problem, pool, 1)
+        gathering.add(candidates, account)
+        return with_table(gathered_result(gathering, work), gathering.tables())
 
 
 def proof_of(account: Account, work: Work) -> Proof:
@@ -103,11 +140,3 @@ def proof_of(account: Account, work: Work) -> Proof:
     # One candidate may hold two solutions, which then count as two.
     candidates = max(candidates, kept)
     return Proof(work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided)
-
-
-def notes(undecided_count: int) -> tuple[str, ...]:
-    """Remarks on a search that a user should read."""
-    if undecided_count == 0:
-        return ()
-    some = "1 candidate is undecided" if undecided_count == 1 else f"{undecided_count} candidates are undecided"
-    return (f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason.",)

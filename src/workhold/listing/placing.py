@@ -18,10 +18,12 @@ from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_SLACK, GAP_SLACK
 from workhold.listing.canonical_form import Candidates
-from workhold.model.result import FixtureTable, unknown_quality
+from workhold.listing.on_plate import bolted, placed_on_plate
+from workhold.listing.written_out import written_out
+from workhold.model.result import FixtureTable
 from workhold.proof.deciding import is_standing
 
-__all__ = ["Arranged", "arranged", "placed"]
+__all__ = ["Arranged", "arranged", "placeable", "placed"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -121,8 +123,8 @@ def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
     """How many columns (N,) are free beyond the pegs of each carrier."""
     standing = is_standing(c.standing)
     return (
-        frame.standing.columns - 1 - np.where(standing, c.column, 0).max(axis=1, initial=0),
-        frame.moving.columns - 1 - np.where(standing, 0, c.column).max(axis=1, initial=0),
+        frame.standing.column_count - 1 - np.where(standing, c.column, 0).max(axis=1, initial=0),
+        frame.moving.column_count - 1 - np.where(standing, 0, c.column).max(axis=1, initial=0),
     )
 
 
@@ -167,7 +169,7 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
     out = {name: getattr(found, name).copy() for name in ("standing", "moving", "lift")}
     fits = np.zeros(len(c.standing), np.bool_)
     endless = all(carrier.rows is None for carrier in frame.carriers)
-    for one, two in outward_moves(frame.standing.columns, frame.moving.columns):
+    for one, two in outward_moves(frame.standing.column_count, frame.moving.column_count):
         if len(open_) == 0:
             break
         least, most, free_standing, free_moving = room[open_].T
@@ -212,9 +214,19 @@ def in_blocked(column: IntArray, row: IntArray, standing: BoolArray, frame: Fram
     return np.asarray(hit.any(axis=1))
 
 
+def placeable(c: Candidates, problem: Problem) -> BoolArray:
+    """Which candidates (N,) have a place in the toolkit."""
+    if problem.frame.moving.on is None:
+        return arranged(c, problem).fits
+    fits = bolted(c, problem).fits
+    return np.asarray(fits & at_angle(c.theta, problem.restrictions.angles, problem.frame))
+
+
 def placed(c: Candidates, problem: Problem) -> FixtureTable:
     """Write candidates that fit out as holes of the toolkit; of their quality only the closure margin is known yet."""
-    frame, center = problem.frame, problem.workpiece.center
+    if problem.frame.moving.on is not None:
+        return placed_on_plate(c, problem)
+    frame = problem.frame
     found = arranged(c, problem)
     c = found.candidates
     standing = is_standing(c.standing)
@@ -224,20 +236,4 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
         c.column + np.where(standing, first[:, None], found.moving[:, None]),
         c.row + found.lift[:, None],
     )
-    theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)
-    cosine, sine = np.cos(theta), np.sin(theta)
-    anchor = c.point[:, 0] + np.asarray(center)
-    x, y = frame.toolkit.carriers[0].place(column[:, 0], row[:, 0])
-    x, y = x - (cosine * anchor[:, 0] - sine * anchor[:, 1]), y - (sine * anchor[:, 0] + cosine * anchor[:, 1])
-    return FixtureTable(
-        arrangement=frame.toolkit.arrangement_numbers(c.standing).astype(np.int8),
-        column=column.astype(np.int32),
-        row=row.astype(np.int32),
-        face=problem.faces[c.feature].astype(np.int32),
-        theta=theta,
-        position=np.stack([x, y], axis=1),
-        jaw_separation=found.travel(frame),
-        null_vector=c.null,
-        force=c.force,
-        quality=unknown_quality(c.null),
-    )
+    return written_out(c, problem, column, row, found.travel(frame))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from math import hypot, pi, tau
+from math import hypot, pi, sin, tau
+
+import numpy as np
 
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["outline_diameter"]
+__all__ = ["outline_diameter", "segments_diameter"]
+
+# Distances that differ by less in proportion may be equal but for rounding.
+ROUNDED = 1e-9
 
 
 def outline_diameter(workpiece: Workpiece) -> float:
@@ -17,11 +22,23 @@ def outline_diameter(workpiece: Workpiece) -> float:
     far sides lie on the line through the arcs' centres.
     """
     outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
-    best = 0.0
-    for index, a in enumerate(outer):
-        for b in outer[index:]:
-            best = max(best, segments_diameter(a, b))
+    middle = np.array([segment.at(0.0) for segment in outer])
+    reach = np.array([farthest_from_middle(segment) for segment in outer])
+    apart = [np.hypot(*(middle[index:] - middle[index]).T) for index in range(len(outer))]
+    best, least = 0.0, max(float(distances.max()) for distances in apart)
+    for index, distances in enumerate(apart):
+        # Only pairs that are far enough apart are looked at closely.
+        most = (distances + reach[index] + reach[index:]) * (1.0 + ROUNDED)
+        for other in index + np.flatnonzero(most >= max(best, least)):
+            best = max(best, segments_diameter(outer[index], outer[other]))
     return best
+
+
+def farthest_from_middle(segment: Segment) -> float:
+    """Largest distance in mm between the middle of a segment and a point of it."""
+    if isinstance(segment, Arc):
+        return 2.0 * segment.radius * sin(min(segment.half_sweep, pi) / 2.0)
+    return segment.half_extent
 
 
 def segments_diameter(a: Segment, b: Segment) -> float:

@@ -23,11 +23,14 @@ from math import isfinite
 
 from attrs import frozen
 
+from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 
-__all__ = ["DowelSize", "Limits", "peg_error", "refuse_limits"]
+__all__ = ["DowelSize", "Fit", "Limits", "fit_words", "hole_class", "peg_error", "refuse_limits"]
 
 Limits = tuple[float, float]
+# ISO 286-2:2010, class H7: up to this nominal diameter in mm a hole may be so many mm wider and no narrower.
+H7 = ((3.0, 0.010), (6.0, 0.012), (10.0, 0.015), (18.0, 0.018), (30.0, 0.021), (50.0, 0.025))
 # A pin whose diameter is this far from that of the peg, in proportion, is not the peg: a radius was given for a diameter.
 FAR = 0.1
 
@@ -46,6 +49,62 @@ class DowelSize:
     nominal: float
     pin: Limits
     hole: Limits | None = None
+
+
+@frozen
+class Fit:
+    """A pin in its hole.
+
+    Parameters
+    ----------
+    pin, hole : smallest and largest diameters in mm.
+    position : how far the centre of a hole may be from its place, in mm.
+    position_assumed : whether nobody said so, and it was assumed.
+    standard : of the pin, such as "ISO 2338 m6"; empty where none is named.
+    """
+
+    pin: Limits
+    hole: Limits
+    position: float
+    position_assumed: bool
+    standard: str = ""
+
+
+def hole_class(nominal: float, hole: Limits) -> str | None:
+    """The class of a hole's limits, where it is H7; None for any other.
+
+    >>> hole_class(6.0, (6.0, 6.012)), hole_class(6.0, (5.987, 6.0))
+    ('H7', None)
+    """
+    wider = next((wider for largest, wider in H7 if nominal <= largest), None)
+    return None if wider is None or max(abs(hole[0] - nominal), abs(hole[1] - nominal - wider)) > SAME_SIZE else "H7"
+
+
+def fit_words(fit: Fit, nominal: float) -> str:
+    """A pin and how it sits in its hole, in short.
+
+    Parameters
+    ----------
+    nominal : diameter of the peg, in mm.
+
+    Examples
+    --------
+    >>> fit_words(Fit((6.004, 6.012), (6.0, 6.012), 0.01, True, "ISO 2338 m6"), 6.0)
+    'ISO 2338 m6 in H7'
+    >>> fit_words(Fit((6.003, 6.009), (5.987, 6.0), 0.01, True, "ASME B18.8.5M"), 6.0)
+    'ASME B18.8.5M, pressed in'
+    """
+    hole = hole_class(nominal, fit.hole)
+    if hole is not None:
+        return f"{fit.standard or 'pin'} in {hole}"
+    how = (
+        "pressed in"
+        if fit.pin[0] >= fit.hole[1]
+        else "goes in by hand"
+        if fit.pin[1] <= fit.hole[0]
+        else "tight or loose"
+    )
+    return f"{fit.standard or 'pin'}, {how}"
 
 
 def peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> float:

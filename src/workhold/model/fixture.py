@@ -12,9 +12,7 @@ from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.holes import hole_name
 
-__all__ = ["Fixture", "Jaw", "Peg", "Pose"]
-
-Jaw = str
+__all__ = ["Fixture", "Peg", "Pose"]
 
 
 @frozen
@@ -23,25 +21,27 @@ class Peg:
 
     Parameters
     ----------
-    jaw : name of the carrier it stands on: "left" or "right" of a vise.
+    carrier : name of what it stands on: "left" or "right" of a vise.
     column, row : the hole, counted from 0.
     x, y : the peg's centre in the vise frame, in mm.
     face : number of the face it touches.
     force : contact force per unit of clamping force.
+    place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     """
 
-    jaw: str
+    carrier: str
     column: int
     row: int
     x: float
     y: float
     face: int
     force: float
+    place: str | None = None
 
     @property
     def hole(self) -> str:
-        """The hole's name: jaw, column letter, row number from 1, such as ``L-B3``."""
-        return hole_name(self.jaw, self.column, self.row)
+        """The hole's name: the carrier's letter, column letter, row number from 1, such as ``L-B3``."""
+        return self.place or hole_name(self.carrier, self.column, self.row)
 
 
 @frozen
@@ -93,8 +93,10 @@ class Fixture:
     type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : where the workpiece lies.
-    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first.
+    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another toolkit the travel
+        of what moves.
     quality : figures of merit by name.
+    direction : in which the clamp moves when it clamps, such as "-x"; None of a vise.
     """
 
     type: str
@@ -102,3 +104,4 @@ class Fixture:
     pose: Pose
     jaw_separation: float
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
+    direction: str | None = None

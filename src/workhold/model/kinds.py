@@ -5,34 +5,70 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from attrs import NOTHING, fields_dict
+
 from workhold.errors import InputError
+from workhold.model.plate import Plate
+from workhold.model.toolkit import Toolkit
 from workhold.model.vise import OpeningVise, Vise
 
-__all__ = ["KINDS", "USUAL", "toolkit_of"]
+__all__ = ["ALIASES", "KINDS", "USUAL", "kind_of", "toolkit_of"]
 
-KINDS: Mapping[str, type[Vise]] = {one.kind: one for one in (Vise, OpeningVise)}
+KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate)}
 # What is meant where nobody says.
 USUAL = Vise.kind
+# Other names, each with its kind and the fields that it says.
+ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+    "gripper": (Vise.kind, {"columns": 1}),
+    "plate": (Plate.kind, {}),
+}
 
 
-def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Vise:
+def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
+    """The kind of a name or an alias, and the fields that the alias says.
+
+    Raises
+    ------
+    InputError
+        For a name that is not known.
+
+    Examples
+    --------
+    >>> kind_of("gripper")
+    ('vise', {'columns': 1})
+    """
+    if name in ALIASES:
+        return ALIASES[name]
+    if name not in KINDS:
+        raise InputError(f"toolkit {name[:40]!r} is not known: choose among {', '.join((*KINDS, *ALIASES))}.")
+    return name, {}
+
+
+def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Toolkit:
     """A toolkit of a kind.
 
     Parameters
     ----------
-    kind : its name.
+    kind : its name, or an alias.
     fields : keyword arguments of its class.
 
     Raises
     ------
     InputError
-        For a kind that is not known, and fields of which there is no such toolkit.
+        For a kind that is not known, fields that it does not have or that are missing, and values of which there is none.
 
     Examples
     --------
     >>> toolkit_of("opening-vise", {"pitch": 10, "columns": 2, "peg_radius": 3}).clamping
     -1
     """
-    if kind not in KINDS:
-        raise InputError(f"toolkit {kind[:40]!r} is not known: choose {' or '.join(KINDS)}.")
-    return KINDS[kind](**fields)
+    known, said = kind_of(kind)
+    toolkit, given = KINDS[known], {**said, **fields}
+    has = fields_dict(toolkit)  # type: ignore[arg-type]
+    for name in given:
+        if name not in has:
+            raise InputError(f"a toolkit of kind {known} has no {name.replace('_', ' ')[:40]}: leave it out.")
+    for name, field in has.items():
+        if field.default is NOTHING and name not in given:
+            raise InputError(f"the {toolkit.noun}'s {name.replace('_', ' ')} is not given.")
+    return toolkit(**given)

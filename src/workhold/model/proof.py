@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from attrs import field, frozen
 
-__all__ = ["Proof", "Undecided"]
+__all__ = ["AT_AN_EDGE", "GIVEN_UP", "NEARLY_DOUBLE", "UNBOUNDED", "Proof", "Undecided"]
+
+# Why something is undecided.
+GIVEN_UP = "two pegs on these faces fit in so many nearly equal ways that they cannot be told apart"
+UNBOUNDED = "the pegs slide so easily along these faces that their places cannot be told"
+NEARLY_DOUBLE = "the contacts are a double solution, or so nearly that its clamping force is not decided"
+AT_AN_EDGE = "a rule is met exactly at its edge"
 
 
 @frozen
@@ -13,11 +19,14 @@ class Undecided:
 
     Parameters
     ----------
-    type : name of the arrangement.
+    type : of the arrangement, with the direction in which a clamp moves, such as "II" or "clamp -x".
     faces : the four faces (a pair of chords names the tail and the head of each).
-    columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg.
+    columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg; of
+        a clamp the number of its line from the first locator's, and 0.
     theta_deg : orientation of the workpiece in degrees, about which it would be.
     reason : why it is not decided, in one sentence without a full stop.
+    reach_deg : how far in degrees the orientation may be from there; None where that is not bounded, and of a pair of
+        chords, which exist there.
     """
 
     type: str
@@ -26,6 +35,7 @@ class Undecided:
     rows: tuple[int, int, int, int]
     theta_deg: float
     reason: str
+    reach_deg: float | None = None
 
 
 @frozen

@@ -10,10 +10,16 @@ from attrs import frozen
 __all__ = [
     "CLAMP_AMPLIFICATION",
     "CLOSURE_MARGIN",
+    "EDGE_DISTANCE",
     "END_DISTANCE",
     "FIGURES",
+    "JAW_FORCE_NEEDED",
     "LOAD_REACTION",
     "LOCATION_ERROR",
+    "PENALTY",
+    "SMALLEST_FACE",
+    "TILT",
+    "WARNINGS",
     "WRENCH_RADIUS",
     "Figure",
     "figure_number",
@@ -27,15 +33,17 @@ class Figure:
     Parameters
     ----------
     key : its name in files.
-    unit : "" (a plain number), "mm" or "N".
+    unit : "" (a plain number), "mm", "N" or "deg".
     more_is_better : which way is better.
     meaning : what it tells, in one sentence.
+    decimals : with which it is shown; lengths have those of their unit.
     """
 
     key: str
     unit: str
     more_is_better: bool
     meaning: str
+    decimals: int = 4
 
     @property
     def words(self) -> str:
@@ -62,9 +70,20 @@ FIGURES = (
     Figure("wrench_radius", "", True, "The smallest disturbance that a grip of unit forces does not resist."),
     Figure("location_error", "mm", False, "The farthest a point of the part can be off when pegs and faces are."),
     Figure("end_distance", "mm", True, "The smallest distance from a contact to the end of its face."),
-    Figure("load_reaction", "N", False, "The largest peg force when the loads act and no peg lets go."),
+    Figure("load_reaction", "N", False, "The largest peg force when the loads act and no peg lets go.", 1),
+    Figure("edge_distance", "mm", True, "The smallest distance from a contact to an edge or another face."),
+    Figure(
+        "jaw_force_needed", "N", False, "The jaw force of a screw vise above which no peg lets go under any load.", 1
+    ),
+    Figure("tilt", "deg", False, "How far the part's main straight faces are from lying square to the jaws.", 3),
+    Figure(
+        "smallest_face", "mm", True, "The smallest face touched: the length of a straight one, the radius of an arc."
+    ),
+    Figure("warnings", "", False, "How many things there are to beware of.", 0),
+    Figure("penalty", "", False, "Points for location error, tilt, a strong peg and a small face.", 0),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
+EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY = range(6, 12)
 
 
 def figure_number(name: str) -> int | None:

@@ -4,29 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
 
 from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.model.load import Load
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION, figure_number
-from workhold.model.real import real
+from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
+    CLOSURE_MARGIN,
+    FIGURES,
+    JAW_FORCE_NEEDED,
+    LOAD_REACTION,
+    figure_number,
+)
+from workhold.model.real import counting_number, real
 from workhold.model.restrictions import Restrictions
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["DEFAULT_RANKING", "Query", "counting_number"]
+__all__ = ["DEFAULT_RANKING", "PREFERENCES", "Query", "asked_ranking"]
 
-# Repeatable first: a fixture that places every part alike; then strong: one that does not press the part out of shape.
-DEFAULT_RANKING = ("location_error", "clamp_amplification", "closure_margin")
-LOADED_RANKING = ("location_error", "load_reaction", "closure_margin")
+T = TypeVar("T")
+
+# docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp amplification.
+DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
+# Orders by what a user wants most.
+PREFERENCES = {
+    "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
+    "strong": ("warnings", "clamp_amplification", "closure_margin", "penalty", "edge_distance"),
+    "precise": ("warnings", "location_error", "penalty", "clamp_amplification", "closure_margin"),
+    "roomy": ("warnings", "edge_distance", "smallest_face", "penalty", "closure_margin"),
+}
 
 
 def words(value: Iterable[str] | None) -> tuple[str, ...] | None:
     """Several words as a tuple; one word alone is not taken for its letters."""
-    return value if value is None else (value,) if isinstance(value, str) else tuple(value)
+    return value if value is None else (value,) if isinstance(value, str) else listed("names", value)
 
 
 def restrictions_of(value: Restrictions | None) -> Restrictions:
@@ -41,7 +56,47 @@ def tolerance_of(value: Tolerance | None) -> Tolerance:
 
 def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
     """Loads as a tuple."""
-    return tuple(loads)
+    return listed("loads", loads)
+
+
+def listed(name: str, values: Iterable[T]) -> tuple[T, ...]:
+    """Some values as a tuple.
+
+    Raises
+    ------
+    InputError
+        When it is something else than several values.
+    """
+    try:
+        return tuple(values)
+    except TypeError as error:
+        raise InputError(f"the {name} are no list, but {values!r}: give several in a list.") from error
+
+
+# What parts of a query must be, and how to get one.
+KINDS: dict[str, tuple[type, str]] = {
+    "workpiece": (Workpiece, "give a Workpiece, such as workhold.load('part.dxf')"),
+    "toolkit": (Toolkit, "give a toolkit, such as workhold.Vise(pitch=10, columns=2, peg_radius=3)"),
+    "restrictions": (Restrictions, "give Restrictions"),
+    "tolerance": (Tolerance, "give a Tolerance"),
+}
+
+
+def refuse_other_kinds(query: Query) -> None:
+    """Refuse parts of a query that are of another kind.
+
+    Raises
+    ------
+    InputError
+        Naming the part and what it must be.
+    """
+    for name, (kind, remedy) in KINDS.items():
+        if not isinstance(value := getattr(query, name), kind):
+            raise InputError(f"the {name} cannot be {value!r}: {remedy}.")
+    loads: tuple[Any, ...] = query.loads
+    for load in loads:
+        if not isinstance(load, Load):
+            raise InputError(f"a load cannot be {load!r}: give Load objects, such as workhold.model.load.Load.")
 
 
 @frozen
@@ -54,16 +109,17 @@ class Query:
     arrangements : names of the toolkit's arrangements to seek, such as "I" or ("I", "II"); None is all.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no restriction.
-    ranking : figures of quality, the first counting most, named as in ``model.quality``; None is location error, then load
-        reaction or, without loads, clamp amplification, then closure margin.
+    ranking : figures of quality, the first counting most, named as in ``model.quality``; None is what a machinist would look
+        at: warnings, penalty, load reaction or, without loads, clamp amplification, closure margin, edge distance.
     tolerance : how far pegs and faces may be off, for the location error; None is the usual one.
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
+    jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where it is open.
 
     Raises
     ------
     InputError
-        For an unknown arrangement or figure, one named twice, numbers out of range, and the load reaction without loads.
+        For an unknown arrangement or figure, one named twice, numbers out of range, and a figure of loads without loads.
     """
 
     workpiece: Workpiece
@@ -75,9 +131,11 @@ class Query:
     tolerance: Tolerance = field(default=None, converter=tolerance_of)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     best: int | None = None
+    jaw_force: float | None = None
 
     def __attrs_post_init__(self) -> None:
-        known = tuple(arrangement.name for arrangement in self.toolkit.arrangements)
+        refuse_other_kinds(self)
+        known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads))
         margin = self.contact_margin
@@ -85,6 +143,11 @@ class Query:
             raise InputError(f"contact margin {margin} is not a length: give 0 or more, in mm.")
         object.__setattr__(self, "contact_margin", float(margin))
         object.__setattr__(self, "best", counting_number("best", self.best))
+        if self.jaw_force is not None:
+            force = real(self.jaw_force)
+            if not (isfinite(force) and force >= 0):
+                raise InputError(f"jaw force {force:g} cannot be used: give 0 or more, in N.")
+            object.__setattr__(self, "jaw_force", force)
 
     @property
     def by_margin_alone(self) -> bool:
@@ -114,17 +177,17 @@ def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load]) -> tuple[
     Raises
     ------
     InputError
-        For a name that is no figure, one given twice, none at all, and the load reaction without loads.
+        For a name that is no figure, one given twice, none at all, and a figure of loads without loads.
     """
     if names is None:
-        return LOADED_RANKING if loads else DEFAULT_RANKING
+        return for_loads(DEFAULT_RANKING, loads)
     keys = []
     for name in names:
         number = figure_number(name)
         if number is None:
             raise InputError(f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in FIGURES)}.")
-        if number == LOAD_REACTION and not loads:
-            raise InputError("there is no load to rank by the load reaction: give at least one load.")
+        if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
+            raise InputError(f"there is no load to rank by the {FIGURES[number].words}: give at least one load.")
         keys.append(FIGURES[number].key)
     if not keys:
         raise InputError("there is no figure to rank by: name at least one, such as closure-margin.")
@@ -133,19 +196,38 @@ def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load]) -> tuple[
     return tuple(keys)
 
 
-def counting_number(name: str, value: Any) -> int | None:
-    """A count from 1, or None.
+def asked_ranking(names: str | Sequence[str] | None, preference: str | None, loads: Sequence[Load]) -> tuple[str, ...]:
+    """The keys of figures named, of what is preferred, or of the default ranking where both are None.
 
     Raises
     ------
     InputError
-        Naming what is counted, for anything else.
+        For both together, and as :func:`chosen_ranking` and :func:`preferred_ranking`.
     """
-    if value is None:
-        return None
-    try:
-        if value == int(value) and value >= 1:
-            return int(value)
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise InputError(f"{name} {value} is not a positive whole number.")
+    if preference is None:
+        return chosen_ranking(words(names), loads)
+    if names is not None:
+        raise InputError("figures to rank by and a preference are two orders: give one of them.")
+    return preferred_ranking(preference, loads)
+
+
+def for_loads(ranking: tuple[str, ...], loads: Sequence[Load]) -> tuple[str, ...]:
+    """An order with the load reaction instead of the clamp amplification where there are loads."""
+    if not loads:
+        return ranking
+    loaded, bare = FIGURES[LOAD_REACTION].key, FIGURES[CLAMP_AMPLIFICATION].key
+    return tuple(loaded if key == bare else key for key in ranking)
+
+
+def preferred_ranking(preference: str, loads: Sequence[Load]) -> tuple[str, ...]:
+    """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
+
+    Raises
+    ------
+    InputError
+        For any other word.
+    """
+    word = preference.strip().lower()
+    if word not in PREFERENCES:
+        raise InputError(f"{preference!r} is nothing to prefer: choose {', '.join(PREFERENCES)}.")
+    return for_loads(PREFERENCES[word], loads)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from math import inf, nan
 from typing import Any
 
-__all__ = ["real"]
+from workhold.errors import InputError
+
+__all__ = ["counting_number", "real"]
 
 
 def real(value: Any) -> float:
@@ -24,3 +26,21 @@ def real(value: Any) -> float:
         return inf if value > 0 else -inf
     except (TypeError, ValueError):
         return nan
+
+
+def counting_number(name: str, value: Any) -> int | None:
+    """A count from 1, or None.
+
+    Raises
+    ------
+    InputError
+        Naming what is counted, for anything else.
+    """
+    if value is None:
+        return None
+    try:
+        if value == int(value) and value >= 1:
+            return int(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{name} {value} is not a positive whole number: give 1 or more.")

@@ -9,11 +9,13 @@ reach : the extent of part and pegs, one pitch or a fourteenth of the extent mor
 plate : the rectangle around the holes that show, half a pitch beyond them.
 broken side : a side of a plate where the carrier goes on beyond what shows.
 facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
+clamp : a carrier that is bolted to a plate and has no plate of its own: its body reaches from its hole to its tip.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from itertools import combinations
 from math import ceil, floor, inf
 from typing import Literal
@@ -22,14 +24,29 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.errors import InputError
 from workhold.geometry.box import Box
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Point
+from workhold.limits import MOST_STEPS
+from workhold.model.clamp import ShownClamp, clamping_direction, shown_clamps
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.setting import Setting, mover_of, setting_of
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_HOLES", "Axis", "Hole", "Shown", "ShownCarrier", "Side", "placed_boxes", "shown", "shown_beside"]
+__all__ = [
+    "MOST_HOLES",
+    "Axis",
+    "Hole",
+    "Measured",
+    "Shown",
+    "ShownCarrier",
+    "Side",
+    "placed_boxes",
+    "shown",
+    "shown_beside",
+]
 
 Side = Literal["left", "right", "bottom", "top"]
 Axis = tuple[Point, Point]
@@ -47,7 +64,7 @@ ROUNDING = 1e-6
 
 @frozen
 class Hole:
-    """A hole that shows; ``center`` in mm, ``used`` by a peg, ``blocked`` for all pegs."""
+    """A hole that shows; ``center`` in mm, ``used`` by a peg or a clamp, ``blocked`` for all pegs."""
 
     column: int
     row: int
@@ -58,7 +75,7 @@ class Hole:
 
 @frozen
 class ShownCarrier:
-    """What shows of a carrier; lengths in mm.
+    """What shows of a carrier that has a plate; lengths in mm.
 
     Parameters
     ----------
@@ -68,6 +85,7 @@ class ShownCarrier:
     plate : as far as it shows.
     broken, facing : sides of the plate, see the glossary.
     pegs : of the fixture, those that stand on it.
+    bolted : those of clamps that are bolted to it.
     clamping : unit vector along which it slides and pushes when it clamps; None when it stands still.
     """
 
@@ -79,7 +97,26 @@ class ShownCarrier:
     broken: frozenset[Side]
     facing: frozenset[Side]
     pegs: tuple[Peg, ...]
+    bolted: tuple[ShownClamp, ...]
     clamping: Point | None
+
+    @property
+    def used(self) -> set[tuple[int, int]]:
+        """The holes, column and row, in which something stands."""
+        clamps = {(clamp.tip.column, clamp.tip.row) for clamp in self.bolted if clamp.hole is not None}
+        return clamps | {(peg.column, peg.row) for peg in self.pegs}
+
+    @property
+    def used_columns(self) -> set[int]:
+        """The columns in which something stands, or along which a clamp moves."""
+        lines = {clamp.tip.column for clamp in self.bolted if clamp.is_upright}
+        return lines | {column for column, _ in self.used}
+
+    @property
+    def used_rows(self) -> set[int]:
+        """The rows in which something stands, or along which a clamp moves."""
+        lines = {clamp.tip.row for clamp in self.bolted if not clamp.is_upright}
+        return lines | {row for _, row in self.used}
 
     @property
     def x(self) -> tuple[float, ...]:
@@ -90,16 +127,6 @@ class ShownCarrier:
     def y(self) -> tuple[float, ...]:
         """y of every row that shows."""
         return tuple(self.carrier.place(0, row, self.travelled)[1] for row in self.rows)
-
-    @property
-    def slid(self) -> tuple[Point, Point] | None:
-        """Where its hole in column 0 and row 0 would be without travel, and where it is; None when it stands still."""
-        return None if self.clamping is None else (self.carrier.place(0, 0), self.carrier.place(0, 0, self.travelled))
-
-    @property
-    def upright(self) -> bool:
-        """Whether it slides more along y than along x."""
-        return self.clamping is not None and abs(self.clamping[1]) > abs(self.clamping[0])
 
     @property
     def names_at(self) -> Side:
@@ -118,57 +145,65 @@ class ShownCarrier:
         cells = [(column, row) for row in self.rows for column in self.columns]
         if len(cells) > most:
             near = range(-NEAR, NEAR + 1)
-            wanted = {(peg.column + i, peg.row + j) for peg in self.pegs for i in near for j in near}
+            wanted = {(column + i, row + j) for column, row in self.used for i in near for j in near}
             cells = [cell for cell in cells if cell in wanted]
-        used = {(peg.column, peg.row) for peg in self.pegs}
         return [
-            Hole(*cell, self.carrier.place(*cell, self.travelled), cell in used, self.carrier.is_blocked(*cell))
+            Hole(*cell, self.carrier.place(*cell, self.travelled), cell in self.used, self.carrier.is_blocked(*cell))
             for cell in cells
         ]
 
 
 @frozen
+class Measured:
+    """A length to set, and the axes square to it that it is measured between.
+
+    Parameters
+    ----------
+    setting : the length.
+    axes : each from left to right or upward. Those of a plate that slides lie across the plates that stand still and across
+        its own; those of a clamp lead from it to the plate's upper or right side.
+    is_upright : whether it is measured along y.
+    pitch : of the carrier, in mm along x and y.
+    carrier : its name.
+    """
+
+    setting: Setting
+    axes: tuple[Axis, Axis]
+    is_upright: bool
+    pitch: tuple[float, float]
+    carrier: str
+
+
+@frozen
 class Shown:
-    """What shows of a toolkit and a part: every carrier, those that stand still first, and the part's extent in mm."""
+    """What shows of a toolkit and a part.
+
+    Parameters
+    ----------
+    carriers : those that have a plate, those that stand still first.
+    clamps : those that are bolted to a plate.
+    measured : the length to set; None where nothing moves.
+    part : extent of the part in mm.
+    """
 
     carriers: tuple[ShownCarrier, ...]
+    clamps: tuple[ShownClamp, ...]
+    measured: Measured | None
     part: Box
 
     @property
     def extent(self) -> Box:
         """Everything together."""
-        whole = self.part
-        for carrier in self.carriers:
-            whole = whole.union(carrier.plate)
-        return whole
+        return reduce(Box.union, [*(one.plate for one in self.carriers), *(one.room for one in self.clamps)], self.part)
 
     @property
     def pitch(self) -> float:
         """The smallest distance between neighbouring holes, in mm."""
         return min(min(shown.carrier.pitch) for shown in self.carriers)
 
-    @property
-    def travels(self) -> list[tuple[ShownCarrier, Axis, Axis]]:
-        """Every carrier that slides, with the axes square to its travel that it is measured from and to.
-
-        The first lies across the plates that stand still, the second across its own; each from left to right or upward.
-        """
-        still = [shown.plate for shown in self.carriers if shown.clamping is None]
-
-        def axis(at: Point, upright: bool, plates: list[Box]) -> Axis:
-            if upright:
-                return (min(plate.x0 for plate in plates), at[1]), (max(plate.x1 for plate in plates), at[1])
-            return (at[0], min(plate.y0 for plate in plates)), (at[0], max(plate.y1 for plate in plates))
-
-        return [
-            (shown, axis(shown.slid[0], shown.upright, still), axis(shown.slid[1], shown.upright, [shown.plate]))
-            for shown in self.carriers
-            if shown.slid is not None
-        ]
-
 
 def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
-    """What shows of a toolkit whose pegs hold a workpiece."""
+    """What shows of a toolkit whose pegs hold a workpiece; raises as :func:`shown_beside`."""
     pose = fixture.pose
     (box,) = placed_boxes(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
     return shown_beside(Box(*map(float, box)), fixture, toolkit)
@@ -199,10 +234,17 @@ def placed_boxes(
 
 
 def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
-    """What shows of a toolkit beside a part of an extent."""
+    """What shows of a toolkit beside a part of an extent.
+
+    Raises
+    ------
+    InputError
+        When part and pegs are so far apart that too many holes would show.
+    """
     travelled = fixture.jaw_separation
-    carriers = toolkit.carriers
-    reach = reach_of(part, fixture, carriers)
+    carriers = [carrier for carrier in toolkit.carriers if carrier.on is None]
+    clamps = tuple(shown_clamps(fixture, toolkit))
+    reach = reach_of(part, fixture, carriers, clamps)
     ranges = [cells_in_reach(carrier, travelled, reach) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
     gaps = facing_gaps(spans)
@@ -211,10 +253,11 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
         left, right = (min(half_x, SHARE_OF_GAP * facing.get(side, inf)) for side in ("left", "right"))
         bottom, top = (min(half_y, SHARE_OF_GAP * facing.get(side, inf)) for side in ("bottom", "top"))
+        endless = carrier.columns is None and carrier.rows is None
         ends: dict[Side, bool] = {
-            "left": columns.start > 0,
-            "right": columns.stop < carrier.columns,
-            "bottom": rows.start > 0,
+            "left": columns.start > 0 or endless,
+            "right": carrier.columns is None or columns.stop < carrier.columns,
+            "bottom": rows.start > 0 or endless,
             "top": carrier.rows is None or rows.stop < carrier.rows,
         }
         out.append(
@@ -226,26 +269,40 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 plate=Box(holes.x0 - left, holes.y0 - bottom, holes.x1 + right, holes.y1 + top),
                 broken=frozenset(side for side, goes_on in ends.items() if goes_on),
                 facing=frozenset(facing),
-                pegs=tuple(peg for peg in fixture.pegs if peg.jaw == carrier.name),
+                pegs=tuple(peg for peg in fixture.pegs if peg.carrier == carrier.name),
+                bolted=tuple(clamp for clamp in clamps if clamp.carrier.on == carrier.name),
                 clamping=clamping_direction(carrier, toolkit),
             )
         )
-    return Shown(tuple(out), part)
+    return Shown(tuple(out), clamps, measured_between(out, fixture, toolkit), part)
 
 
-def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
-    """Along which a carrier slides when it clamps, a unit vector; None when it stands still."""
-    if carrier.travel is None:
+def measured_between(seen: Sequence[ShownCarrier], fixture: Fixture, toolkit: Toolkit) -> Measured | None:
+    """The length to set and the axes it is measured between."""
+    setting, mover = setting_of(fixture, toolkit), mover_of(fixture, toolkit)
+    if setting is None or mover.travel is None:
         return None
-    x, y = carrier.travel.unit
-    return (0.0 - toolkit.clamping * x, 0.0 - toolkit.clamping * y)
+    along, across = mover.travel.unit
+    upright = abs(across) > abs(along)
+    still = [one.plate for one in seen if one.clamping is None]
+    own = [one.plate for one in seen if one.carrier.name == mover.name]
+
+    def axis(at: Point, plates: list[Box]) -> Axis:
+        first, last = min(plate.x0 for plate in plates), max(plate.x1 for plate in plates)
+        low, high = min(plate.y0 for plate in plates), max(plate.y1 for plate in plates)
+        if mover.on is not None:
+            first, low = at
+        return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
+
+    axes = axis(setting.start, still), axis(setting.end, own or still)
+    return Measured(setting, axes, upright, mover.pitch, mover.name)
 
 
-def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
+def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier], clamps: Sequence[ShownClamp]) -> Box:
     """The reach, in mm; see the glossary."""
     reach = part
-    for peg in fixture.pegs:
-        reach = reach.union(Box(peg.x, peg.y, peg.x, peg.y))
+    for x, y in [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]:
+        reach = reach.union(Box(x, y, x, y))
     more = max(reach.width, reach.height) / 14
     more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
     reach = Box(reach.x0 - more_x, reach.y0 - more_y, reach.x1 + more_x, reach.y1 + more_y)
@@ -259,10 +316,22 @@ def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
 
 
 def cells_in_reach(carrier: Carrier, travelled: float, reach: Box) -> tuple[range, range]:
-    """Columns and rows of a carrier in reach; at least one of each."""
+    """Columns and rows of a carrier in reach; at least one of each.
+
+    Raises
+    ------
+    InputError
+        For so many holes that no fixture of a search has them in reach.
+    """
     x, y = carrier.place(0, 0, travelled)
     columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns)
-    return columns, in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows)
+    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows)
+    if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
+        raise InputError(
+            f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to show: check "
+            "the fixture's pose, its pegs and the pitch."
+        )
+    return columns, rows
 
 
 def in_reach(low: float, high: float, pitch: float, count: int | None) -> range:

@@ -7,6 +7,7 @@ from math import isfinite
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.model.dowel import Fit
 from workhold.model.real import real
 
 __all__ = ["Tolerance"]
@@ -20,6 +21,7 @@ class Tolerance:
     ----------
     peg : how far the surface of a peg may be from where it should be, in mm.
     face : how far a face of the part may be from where it should be, in mm.
+    fit : of the dowels that are the pegs, which the first follows from; None where it is not known.
 
     Raises
     ------
@@ -29,6 +31,7 @@ class Tolerance:
 
     peg: float = field(default=0.01, converter=real)
     face: float = field(default=0.01, converter=real)
+    fit: Fit | None = None
 
     def __attrs_post_init__(self) -> None:
         for name, value in (("peg", self.peg), ("face", self.face)):

@@ -14,16 +14,20 @@ gap rule : the smallest distance along the direction of travel from a peg of the
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from math import cos, sin
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.model.holes import Holes
+from workhold.model.holes import Holes, column_letters, hole_name, letter_of
+from workhold.model.units import Unit
 
-__all__ = ["Arrangement", "Carrier", "Symmetry", "Toolkit", "Travel"]
+__all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
+
+TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}
 
 
 @frozen
@@ -33,7 +37,7 @@ class Travel:
     Parameters
     ----------
     direction : angle in radians of the line along which travel is counted, from the x axis.
-    least, most : smallest and largest travel in mm; None for no largest.
+    least, most : smallest and largest travel in mm; -inf and None where there is none.
     """
 
     direction: float
@@ -54,36 +58,79 @@ class Carrier:
     ----------
     name : such as "left"; its first letter names its holes.
     pitch : distance in mm between neighbouring columns and rows.
-    columns : of holes.
-    rows : of holes, or None for as many as needed.
+    columns, rows : of holes, or None for as many as needed.
     peg_radius : of its pegs in mm.
     body_radius : of the thickest part of its pegs in mm, below the workpiece.
     offset : place in mm of the hole in column 0 and row 0 without any travel.
     blocked : holes and columns that no peg can stand in.
     travel : how it slides; None when it stands still.
-    noun : what it is, such as "jaw".
+    noun : what it is called, such as "jaw".
+    peg : what each of its pegs is called, such as "locator".
+    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
     """
 
     name: str
     pitch: tuple[float, float]
-    columns: int
+    columns: int | None
     rows: int | None
     peg_radius: float
     body_radius: float
     offset: tuple[float, float] = (0.0, 0.0)
     blocked: tuple[Holes, ...] = ()
     travel: Travel | None = None
-    noun: str = "jaw"
+    noun: str = "carrier"
+    peg: str = "peg"
+    on: str | None = None
 
     @property
     def title(self) -> str:
         """What it is called, such as "left jaw"."""
-        return f"{self.name} {self.noun}"
+        return self.name if self.noun in self.name else f"{self.name} {self.noun}"
+
+    @property
+    def column_count(self) -> int:
+        """The number of columns, of a carrier that has an end; in the frame of a search every one has."""
+        assert self.columns is not None
+        return self.columns
+
+    @property
+    def is_along_x(self) -> bool:
+        """Whether it slides along its rows."""
+        return self.travel is not None and self.travel.unit[0] != 0.0
+
+    @property
+    def pushers(self) -> str:
+        """What pushes the part as it moves: such jaws together, or a clamp."""
+        return f"{self.noun}s" if self.on is None else self.noun
+
+    @property
+    def measure(self) -> str:
+        """What is set on it where it moves: the opening of jaws, a clamp's stroke from its hole, or the place of its tip."""
+        return "opening" if self.on is None else "stroke" if self.has_a_hole else "tip"
+
+    @property
+    def has_a_hole(self) -> bool:
+        """Whether what stands on it is in a hole: not so of a clamp of which only the line is told."""
+        return self.on is None or self.travel is None or self.travel.most is not None
+
+    def place_name(self, column: int, row: int) -> str:
+        """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.
+
+        >>> from workhold import Plate
+        >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
+        >>> clamp.place_name(0, 2)
+        'clamp row 3'
+        """
+        if self.on is None:
+            return hole_name(self.name, column, row)
+        if self.has_a_hole:
+            return f"{self.noun} {hole_name(self.on, column, row)}"
+        return f"{self.noun} row {row + 1}" if self.is_along_x else f"{self.noun} column {column_letters(column)}"
 
     @property
     def letter(self) -> str:
         """What the names of its holes begin with."""
-        return self.name[0].upper()
+        return letter_of(self.name)
 
     def is_blocked(self, column: int, row: int) -> bool:
         """Whether no peg can stand in a hole."""
@@ -119,10 +166,22 @@ class Arrangement:
     ----------
     name : the paper's, such as "I".
     pegs : for each carrier, those that stand still first.
+    direction : in which the carrier that moves clamps, such as "-x", where a toolkit has several.
     """
 
     name: str
     pegs: tuple[int, ...]
+    direction: str | None = None
+
+    @property
+    def title(self) -> str:
+        """Its name, and the direction where it has one."""
+        return self.name if self.direction is None else f"{self.name} {self.direction}"
+
+    @property
+    def towards(self) -> str:
+        """Its direction in words, on a plan whose y runs up."""
+        return TOWARDS.get(self.direction or "", "")
 
     @property
     def carriers(self) -> tuple[int, ...]:
@@ -148,26 +207,80 @@ class Symmetry:
     carriers: tuple[int, ...]
 
 
+@frozen
+class Wording:
+    """What a toolkit's things are called where it holds nothing.
+
+    Parameters
+    ----------
+    two, four : the pegs of one carrier that no chord may part, and all pegs, such as "two pegs of one jaw".
+    inside : where the part lies, such as "in this vise".
+    within : what a fixture must stand in, and with what asked of it, such as "the jaws as asked: with the rows given".
+    rules : what four pegs that touch must still do, such as "keeps the smallest gap, closes and clamps".
+    backwards : when a set of four that closes without clamping would hold.
+    holes : the rule about holes, such as "holes that the jaws do not have".
+    """
+
+    two: str
+    four: str
+    inside: str
+    within: str
+    rules: str
+    backwards: str
+    holes: str
+
+
+@frozen
+class Change:
+    """A change of a toolkit that might help where it holds nothing: in words, and what its fields then are."""
+
+    words: str
+    fields: Mapping[str, Any]
+
+
+@frozen
+class Limit:
+    """A limit that a toolkit has and could do without.
+
+    Parameters
+    ----------
+    rule : what it asks, in a few words, such as "rows of holes".
+    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
+    lifted : the toolkit without it.
+    """
+
+    rule: str
+    bounds: Literal["bodies", "travel", "holes"]
+    lifted: Change
+
+
 class Toolkit:
-    """What every toolkit tells; ``model.vise.Vise`` is one.
+    """What every toolkit tells, a frozen attrs class; ``model.vise.Vise`` is one.
 
     Attributes
     ----------
     kind : the name of its kind in files.
+    noun : what it is called, such as "vise".
+    locked : what it is with a screw that locks what moves, in words that "locked" follows.
     arrangements : what may stand on its carriers.
     clamping : 1 when the moving carrier clamps as its travel gets less (a vise that closes), -1 when it clamps as its
         travel gets more.
     symmetries : motions besides the identity that make two fixtures the same.
     carriers : those that stand still first; at most one moves while a pose is sought.
     gap : the gap rule in mm, or None when there is none.
+    limits : its limits, in the order in which a person would ask them.
+    wording : what its things are called where it holds nothing.
     """
 
     __slots__ = ()
 
     kind: ClassVar[str]
+    noun: ClassVar[str]
+    locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
     clamping: ClassVar[int]
     symmetries: ClassVar[tuple[Symmetry, ...]]
+    wording: ClassVar[Wording]
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
@@ -175,9 +288,42 @@ class Toolkit:
         raise NotImplementedError
 
     @property
+    def ways(self) -> tuple[Toolkit, ...]:
+        """The same toolkit with one carrier that moves each time; their arrangements, one after the other, are its own."""
+        return (self,)
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """The names of the arrangements."""
+        return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
+
+    @property
     def gap(self) -> float | None:
         """The gap rule in mm."""
         raise NotImplementedError
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """What it could do without."""
+        raise NotImplementedError
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Changes to try where it holds nothing, besides lifting its limits; lengths in their words are in a unit."""
+        raise NotImplementedError
+
+    def changed(self, fields: Mapping[str, Any]) -> Toolkit:
+        """The toolkit with some of its fields changed.
+
+        Raises
+        ------
+        InputError
+            When there is no such toolkit.
+        """
+        return evolve(self, **fields)  # type: ignore[misc]
+
+    def without(self, limits: Iterable[Limit]) -> Toolkit:
+        """The toolkit without some of its limits."""
+        return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
 
     @property
     def moving(self) -> Carrier:
@@ -191,18 +337,29 @@ class Toolkit:
         assert travel is not None
         return travel.unit
 
-    def arrangement(self, name: str) -> Arrangement:
-        """The arrangement of a name."""
-        return next(a for a in self.arrangements if a.name == name)
+    def arrangement(self, name: str, direction: str | None = None) -> Arrangement:
+        """The arrangement of a name, and of a direction where several have the name."""
+        return next(a for a in self.arrangements if a.name == name and direction in (None, a.direction))
 
     def arrangements_counted(self, arrangement: NDArray[Any]) -> dict[str, int]:
         """How many fixtures there are of each arrangement, from the indices (N,) of theirs."""
-        counts = np.bincount(arrangement, minlength=len(self.arrangements)).tolist()
-        return {one.name: count for one, count in zip(self.arrangements, counts, strict=True)}
+        counts = dict.fromkeys(self.types, 0)
+        for one, count in zip(self.arrangements, np.bincount(arrangement, minlength=1).tolist(), strict=False):
+            counts[one.name] += count
+        return counts
 
     def peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
         """The carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
         return np.asarray(np.array([one.carriers for one in self.arrangements], np.int8)[arrangement])
+
+    def carrier(self, name: str) -> Carrier:
+        """The carrier of a name."""
+        return next(carrier for carrier in self.carriers if carrier.name == name)
+
+    def carrier_numbers(self, names: Iterable[str]) -> list[int]:
+        """The numbers of the carriers of some names."""
+        known = [carrier.name for carrier in self.carriers]
+        return [known.index(name) for name in names]
 
     def carrier_names(self, arrangement: Arrangement) -> tuple[str, ...]:
         """The name of each peg's carrier, in the order in which pegs are listed."""

@@ -1,12 +1,18 @@
-"""Units of length: the program reckons in millimetres; people give and read other units as well."""
+"""Units of length and the force that goes with each: the program reckons in mm and N; people use others as well."""
 
 from __future__ import annotations
+
+from math import ceil
 
 from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["INCH", "MILLIMETRE", "Unit", "unit_named"]
+__all__ = ["INCH", "MILLIMETRE", "POUND", "Unit", "unit_named"]
+
+# N in a pound-force: 0.453 592 37 kg under 9.806 65 m/s2, both exact by definition (1959 and 1901).
+POUND = 0.45359237 * 9.80665
+ROUNDING = 1e-9
 
 
 @frozen
@@ -19,12 +25,15 @@ class Unit:
     abbreviation : what stands behind a number.
     millimetres : millimetres in one unit.
     decimals : with which a length that has to be set is written: a micrometre, or a ten-thousandth of an inch (2.5 µm).
+    force, newtons : abbreviation of the unit of force on paper of this unit of length, and N in one of it.
     """
 
     name: str
     abbreviation: str
     millimetres: float
     decimals: int
+    force: str = "N"
+    newtons: float = 1.0
 
     def length(self, number: float) -> float:
         """The length in mm that a number of this unit means.
@@ -70,10 +79,38 @@ class Unit:
         text = self.number(length, decimals)
         return text.rstrip("0").rstrip(".") if "." in text else text
 
+    def force_words(self, force: float) -> str:
+        """A force in N in whole units of force, or with three figures when it is small, and the unit behind it.
+
+        >>> MILLIMETRE.force_words(1234.5), MILLIMETRE.force_words(0.01234), INCH.force_words(1000.0)
+        ('1234 N', '0.0123 N', '225 lbf')
+        """
+        value = force / self.newtons
+        return f"{value:.0f} {self.force}" if value >= 100 or value == 0 else f"{value:.3g} {self.force}"
+
+    def moment_words(self, moment: float) -> str:
+        """A moment in N mm in N m, or in lbf in.
+
+        >>> MILLIMETRE.moment_words(1234.5), INCH.moment_words(1000.0)
+        ('1.23 N m', '8.85 lbf in')
+        """
+        inches = self.newtons != 1
+        value = moment / (self.newtons * self.millimetres if inches else 1000.0)
+        return f"{value:.3g} {'lbf in' if inches else 'N m'}".replace("-", "−")
+
+    def force_above(self, force: float) -> str:
+        """A force in N as a whole number of the unit of force, rounded up so that nothing is promised that does not hold.
+
+        >>> MILLIMETRE.force_above(1234.2), MILLIMETRE.force_above(0.0), INCH.force_above(1000.0)
+        ('1235', '0', '225')
+        """
+        value = force / self.newtons
+        return f"{ceil(value - ROUNDING * abs(value)):d}"
+
 
 MILLIMETRE = Unit("mm", "mm", 1.0, 3)
 # Exact by definition (international inch, 1959).
-INCH = Unit("inch", "in", 25.4, 4)
+INCH = Unit("inch", "in", 25.4, 4, "lbf", POUND)
 UNITS = {
     "mm": MILLIMETRE,
     "cm": Unit("cm", "cm", 10.0, 4),

@@ -2,43 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from math import inf, isfinite, isnan, nan
-from typing import Any, ClassVar
+from collections.abc import Iterable, Iterator
+from math import isfinite, isnan
+from typing import ClassVar
 
 from attrs import evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.limits import MOST_BLOCKED, MOST_HOLES, refuse_long
+from workhold.limits import MOST_BLOCKED, refuse_long
 from workhold.model.holes import Holes, holes_named
+from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
 from workhold.model.real import real
-from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
+from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
+from workhold.model.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
 
 
-def pair(value: float | Iterable[float]) -> tuple[float, float]:
-    """One pitch for both directions, or one for x and one for y."""
-    numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
-    if len(numbers) != 2:
-        raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
-    return real(numbers[0]), real(numbers[1])
-
-
-def whole(value: Any) -> Any:
-    """A whole number as an int; None and anything else as it is, to be looked at later."""
-    return int(value) if isfinite(real(value)) and value == int(value) else value
-
-
-def optional_length(value: float | None) -> float:
-    """A length, or NaN (which the vise resolves) for None."""
-    return nan if value is None else inf if isnan(real(value)) else real(value)
+# The jaws, the one that stands still first, and what each is called.
+JAWS, NOUN = ("left", "right"), "jaw"
+WORDING = Wording(
+    two="two pegs of one jaw",
+    four="four pegs of the two jaws",
+    inside="in this vise",
+    within="the jaws as asked: with the rows, opening, angles, shoulders and blocked holes given",
+    rules="keeps the smallest gap, closes and clamps",
+    backwards="the jaws are pressed apart, not when they close",
+    holes="holes that the jaws do not have, or too near for the bodies",
+)
 
 
 def all_holes(holes: Iterable[Holes | str]) -> tuple[Holes, ...]:
     """Holes as a tuple, where they may be given by name."""
-    return tuple(holes_named(one) if isinstance(one, str) else one for one in holes)
+    return tuple(holes_named(one, JAWS, NOUN) if isinstance(one, str) else one for one in holes)
 
 
 @frozen
@@ -53,7 +50,7 @@ class Vise(Toolkit):
     rows : rows of holes on each jaw, or None for as many as needed.
     min_gap : smallest distance in x from the centre of a left peg to the centre of a right one, in mm; None means the
         x pitch.
-    max_opening : largest jaw separation in mm, or None for no limit.
+    max_opening : largest opening in mm, or None for no limit.
     row_offset : height in mm of the right jaw's row 0 above the left jaw's.
     body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
         peg radius. Bodies may neither overlap nor stand over a keep-out zone.
@@ -72,9 +69,12 @@ class Vise(Toolkit):
     """
 
     kind: ClassVar[str] = "vise"
+    noun: ClassVar[str] = "vise"
+    locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
     clamping: ClassVar[int] = 1
     symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
+    wording: ClassVar[Wording] = WORDING
 
     pitch: tuple[float, float] = field(converter=pair)
     columns: int = field(converter=whole)
@@ -91,19 +91,7 @@ class Vise(Toolkit):
             object.__setattr__(self, "min_gap", self.pitch[0])
         if isnan(self.body_radius):
             object.__setattr__(self, "body_radius", self.peg_radius)
-        for name, value in (("pitch", self.pitch[0]), ("pitch", self.pitch[1])):
-            if not (isfinite(value) and value > 0):
-                raise InputError(f"{name} {value} is not a positive length: give the distance between holes in mm.")
-        for name, count in (("columns", self.columns), ("rows", self.rows)):
-            if count is not None and (not isinstance(count, int) or count < 1):
-                raise InputError(f"{name} {count} is not a positive whole number: a jaw needs at least one.")
-        if not (isfinite(self.peg_radius) and self.peg_radius >= 0):
-            raise InputError(f"peg radius {self.peg_radius} is not a length: give 0 or more, in mm.")
-        if 2 * self.peg_radius > min(self.pitch):
-            raise InputError(
-                f"pegs of radius {self.peg_radius:g} overlap in neighbouring holes {min(self.pitch):g} apart: "
-                "use a smaller peg or a larger pitch."
-            )
+        refuse_lattice(self.pitch, self.columns, self.rows, self.peg_radius, NOUN, "peg")
         if not (isfinite(self.min_gap) and self.min_gap >= 0):
             raise InputError(f"min gap {self.min_gap} is not a length: give 0 or more, in mm.")
         if self.max_opening is not None:
@@ -111,7 +99,7 @@ class Vise(Toolkit):
                 raise InputError(f"max opening {self.max_opening} is not a positive length: give it in mm.")
             if self.max_opening < self.min_gap:
                 raise InputError(
-                    f"max opening {self.max_opening:g} is below the min gap {self.min_gap:g}: no jaw separation is left."
+                    f"max opening {self.max_opening:g} is below the min gap {self.min_gap:g}: no opening is left."
                 )
         if not isfinite(self.row_offset):
             raise InputError(f"row offset {self.row_offset} is not a length: give it in mm.")
@@ -127,19 +115,20 @@ class Vise(Toolkit):
     def carriers(self) -> tuple[Carrier, Carrier]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         left = Carrier(
-            "left",
+            JAWS[0],
             self.pitch,
             self.columns,
             self.rows,
             self.peg_radius,
             self.body_radius,
-            blocked=tuple(holes for holes in self.blocked if holes.jaw == "left"),
+            blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[0]),
+            noun=NOUN,
         )
         right = evolve(
             left,
-            name="right",
+            name=JAWS[1],
             offset=((self.columns - 1) * self.pitch[0], self.row_offset),
-            blocked=tuple(holes for holes in self.blocked if holes.jaw == "right"),
+            blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[1]),
             travel=Travel(0.0, self.min_gap, self.max_opening),
         )
         return left, right
@@ -148,6 +137,37 @@ class Vise(Toolkit):
     def gap(self) -> float:
         """The smallest gap in mm."""
         return self.min_gap
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """Shoulders, largest opening, rows and blocked holes, where there are any."""
+        shoulder = Change("with pegs without a shoulder", {"body_radius": self.peg_radius})
+        opening = Change("with a larger opening", {"max_opening": None})
+        rows = Change("with as many rows as needed", {"rows": None})
+        blocked = Change("with no hole blocked", {"blocked": ()})
+        known = (
+            (self.body_radius > self.peg_radius, Limit("bodies that would overlap", "bodies", shoulder)),
+            (self.max_opening is not None, Limit("largest opening", "travel", opening)),
+            (self.rows is not None, Limit("rows of holes", "holes", rows)),
+            (bool(self.blocked), Limit("blocked holes", "holes", blocked)),
+        )
+        return tuple(limit for there, limit in known if there)
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """A smaller gap, a column more, rows offset and half the pitch."""
+
+        def words(length: float) -> str:
+            return f"{unit.figure(length)} {unit.abbreviation}"
+
+        narrow, offset = 2 * self.peg_radius, self.pitch[1] / 2
+        if self.min_gap > narrow > 0:
+            yield Change(f"with a smallest gap of {words(narrow)}", {"min_gap": narrow})
+        yield Change("with one more column on each jaw", {"columns": self.columns + 1})
+        if self.row_offset == 0.0:
+            yield Change(f"with the right jaw's rows offset by {words(offset)}", {"row_offset": offset})
+        if min(self.pitch) >= 4 * self.peg_radius:
+            half = (self.pitch[0] / 2, self.pitch[1] / 2)
+            yield Change("with half the pitch", {"pitch": half, "min_gap": min(self.min_gap, half[0]), "blocked": ()})
 
 
 @frozen
@@ -159,6 +179,7 @@ class OpeningVise(Vise):
 
     kind: ClassVar[str] = "opening-vise"
     clamping: ClassVar[int] = -1
+    wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")
 
 
 def refuse_boundless(vise: Vise) -> None:
@@ -173,12 +194,7 @@ def refuse_boundless(vise: Vise) -> None:
     lengths |= {"min gap": vise.min_gap, "max opening": vise.max_opening or 0.0, "row offset": vise.row_offset}
     for name, value in lengths.items():
         refuse_long(name, value)
-    holes = vise.columns * (vise.rows or 1)
-    if holes > MOST_HOLES:
-        raise InputError(
-            f"a jaw of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer columns or rows, as "
-            "many as the part can reach."
-        )
+    refuse_many_holes(vise.columns, vise.rows, NOUN)
     if len(vise.blocked) > MOST_BLOCKED:
         raise InputError(
             f"{len(vise.blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block whole "
@@ -199,6 +215,6 @@ def refuse_blocked(vise: Vise) -> None:
             raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.columns} columns.")
         if vise.rows is not None and holes.row is not None and holes.row >= vise.rows:
             raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.rows} rows.")
-    for jaw in ("left", "right"):
-        if len({holes.column for holes in vise.blocked if holes.jaw == jaw and holes.row is None}) == vise.columns:
+    for jaw in JAWS:
+        if len({holes.column for holes in vise.blocked if holes.carrier == jaw and holes.row is None}) == vise.columns:
             raise InputError(f"every column of the {jaw} jaw is blocked: leave at least one.")

@@ -10,7 +10,7 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.conventions import TOUCHING
+from workhold.conventions import READING
 from workhold.errors import InputError
 from workhold.geometry.face import Face, faces_of_loop
 from workhold.geometry.intersect import bounding_box
@@ -26,6 +26,7 @@ from workhold.geometry.loop import (
     reversed_vertices,
     signed_area,
 )
+from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Pose
 
@@ -88,6 +89,10 @@ class Workpiece:
             For open or degenerate loops, numbers that are not finite, segments of zero length, loops that cross or
             touch, holes outside the outer loop or inside one another.
         """
+        try:
+            loops = list(loops)
+        except TypeError as error:
+            raise InputError(f"{name} has no list of loops: give at least an outer loop in a list.") from error
         if not loops:
             raise InputError(f"{name} has no loop: give at least an outer loop.")
 
@@ -96,14 +101,17 @@ class Workpiece:
             label = f" ({labels[loop][k]})" if labels else ""
             return f"{name}: loop {loop}, segment {k}{label}"
 
-        straightened = 0
+        straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
         for index, loop in enumerate(loops):
             place = partial(segment_place, index)
             vertices = checked_vertices(loop, f"{name}: loop {index}", place)
             straightened += int((np.asarray(loop)[:, 2] != vertices[:, 2]).sum())
-            shape = LoopShape.of(loop_segments(vertices))
+            segments = loop_segments(vertices)
+            vertices, changed = on_one_circle(vertices, segments)
+            rounded += changed
+            shape = LoopShape.of(loop_segments(vertices) if changed else segments)
             refuse_self_crossing(shape, place)
             refuse_no_area(shape, f"{name}: loop {index}")
             if (signed_area(shape.segments) > 0) != (index == 0):
@@ -115,7 +123,7 @@ class Workpiece:
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
         refuse_misplaced_holes(name, drawn)
-        return cls(name, tuple(used), straightened_remark(straightened))
+        return cls(name, tuple(used), (*straightened_remark(straightened), *rounded_remark(rounded)))
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
@@ -159,7 +167,17 @@ class Workpiece:
 def straightened_remark(count: int) -> tuple[str, ...]:
     """What to say of arcs that were taken for lines."""
     arcs = "1 arc that is nowhere" if count == 1 else f"{count} arcs that are nowhere"
-    return (f"{arcs} farther than {TOUCHING:g} mm from a line taken for {'one' if count == 1 else 'lines'}.",)[:count]
+    taken = "one" if count == 1 else "lines"
+    return (f"{arcs} farther than {READING:g} mm, or a millionth of its length, from a line taken for {taken}.",)[
+        :count
+    ]
+
+
+def rounded_remark(count: int) -> tuple[str, ...]:
+    """What to say of arcs that were moved onto one circle with their neighbours."""
+    return (
+        f"{count} arcs that are nowhere farther than {READING:g} mm from one circle with their neighbours put on it.",
+    )[:count]
 
 
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:

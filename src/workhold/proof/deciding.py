@@ -13,7 +13,9 @@ leaves with the first that decides it:
 from __future__ import annotations
 
 from itertools import combinations
+from math import inf, isfinite
 from threading import Event, Lock
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,11 +24,13 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import PARALLEL
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.base.given import Lattice, Setting
 from workhold.kernels.contact import record
+from workhold.kernels.contact.equations import WORK_LENGTH
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
-from workhold.model.proof import Undecided
+from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import Outcome
@@ -39,9 +43,9 @@ IntArray = NDArray[np.int64]
 # The precision of balls is one for the whole process, so one thread at a time works with them.
 BALLS = Lock()
 # Records looked at between two looks at the flag that stops the work.
-OPEN_BLOCK = 64
-GIVEN_UP = "the pair of chords of these faces and steps could not be bounded there"
-UNBOUNDED = "where its contacts may lie could not be bounded"
+OPEN_BLOCK = 16
+# Seconds after somebody asked to stop in which records are still decided, by what takes little time.
+GRACE = 0.5
 
 
 @define(eq=False)
@@ -52,7 +56,7 @@ class Course:
     ----------
     total : records to decide.
     progress : told the fraction done and how many records still may be fixtures.
-    cancel : when set, what takes long is left out.
+    cancel : when set, what takes long is left out, and all that is not decided soon after.
     """
 
     total: int
@@ -61,11 +65,24 @@ class Course:
     done: int = field(default=0, init=False)
     kept: int = field(default=0, init=False)
     lock: Lock = field(factory=Lock, init=False)
+    deadline: float = field(default=inf, init=False)
 
     @property
     def is_stopped(self) -> bool:
         """Whether somebody asked to stop."""
-        return self.cancel is not None and self.cancel.is_set()
+        stopped = self.deadline < inf or (self.cancel is not None and self.cancel.is_set())
+        if stopped:
+            self.deadline = min(self.deadline, perf_counter() + GRACE)
+        return stopped
+
+    @property
+    def is_late(self) -> bool:
+        """Whether it is some time since somebody asked to stop."""
+        return self.is_stopped and perf_counter() >= self.deadline
+
+    def give_up(self) -> None:
+        """Stop at once: nobody waits for the outcome."""
+        self.deadline = 0.0
 
     def advance(self, done: int, kept: int) -> None:
         """Records are decided, and some of them kept; may be called from any thread."""
@@ -125,7 +142,7 @@ def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
 
 def box_reach(records: Array, length: float) -> Array:
     """How far the exact unknowns (L psi, tail x, tail y, separation) may be from those of records, (N, 4) in mm."""
-    turn, radius = length * records[:, record.REACH] + LEAST_REACH, records[:, record.RADIUS] + LEAST_REACH
+    turn, radius = length * records[:, record.REACH] + LEAST_REACH, records[:, record.LARGEST_RADIUS] + LEAST_REACH
     return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
 
 
@@ -142,15 +159,17 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
     (those proven to be fixtures, with their solutions to the last digits; what became of all)
     """
     course = course or Course(len(records))
+    if course.is_late:
+        return records[:0], Account(0, 0, 0, 0, (), len(records))
     given_up = records[:, record.STANDING] < 0.0
     lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
     chosen = records[~given_up] if lost else records
     proven, rest = sifted(chosen, problem, problem.setting)
     rest = rest[~has_three_parallels(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
-    settled, reasons, left = escalated(rest, problem, course)
-    if len(settled):
-        proven = np.concatenate([proven, settled])
+    found, reasons, left = escalated(rest, problem, course)
+    if len(found):
+        proven = np.concatenate([proven, found])
     account = Account(
         len(records) - left, len(proven), len(rest) - left + len(lost), len(lost), (*lost, *reasons), left
     )
@@ -161,7 +180,8 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
     """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
     solutions = np.empty((len(records), 4))
     discs = discs_around(problem.outline, max(setting.standing_radius, setting.moving_radius))
-    verdicts = certified(records, problem.rows, problem.outline, discs, setting, solutions)
+    verdicts, work = np.empty(len(records), np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))
+    certified(records, problem.rows, problem.outline, discs, setting, solutions, verdicts, *work)
     is_proven = verdicts == PROVEN
     proven = records[is_proven]
     proven[:, record.PSI : record.REACH] = solutions[is_proven]
@@ -175,7 +195,7 @@ def has_three_parallels(records: Array, problem: Problem) -> NDArray[np.bool_]:
     anywhere along them, which takes long to decide and means nothing.
     """
     rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
-    x, y, is_line = rows[..., 3], rows[..., 4], rows[..., 0] == 0.0
+    x, y, is_line = rows[..., AXIS_X], rows[..., AXIS_Y], rows[..., IS_ARC] == 0.0
     out = np.zeros(len(records), np.bool_)
     for triple in combinations(range(4), 3):
         parallel = is_line[:, triple].all(axis=1)
@@ -205,19 +225,19 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
         found.append(proven)
         waiting.append(rest)
         course.advance(max(len(block) - len(rest), 0), len(proven))
-    settled, reasons, unsettled = records_in_balls(merged(np.concatenate(waiting), problem), problem, course)
-    return np.concatenate([*found, settled]), reasons, left + unsettled
+    in_balls, reasons, left_out = records_in_balls(merged(np.concatenate(waiting), problem), problem, course)
+    return np.concatenate([*found, in_balls]), reasons, left + left_out
 
 
 def interval_newton_in_doubles(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
-    """Open records narrowed: the fixtures found, and the boxes that stay open."""
+    """Open records contracted: the fixtures found, and the boxes that stay open."""
     bounded = np.isfinite(records).all(axis=1)
     known = records[bounded]
     left, _, right = np.linalg.svd(jacobians(known, problem.rows, setting))
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
     verdicts, roots = interval_newton(known, problem.rows, setting, frames)
-    proven, unsure = sifted(roots, problem, setting)
-    return proven, np.concatenate([records[~bounded], known[verdicts == OPEN], unsure])
+    proven, still_open = sifted(roots, problem, setting)
+    return proven, np.concatenate([records[~bounded], known[verdicts == OPEN], still_open])
 
 
 def merged(records: Array, problem: Problem) -> Array:
@@ -248,12 +268,12 @@ def around(row: Array, low: Array, high: Array, length: float) -> Array:
     center, half = (low + high) / 2.0, (high - low) / 2.0
     out = row.copy()
     out[record.PSI : record.REACH] = center[0] / length, *center[1:]
-    out[record.REACH], out[record.RADIUS] = half[0] / length, max(half[1], half[2], half[3] / 2.0)
+    out[record.REACH], out[record.LARGEST_RADIUS] = half[0] / length, max(half[1], half[2], half[3] / 2.0)
     return out
 
 
 def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
-    """Records settled one by one in ball arithmetic: the fixtures among them, what stays undecided, and how many were
+    """Records decided one by one in ball arithmetic: the fixtures among them, what stays undecided, and how many were
     left when the work was stopped."""
     found: list[Array] = []
     reasons: list[Undecided] = []
@@ -274,12 +294,12 @@ def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[
 
 
 def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | None:
-    """One record settled in ball arithmetic; None when the work was stopped before."""
+    """One record decided in ball arithmetic; None when the work was stopped before."""
     from workhold.proof.interval_newton import Box, Outcome, solutions_in
 
     length = problem.wrench_length
-    turn, right, up, slide = (float(v) for v in box_reach(row[None], length)[0])
-    if not np.isfinite([turn, right, up, slide]).all():
+    turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])
+    if not np.isfinite([turn, right, up, along]).all():
         return Outcome((), UNBOUNDED)
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
     box = Box(
@@ -287,7 +307,7 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | N
         offsets=peg_places(row, problem.frame.lattice),
         standing=int(row[record.STANDING]),
         middle=(psi, x, y, separation),
-        reach=(turn / length, right, up, slide),
+        reach=(turn / length, right, up, along),
     )
     with BALLS:
         return solutions_in(box, problem.limits, lambda: course.is_stopped)
@@ -298,6 +318,9 @@ def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
     feature, column, line = peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)
-    kind = problem.vise.arrangements[problem.vise.arrangement_numbers(standing)[0]].name
-    theta = float(np.degrees(-row[record.PSI]) % 360.0)
-    return Undecided(kind, tuple(faces), tuple(column[0].tolist()), tuple(line[0].tolist()), theta, reason)
+    kind = problem.toolkit.arrangements[problem.toolkit.arrangement_numbers(standing)[0]].title
+    theta = float((np.degrees(-row[record.PSI]) + 90.0 * problem.frame.quarters) % 360.0)
+    reach = float(np.degrees(row[record.REACH]))
+    across, up = problem.frame.step_back(column[0], line[0])
+    holes = tuple(across.tolist()), tuple(up.tolist())
+    return Undecided(kind, tuple(faces), *holes, theta, reason, reach if isfinite(reach) else None)

@@ -1,4 +1,4 @@
-"""What double precision leaves open, settled in ball arithmetic (python-flint).
+"""What double precision leaves open, decided in ball arithmetic (python-flint).
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if there is one. At
 a nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
@@ -22,7 +22,9 @@ from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, SIGN, X, Y
 from workhold.kernels.base.given import Limits
+from workhold.model.proof import AT_AN_EDGE, NEARLY_DOUBLE
 
 __all__ = ["Box", "Outcome", "contact_value", "solutions_in"]
 
@@ -76,10 +78,10 @@ class Places:
 
 def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
     """Contact equation of a peg's centre: its distance from a line, (distance² - R²) / 2R from an arc's centre, in mm."""
-    x, y = center[0] - row[1], center[1] - row[2]
-    if row[0] == 0.0:
-        return (row[4] * x - row[3] * y) / (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
-    return (x * x + y * y - arb(row[6]) ** 2) / (2 * arb(row[6]))
+    x, y = center[0] - row[X], center[1] - row[Y]
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y] * x - row[AXIS_X] * y) / (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
+    return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
 
 
 def places(box: Box, unknowns: Sequence[arb]) -> Places:
@@ -92,13 +94,13 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
         reach = (dx + moves * separation, arb(dy))
         turned = (cosine * reach[0] - sine * reach[1], sine * reach[0] + cosine * reach[1])
         center = (x + turned[0], y + turned[1])
-        if row[0] == 0.0:
-            size = (arb(row[3]) ** 2 + arb(row[4]) ** 2).sqrt()
-            gradient = (row[4] / size, -row[3] / size)
+        if row[IS_ARC] == 0.0:
+            size = (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
+            gradient = (row[AXIS_Y] / size, -row[AXIS_X] / size)
             normal = gradient
         else:
-            gradient = ((center[0] - row[1]) / row[6], (center[1] - row[2]) / row[6])
-            normal = (row[7] * gradient[0], row[7] * gradient[1])
+            gradient = ((center[0] - row[X]) / row[RADIUS], (center[1] - row[Y]) / row[RADIUS])
+            normal = (row[SIGN] * gradient[0], row[SIGN] * gradient[1])
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
         slope.append((gradient[0] * cosine + gradient[1] * sine) * moves)
         centers.append(center)
@@ -140,14 +142,14 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
 
 def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
     """How far in mm a contact is from breaking the rule of ends, at both ends of its feature; in balls, as no kernel is."""
-    dx, dy = center[0] - row[1], center[1] - row[2]
-    along, across = dx * row[3] + dy * row[4], dy * row[3] - dx * row[4]
-    if row[0] == 0.0:
-        return [row[5] - along - margin + row[9], row[5] + along - margin + row[8]]
-    if row[5] >= pi:
-        return []
-    angle = arb.atan2(across, along)
-    return [(row[5] - angle) * row[6] - margin + row[9], (row[5] + angle) * row[6] - margin + row[8]]
+    dx, dy = center[0] - row[X], center[1] - row[Y]
+    along, across = dx * row[AXIS_X] + dy * row[AXIS_Y], dy * row[AXIS_X] - dx * row[AXIS_Y]
+    place, scale, half = along, 1.0, row[HALF_EXTENT]
+    if row[IS_ARC] != 0.0:
+        if half >= pi:
+            return []
+        place, scale = arb.atan2(across, along), row[RADIUS]
+    return [(half - place) * scale - margin + row[HIGH_SLACK], (half + place) * scale - margin + row[LOW_SLACK]]
 
 
 def wrench_minors(here: Places, length: float) -> list[arb]:
@@ -158,13 +160,13 @@ def wrench_minors(here: Places, length: float) -> list[arb]:
 
     def cross(i: int, j: int) -> arb:
         one, two = here.rows[i], here.rows[j]
-        if one[0] == 0.0 or two[0] == 0.0:
+        if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
             return n[i][0] * n[j][1] - n[i][1] * n[j][0]
         # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
         # where both pegs are on one carrier: parallel normals stay so wherever the part slides.
-        x = here.arms[j][0] - here.arms[i][0] - (arb(two[1]) - one[1])
-        y = here.arms[j][1] - here.arms[i][1] - (arb(two[2]) - one[2])
-        return (n[i][0] * y - n[i][1] * x) * (two[7] / arb(two[6]))
+        x = here.arms[j][0] - here.arms[i][0] - (arb(two[X]) - one[X])
+        y = here.arms[j][1] - here.arms[i][1] - (arb(two[Y]) - one[Y])
+        return (n[i][0] * y - n[i][1] * x) * (two[SIGN] / arb(two[RADIUS]))
 
     out = []
     for k in range(4):
@@ -268,9 +270,7 @@ def solutions_in(box: Box, limits: Limits, is_stopped: Callable[[], bool] = neve
             if is_stopped():
                 return None
             if looked_at > MOST_BOXES:
-                return Outcome(
-                    (), "the contacts are a double solution, or so nearly that its clamping force is not decided"
-                )
+                return Outcome((), NEARLY_DOUBLE)
             here = frame.places(place)
             if is_empty(box, here, limits):
                 continue
@@ -326,7 +326,7 @@ def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Outcome:
             if verdict != 0:
                 break
         if verdict == 0:
-            reason = "a rule is met exactly at its edge"
+            reason = AT_AN_EDGE
         if verdict > 0:
             psi, x, y, separation = (float(u.mid()) for u in unknowns)
             fixtures.append((psi, x, y, separation))

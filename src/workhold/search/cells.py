@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import nullcontext
 from math import pi, tau
 from threading import Event
 
@@ -14,9 +15,8 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
-from workhold.kernels.curves.columns import FROM, SHIFT, TO
 
-__all__ = ["Block", "cell_edges", "members_of_cell", "run_blocks", "thread_count"]
+__all__ = ["Block", "cell_edges", "member_counts", "members_of_cell", "run_blocks", "thread_count"]
 
 Records = NDArray[np.float64]
 
@@ -24,6 +24,8 @@ Records = NDArray[np.float64]
 FIRST_ORIENTATION = -0.7320508075688772
 # A block is told the closure margin known so many blocks before it; as many may run at the same time.
 LAG = 8
+# Curves are of a cell that they end so near to.
+SLACK = 1e-9
 
 
 @define(frozen=True)
@@ -49,11 +51,18 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
-    slack, reals = 1e-9, table.curves.reals
-    base = reals[:, FROM] - reals[:, SHIFT]
-    span = reals[:, TO] - reals[:, FROM]
-    behind = (low - slack - base) % tau
-    return np.flatnonzero((behind <= span) | (behind + (high - low) + 2 * slack >= tau))
+    first, last = table.spans
+    behind = (low - SLACK) % tau - first
+    behind[behind < 0.0] += tau
+    return np.flatnonzero((behind <= last - first) | (behind + (high - low) + 2 * SLACK >= tau))
+
+
+def member_counts(table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.int64]:
+    """How many curves exist somewhere in each of some cells (K,), but for a hair at their ends."""
+    first, last = (np.sort(ends) for ends in table.spans)
+    turns = [-tau, 0.0, tau]
+    begun = sum(np.searchsorted(first, high + turn, "right") for turn in turns)
+    return np.asarray(begun - sum(np.searchsorted(last, low + turn, "left") for turn in turns))
 
 
 def thread_count(threads: int | None) -> int:
@@ -70,6 +79,8 @@ def run_blocks(
     cancel: Event | None,
     receive: Callable[[Records], float] | None = None,
     look: Callable[[Records], None] | None = None,
+    stop: Callable[[], None] | None = None,
+    pool: Executor | None = None,
 ) -> tuple[list[Records], list[Block]]:
     """Do all blocks on some threads.
 
@@ -79,10 +90,12 @@ def run_blocks(
         returns the closure margin that further fixtures must reach, which is told to the block ``LAG`` places later: so what
         a block leaves out does not depend on how fast the others are.
     look : called from this thread with the records of each block as it finishes, in any order.
+    stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they have found.
+    pool : of so many threads, where there is one already.
 
     Returns
     -------
-    (records of the blocks done, in the order of the blocks; those blocks)
+    (records of the blocks, also of those that were stopped, in the order of the blocks; the blocks done)
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
@@ -90,13 +103,15 @@ def run_blocks(
     margins = [0.0]
     done_cost, found = 0.0, 0
     done: list[Block] = []
-    for index, records in finished_blocks(blocks, threads, cancel, margins if receive is not None else None):
+    known = margins if receive is not None else None
+    for index, records, whole in finished_blocks(blocks, threads, cancel, known, stop, pool):
         results[index] = records
         while receive is not None and len(margins) - 1 in results:
             margins.append(receive(results.pop(len(margins) - 1)))
         done_cost += blocks[index].cost
         found += len(records)
-        done.append(blocks[index])
+        if whole:
+            done.append(blocks[index])
         if progress is not None:
             progress(min(done_cost / total, 1.0), found)
         if look is not None:
@@ -111,27 +126,44 @@ def run_blocks(
 
 
 def finished_blocks(
-    blocks: Sequence[Block], threads: int, cancel: Event | None, margins: list[float] | None
-) -> Iterator[tuple[int, Records]]:
-    """Blocks as they finish; no new one is begun once ``cancel`` is set.
+    blocks: Sequence[Block],
+    threads: int,
+    cancel: Event | None,
+    margins: list[float] | None,
+    stop: Callable[[], None] | None,
+    pool: Executor | None,
+) -> Iterator[tuple[int, Records, bool]]:
+    """Blocks as they finish: number, records, and whether they came to their end; no new one is begun once ``cancel`` is
+    set.
 
     Parameters
     ----------
     margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
     """
-    first, running = 0, dict[Future[Records], int]()
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        while True:
-            # Short naps between looks at the flag keep Ctrl-C alive; the queue is kept just full enough.
-            while first < len(blocks) and len(running) < 2 * threads and not (cancel is not None and cancel.is_set()):
-                known = max(first - LAG, 0)
-                if margins is not None and known >= len(margins):
-                    break
-                margin = 0.0 if margins is None else margins[known]
-                running[pool.submit(blocks[first].work, margin)] = first
-                first += 1
-            if not running:
-                return
-            done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield running.pop(future), future.result()
+    first, running, whole = 0, dict[Future[Records], int](), True
+    with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:
+        try:
+            while True:
+                if whole and cancel is not None and cancel.is_set():
+                    whole = False
+                    if stop is not None:
+                        stop()
+                # Short naps between looks at the flag keep Ctrl-C alive; the queue is kept just full enough.
+                while whole and first < len(blocks) and len(running) < 2 * threads:
+                    known = max(first - LAG, 0)
+                    if margins is not None and known >= len(margins):
+                        break
+                    margin = 0.0 if margins is None else margins[known]
+                    running[workers.submit(blocks[first].work, margin)] = first
+                    first += 1
+                if not running:
+                    return
+                done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                for future in done:
+                    yield running.pop(future), future.result(), whole
+        finally:
+            # The pool waits for its threads, also when this is left by a signal.
+            for future in running:
+                future.cancel()
+            if running and stop is not None:
+                stop()

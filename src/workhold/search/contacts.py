@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from threading import Event
+
 from workhold.contact.problem import Problem
 from workhold.kernels.crossing.two_and_two import CONTACTS
 from workhold.model.query import Query
@@ -31,8 +33,9 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
     return contacts_of(Problem.of(Query(workpiece, toolkit)), threads)
 
 
-def contacts_of(problem: Problem, threads: int | None) -> int:
-    """Simultaneous contacts of a problem, see :func:`count_contacts`."""
-    search = ToolkitSearch.of(problem, counting=True)
-    run_blocks(search.blocks(problem.query.arrangements), thread_count(threads), None, None)
+def contacts_of(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
+    """Simultaneous contacts of a problem, see :func:`count_contacts`; fewer once ``cancel`` is set."""
+    workers = thread_count(threads)
+    search = ToolkitSearch.of(problem, counting=True, threads=workers, cancel=cancel)
+    run_blocks(search.blocks(problem.query.arrangements), workers, None, cancel, stop=search.stop)
     return int(search.totals[CONTACTS])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from threading import Event
+from typing import Protocol
 
 import numpy as np
 from attrs import evolve
@@ -11,25 +14,45 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
+from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, CROSSED, PAIRS
 from workhold.listing.best import BestFixtures
-from workhold.listing.listed import Work, best_result, listed_result
+from workhold.listing.gathering import Gathering
+from workhold.listing.listed import MEASURED, Work, best_result, gathered_result, listed_result, stage
+from workhold.listing.ways import joined_ways
 from workhold.model.load import Load
-from workhold.model.query import Query, counting_number
+from workhold.model.notes import no_fixture_notes, no_place_note
+from workhold.model.query import Query, asked_ranking
+from workhold.model.real import counting_number
 from workhold.model.restrictions import Restrictions
-from workhold.model.result import Result
+from workhold.model.result import FixtureTable, Result
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.search.cells import run_blocks, thread_count
+from workhold.search.cells import Block, run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["answer", "design"]
+__all__ = ["Receiver", "answer", "design"]
 
 # The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
 SEARCH = 0.9
+
+
+class Receiver(Protocol):
+    """What takes a result too large for memory.
+
+    Attributes
+    ----------
+    folder : where there is room for what is being sorted.
+    """
+
+    @property
+    def folder(self) -> Path: ...
+
+    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
+        """Take a result and its fixtures, so many, best first, in tables one after the other."""
 
 
 def design(
@@ -40,9 +63,11 @@ def design(
     contact_margin: float = 0.0,
     restrictions: Restrictions | None = None,
     rank_by: str | Sequence[str] | None = None,
+    prefer: str | None = None,
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
     best: int | None = None,
+    jaw_force: float | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -52,9 +77,11 @@ def design(
 
     Parameters
     ----------
-    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best : see :class:`workhold.model.query.Query`.
+    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force : see
+        :class:`workhold.model.query.Query`.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None is all.
     rank_by : the query's ranking.
+    prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
     threads, progress, cancel, preview : see :func:`answer`.
 
     Returns
@@ -65,7 +92,7 @@ def design(
     Raises
     ------
     InputError
-        As :class:`workhold.model.query.Query` and :func:`answer`.
+        As :class:`workhold.model.query.Query` and :func:`answer`; for a ranking and a preference together.
 
     Examples
     --------
@@ -78,7 +105,8 @@ def design(
     >>> [peg.hole for peg in result[0].pegs]
     ['L-A1', 'L-A2', 'R-A1', 'R-A2']
     """
-    query = Query(workpiece, toolkit, types, contact_margin, restrictions, rank_by, tolerance, loads, best)
+    ranking = asked_ranking(rank_by, prefer, loads)
+    query = Query(workpiece, toolkit, types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force)
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
 
 
@@ -89,6 +117,7 @@ def answer(
     progress: Progress | None = None,
     cancel: Event | None = None,
     preview: Preview | None = None,
+    receiver: Receiver | None = None,
 ) -> Result:
     """Find every fixture that a query asks for, or the best of them.
 
@@ -99,6 +128,7 @@ def answer(
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
     preview : called from this thread now and then with some fixtures found so far, as a result marked incomplete; not in the
         first 0.3 s.
+    receiver : takes the fixtures, which are then not held in memory all at once; the result comes without them.
 
     Returns
     -------
@@ -119,60 +149,91 @@ def answer(
     >>> len(answer(query)), answer(query).query == query
     (3, True)
     """
-    problem = Problem.of(query)
     workers = thread_count(counting_number("threads", threads))
-    search = ToolkitSearch.of(problem)
+    ways = query.toolkit.ways
+    if len(ways) == 1:
+        return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
+    results = []
+    for number, way in enumerate(ways):
+        share = stage(progress, number / len(ways), (number + 1) / len(ways))
+        results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
+    return handed_over(joined_ways(results, query), receiver)
+
+
+def answer_of_a_way(
+    query: Query,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    preview: Preview | None,
+    receiver: Receiver | None = None,
+) -> Result:
+    """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
+    problem = Problem.of(query)
+    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
     # Smaller blocks learn earlier what margin is to be reached.
     blocks = search.blocks(query.arrangements, LEAST_BLOCKS if query.best is None else 2 * LEAST_BLOCKS)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     receive = None if kept is None else kept.add
     look = None if preview is None else Previews(problem, preview).add
-    records, done = run_blocks(blocks, workers, stage(progress, 0.0, SEARCH), cancel, receive, look)
-    totals = search.totals
-    work = Work(
-        complete=len(done) == len(blocks),
-        statistics=statistics(search, totals),
-        cells=sum(block.cells for block in done),
-        examined=int(totals[CANDIDATES]),
-    )
+    before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
+    if receiver is not None and kept is None:
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            gathering = Gathering(problem, pool, 2 * threads, cancel, receiver.folder)
+            with gathering.given_up_on_errors():
+                _, done = run_blocks(blocks, threads, before, cancel, gathering.take, look, search.stop, pool)
+                result = gathered_result(gathering, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
+                result = with_reason(result, search, threads, cancel)
+                receiver.receive(result, sum(result.found.values()), gathering.tables(stage(rest, MEASURED, 1.0)))
+        return result
+    records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
+    work = work_of(search, blocks, done)
     if kept is not None:
         result = best_result(kept, work)
     else:
-        rest = stage(progress, SEARCH, 1.0)
-        result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=workers)
-    if result.complete and not any(result.found.values()) and not result.notes:
-        proven = 0 if result.proof is None else result.proof.verified
-        return evolve(result, notes=(why_none(search, int(totals[CONTACTS]), proven, workers),))
+        result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=threads)
+    return handed_over(with_reason(result, search, threads, cancel), receiver)
+
+
+def handed_over(result: Result, receiver: Receiver | None) -> Result:
+    """A result that is whole in memory, after a receiver, if there is one, has taken it."""
+    if receiver is not None:
+        receiver.receive(result, len(result), [result.table])
     return result
 
 
-def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
-    """The progress of one stage of the work, from one fraction of the whole to another."""
-    if progress is None:
-        return None
-    return lambda fraction, found: progress(low + (high - low) * fraction, found)
+def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:
+    """How a search went."""
+    return Work(
+        complete=len(done) == len(blocks),
+        statistics=statistics(search, search.totals),
+        cells=sum(block.cells for block in done),
+        examined=int(search.totals[CANDIDATES]),
+    )
 
 
-def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int) -> str:
+def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
+    """A result, with the reason where it has no fixture and nobody is in a hurry."""
+    if not result.complete or any(result.found.values()) or result.notes:
+        return result
+    proven = 0 if result.proof is None else result.proof.verified
+    reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)
+    return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
+
+
+def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
-    problem, table = search.problem, search.table
-    arcs = problem.rows[:, 0] != 0.0
+    problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
+    concentric, too_far, apart, loose = no_fixture_notes(wording)
+    arcs = problem.rows[:, IS_ARC] != 0.0
     if arcs.all() and len(set(center_numbers(problem.rows).tolist())) == 1:
-        return (
-            "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
-            "from turning."
-        )
+        return concentric
     if len(table) + len(table.sliding_pairs.integers) == 0:
-        return "No two pegs of one jaw can touch the part together: the pitch is too large for it."
+        return too_far
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
-    if contacts == 0 and contacts_of(problem, threads) == 0:
-        return "No four pegs of the two jaws can touch the part at the same time inside their faces."
-    if proven:
-        return (
-            f"{proven} sets of four pegs would hold the part, but none of them can stand in the jaws as asked: with the "
-            "rows, opening, angles, shoulders and blocked holes given."
-        )
-    return "Four pegs can touch the part at the same time, but no such set keeps the smallest gap, closes and clamps."
+    if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
+        return apart
+    return no_place_note(proven, wording) if proven else loose
 
 
 def statistics(search: ToolkitSearch, totals: NDArray[np.int64]) -> dict[str, int]:

@@ -1,35 +1,36 @@
 """Why there is no fixture: every simultaneous contact is looked at again and asked which rule it breaks first.
 
 The rules are asked one after the other, as a person would: what the user ruled out, whether four pegs can touch at all,
-contact margin, smallest gap, closure, clamping, and the place in the jaws. The counts are of contacts as computed, in
+contact margin, smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts as computed, in
 plain numbers; the proof that there is no fixture is the search's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from threading import Event, Timer
-from typing import Any
 
 import numpy as np
 from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.contact.features import end_distances
+from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.kernels.contact import record
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
-from workhold.listing.placing import arranged, placed
+from workhold.listing.placing import placeable, placed
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
+from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
-from workhold.model.result import fixture_at
+from workhold.model.result import Result, fixture_at
+from workhold.model.toolkit import Change, Toolkit
 from workhold.model.units import MILLIMETRE, Unit
-from workhold.model.vise import Vise
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
@@ -50,6 +51,8 @@ MOST_FACES = 8
 EVEN = 1e-6
 # Seconds after which a change has shown that it helps; how many fixtures there are in all is then not known.
 HELP_SECONDS = 10.0
+# Where something is that lies along +x of a frame so many quarter turns on.
+BESIDE = ("to the right of", "above", "to the left of", "below")
 # A contact misses closure by this much at most to be called near.
 ROUNDING = 1e-12
 
@@ -88,7 +91,32 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     threads : how many threads share the work; None for one on each processor.
     unit : of the lengths in its words.
     """
-    problem = Problem.of(query)
+    ways = [evolve(query, toolkit=way) for way in query.toolkit.ways]
+    first, removals, nearest = together([removals_of(Problem.of(way), threads, unit) for way in ways])
+    return Explanation(first, removals, nearest, helps(query, threads, unit))
+
+
+Removals = tuple[int, tuple[Removal, ...], NearestMiss | None]
+
+
+def together(found: Sequence[Removals]) -> Removals:
+    """What the rules take away in several ways, in the order in which they were asked, and what came nearest in the way in
+    which the most was left longest."""
+    # A rule may be asked twice in one way, early where that saves work and again at its place.
+    counts: dict[tuple[str, int], tuple[int, int]] = {}
+    for _, removals, _ in found:
+        rules = [removal.rule for removal in removals]
+        for number, removal in enumerate(removals):
+            asked = removal.rule, rules[:number].count(removal.rule)
+            before, after = counts.get(asked, (0, 0))
+            counts[asked] = before + removal.before, after + removal.after
+    _, _, nearest = max(found, key=lambda one: len(one[1]))
+    removed = tuple(Removal(rule, *numbers) for (rule, _), numbers in counts.items())
+    return sum(first for first, _, _ in found), removed, nearest
+
+
+def removals_of(problem: Problem, threads: int | None, unit: Unit) -> Removals:
+    """How many contacts there are without any restriction, what each rule takes away of them, and what comes nearest."""
     contacts = all_contacts(problem, threads)
     first, removals = restriction_removals(problem, threads, len(contacts.margin))
     nearest = None
@@ -100,20 +128,20 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
         if not kept.any():
             nearest = nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
-    removals = [removal for removal in removals if removal.before > 0]
-    return Explanation(first, tuple(removals), nearest, helps(query, threads, unit))
+    return first, tuple(removal for removal in removals if removal.before > 0), nearest
 
 
 def all_contacts(problem: Problem, threads: int | None) -> Contacts:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
-    search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED)
-    records, _ = run_blocks(search.blocks(problem.query.arrangements), thread_count(threads), None, None)
+    workers = thread_count(threads)
+    search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
+    records, _ = run_blocks(search.blocks(problem.query.arrangements), workers, None, None)
     swapped = search.frame.swapped
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
     c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
     rows = problem.rows[c.feature]
-    normals = outward_normals(rows[..., :8], c.point)
+    normals = outward_normals(rows, c.point)
     # All entries are -1 where the wrenches do not span the space.
     spans = (c.null > -1.0).any(axis=1)
     null = c.null * np.where(c.null.min(axis=1) >= -c.null.max(axis=1), 1.0, -1.0)[:, None]
@@ -122,7 +150,7 @@ def all_contacts(problem: Problem, threads: int | None) -> Contacts:
         evolve(c, force=null),
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
-        clamping=-problem.vise.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
+        clamping=-problem.toolkit.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
         end_distance=end_distances(rows, c.point).min(axis=(1, 2), initial=np.inf),
     )
 
@@ -146,27 +174,29 @@ def restriction_removals(problem: Problem, threads: int | None, left: int) -> tu
     ----------
     left : contacts that keep all restrictions.
     """
-    vise, asked = problem.vise, problem.restrictions
-    free_vise = evolve(vise, rows=None, blocked=(), body_radius=vise.peg_radius)
-    steps: list[tuple[str, Restrictions, Vise]] = []
+    toolkit, asked = problem.toolkit, problem.restrictions
+    holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
+    bodies = [limit for limit in toolkit.limits if limit.bounds == "bodies"]
+    free = toolkit.without([*holes, *bodies])
+    steps: list[tuple[str, Restrictions, Toolkit]] = []
     if asked.avoid:
-        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free_vise))
+        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free))
     if asked.zones:
-        thick = evolve(free_vise, body_radius=vise.body_radius)
-        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), thick))
-    if vise.body_radius > vise.peg_radius or vise.blocked or vise.rows is not None:
-        steps.append(("holes that the jaws do not have, or too near for the bodies", evolve(asked, angles=()), vise))
+        # What stands over a zone is a peg's body.
+        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), toolkit.without(holes)))
+    if holes or bodies:
+        steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit))
     if asked.angles:
-        steps.append(("angles of the part", asked, vise))
+        steps.append(("angles of the part", asked, toolkit))
 
-    def count(restrictions: Restrictions, in_vise: Vise) -> int:
-        asked = evolve(problem.query, toolkit=in_vise, restrictions=restrictions, contact_margin=0.0)
+    def count(restrictions: Restrictions, held_in: Toolkit) -> int:
+        asked = evolve(problem.query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
         return contacts_of(Problem.of(asked), threads)
 
-    first = before = max(count(Restrictions(), free_vise), left) if steps else left
+    first = before = max(count(Restrictions(), free), left) if steps else left
     removals = []
-    for rule, restrictions, in_vise in steps:
-        after = left if rule == steps[-1][0] else min(max(count(restrictions, in_vise), left), before)
+    for rule, restrictions, held_in in steps:
+        after = left if rule == steps[-1][0] else min(max(count(restrictions, held_in), left), before)
         removals.append(Removal(rule, before, after))
         before = after
     return first, removals
@@ -177,45 +207,43 @@ Rule = tuple[str, Callable[[Contacts], BoolArray], Callable[[Contacts], tuple[in
 
 def rules(problem: Problem, unit: Unit) -> list[Rule]:
     """The rules in the order they are asked: words, which contacts keep it, and which broken one comes nearest and why."""
-    vise, margin = problem.vise, problem.contact_margin
+    margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
     if margin > 0.0:
         out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin, unit)))
-    out.append(
-        (
-            "smallest gap",
-            lambda c: c.candidates.gap >= vise.min_gap - GAP_SLACK,
-            partial(too_near, vise, unit),
+    if frame.toolkit.gap is not None:
+        out.append(
+            ("smallest gap", lambda c: c.candidates.gap >= frame.gap - GAP_SLACK, partial(too_near, frame, unit))
         )
-    )
     out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
-    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, vise.clamping)))
+    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, frame)))
     return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
 
 
 def placing_rules(problem: Problem) -> list[Rule]:
-    """The rules about where fixtures stand in the jaws, as far as the vise and the user have any."""
-    vise, asked = problem.vise, problem.restrictions
-    bare = evolve(vise, rows=None, max_opening=None, blocked=(), body_radius=vise.peg_radius)
+    """The rules about where fixtures stand on the carriers, as far as the toolkit and the user have any.
+
+    The angles come after the pegs' bodies, and each rule is asked together with those before it.
+    """
+    toolkit, asked = problem.toolkit, problem.restrictions
+    limits = toolkit.limits
+    first = sum(limit.bounds == "bodies" for limit in limits)
     out: list[Rule] = []
 
-    def rule(words: str, in_vise: Vise, restrictions: Restrictions) -> None:
-        part = evolve(problem, query=evolve(problem.query, toolkit=in_vise, restrictions=restrictions))
-        out.append((words, lambda c: arranged(c.candidates, part).fits, partial(no_place, words)))
+    def rule(words: str, kept: int, restrictions: Restrictions) -> None:
+        query = evolve(problem.query, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
+        part = evolve(problem, query=query)
+        keeps = partial(no_place, toolkit.noun, words)
+        out.append((words, lambda c: placeable(c.candidates, part), keeps))
 
-    if vise.body_radius > vise.peg_radius:
-        bare = evolve(bare, body_radius=vise.body_radius)
-        rule("bodies that would overlap", bare, Restrictions())
-    if asked.angles:
-        rule("angles of the part", bare, asked)
-    if vise.max_opening is not None:
-        bare = evolve(bare, max_opening=vise.max_opening)
-        rule("largest opening", bare, asked)
-    if vise.rows is not None:
-        bare = evolve(bare, rows=vise.rows)
-        rule("rows of holes", bare, asked)
-    if vise.blocked:
-        rule("blocked holes", vise, asked)
+    if problem.frame.moving.on is not None:
+        rule("locators clear of the clamp", 0, Restrictions())
+    for number, limit in enumerate(limits):
+        if number == first and asked.angles:
+            rule("angles of the part", first, asked)
+        rule(limit.rule, number + 1, asked if number >= first else Restrictions())
+    if first == len(limits) and asked.angles:
+        rule("angles of the part", first, asked)
     return out
 
 
@@ -233,13 +261,16 @@ def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
     )
 
 
-def too_near(vise: Vise, unit: Unit, c: Contacts) -> tuple[int, str]:
-    """The contact whose right pegs are farthest from the left ones."""
+def too_near(frame: Frame, unit: Unit, c: Contacts) -> tuple[int, str]:
+    """The contact whose moving pegs are farthest along the travel from the others."""
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
-    where = f"{unit.text(abs(gap))} {'to the right of the left ones' if gap >= 0 else 'to their left'}"
-    least = f"{unit.figure(vise.min_gap)} {unit.abbreviation}"
-    return index, f"the right pegs would stand {where}; the smallest gap is {least}."
+    beyond = BESIDE[frame.quarters if gap >= 0 else (frame.quarters + 2) % 4]
+    least = f"{unit.figure(frame.gap)} {unit.abbreviation}"
+    return index, (
+        f"the {frame.moving.name} pegs would stand {unit.text(abs(gap))} {beyond} the {frame.standing.name} ones; the "
+        f"smallest gap is {least}."
+    )
 
 
 def open_contact(c: Contacts) -> tuple[int, str]:
@@ -255,15 +286,14 @@ def open_contact(c: Contacts) -> tuple[int, str]:
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
 
 
-def unclamped(clamping: int, c: Contacts) -> tuple[int, str]:
+def unclamped(frame: Frame, c: Contacts) -> tuple[int, str]:
     """The contact that comes nearest to being clamped."""
-    ways = ("the jaws are pressed apart, not when they close", "the jaws close, not when they are pressed apart")
-    return int(c.clamping.argmax()), f"it holds when {ways[0 if clamping > 0 else 1]}."
+    return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
 
-def no_place(words: str, c: Contacts) -> tuple[int, str]:
+def no_place(noun: str, words: str, c: Contacts) -> tuple[int, str]:
     """The best of what cannot be placed."""
-    return int(c.margin.argmax()), f"it would hold, but what was asked for of the vise forbids it: {words}."
+    return int(c.margin.argmax()), f"it would hold, but what was asked for of the {noun} forbids it: {words}."
 
 
 def on_the_edge(c: Contacts) -> tuple[int, str]:
@@ -272,72 +302,77 @@ def on_the_edge(c: Contacts) -> tuple[int, str]:
 
 
 def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) -> NearestMiss:
-    """A contact that is no fixture, placed in jaws without ends."""
+    """A contact that is no fixture, placed in a toolkit without limits."""
     index, words = miss
-    vise = evolve(problem.vise, rows=None, max_opening=None, blocked=(), min_gap=0.0)
-    part = evolve(problem, query=evolve(problem.query, toolkit=vise, restrictions=None))
+    toolkit = problem.toolkit.without(problem.toolkit.limits)
+    part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
     table = placed(contacts.candidates.take(np.array([index])), part)
-    return NearestMiss(fixture_at(table, vise, 0), words)
+    return NearestMiss(fixture_at(table, toolkit, 0), words)
 
 
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out = []
-    for words, change in changes(query, unit):
+    for words, changed in changes(query, unit):
         enough = Event()
         timer = Timer(HELP_SECONDS, enough.set)
         timer.start()
         try:
-            asked = evolve(query, ranking="closure_margin", best=None, **change)
+            asked = evolve(changed(), ranking="warnings", best=None)
             result = answer(asked, threads=threads, cancel=enough)
         except InputError:
             continue
         finally:
             timer.cancel()
         if any(result.found.values()):
-            out.append(Help(words, sum(result.found.values()), result.complete))
+            out.append(Help(words + nearest_turn(query, result), sum(result.found.values()), result.complete))
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 
-def changes(query: Query, unit: Unit) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Changes of a query to try, one at a time: in words, and what then is asked instead."""
-    asked, vise = query.restrictions, query.toolkit
+def nearest_turn(query: Query, result: Result) -> str:
+    """Where angles were asked for, how far beyond them the part can be held, without warnings if that can be."""
+    if not query.restrictions.angles or result.query.restrictions.angles:
+        return ""
+    quality = result.table.quality
+    good = quality[:, WARNINGS] == quality[:, WARNINGS].min()
+    found = np.degrees(result.table.theta[good])
+    # What half a turn leaves in its arrangement lies in the jaws either way round.
+    pegs = np.array([one.pegs[0] == one.pegs[-1] for one in result.toolkit.arrangements])
+    found = np.concatenate([found, found[pegs[result.table.arrangement[good]]] + 180.0])
+    beyond = np.full(len(found), np.inf)
+    for low, high in query.restrictions.angles:
+        past = (found - high) % 360.0
+        beyond = np.minimum(beyond, np.minimum(past, 360.0 - (past + high - low) % 360.0))
+    nearest = int(beyond.argmin())
+    return f", the nearest {beyond[nearest]:.1f} degrees farther, at {found[nearest] % 360.0:.2f}"
+
+
+def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query]]]:
+    """Changes of a query to try, one at a time: in words, and what makes the query, or finds that there is none such."""
+    asked, toolkit = query.restrictions, query.toolkit
     if asked.avoid:
         if len(asked.avoid) > 1:
             faces = ", ".join(str(number) for number in asked.avoid)
-            yield f"touching faces {faces} too", {"restrictions": evolve(asked, avoid=())}
+            yield f"touching faces {faces} too", partial(evolve, query, restrictions=evolve(asked, avoid=()))
         for face in asked.avoid[:MOST_FACES]:
             rest = tuple(number for number in asked.avoid if number != face)
-            yield f"touching face {face} too", {"restrictions": evolve(asked, avoid=rest)}
+            yield f"touching face {face} too", partial(evolve, query, restrictions=evolve(asked, avoid=rest))
     if asked.zones:
-        yield "without the keep-out zones", {"restrictions": evolve(asked, zones=())}
+        yield "without the keep-out zones", partial(evolve, query, restrictions=evolve(asked, zones=()))
     if asked.angles:
-        yield "at any angle", {"restrictions": evolve(asked, angles=())}
+        yield "at any angle", partial(evolve, query, restrictions=evolve(asked, angles=()))
     if query.contact_margin > 0:
-        yield "without a contact margin", {"contact_margin": 0.0}
-    assert isinstance(vise, Vise)
-    for words, fields in vise_changes(vise, unit):
-        yield words, {"toolkit": evolve(vise, **fields)}
+        yield "without a contact margin", partial(evolve, query, contact_margin=0.0)
+    for change in (*(limit.lifted for limit in toolkit.limits), *toolkit.further_changes(unit)):
+        yield change.words, partial(held_in_another, query, change)
 
 
-def vise_changes(vise: Vise, unit: Unit) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Changes of a vise to try, one at a time: in words, and what fields then are."""
-    if vise.body_radius > vise.peg_radius:
-        yield "with pegs without a shoulder", {"body_radius": vise.peg_radius}
-    if vise.blocked:
-        yield "with no hole blocked", {"blocked": ()}
-    if vise.rows is not None:
-        yield "with as many rows as needed", {"rows": None}
-    if vise.max_opening is not None:
-        yield "with a larger opening", {"max_opening": None}
-    if vise.min_gap > 2 * vise.peg_radius > 0:
-        narrow = 2 * vise.peg_radius
-        yield f"with a smallest gap of {unit.figure(narrow)} {unit.abbreviation}", {"min_gap": narrow}
-    yield "with one more column on each jaw", {"columns": vise.columns + 1}
-    if vise.row_offset == 0.0:
-        offset = vise.pitch[1] / 2
-        words = f"{unit.figure(offset)} {unit.abbreviation}"
-        yield f"with the right jaw's rows offset by {words}", {"row_offset": offset}
-    if min(vise.pitch) >= 4 * vise.peg_radius:
-        half = (vise.pitch[0] / 2, vise.pitch[1] / 2)
-        yield "with half the pitch", {"pitch": half, "min_gap": min(vise.min_gap, half[0]), "blocked": ()}
+def held_in_another(query: Query, change: Change) -> Query:
+    """A query in a changed toolkit.
+
+    Raises
+    ------
+    InputError
+        When there is no such toolkit.
+    """
+    return evolve(query, toolkit=query.toolkit.changed(change.fields))

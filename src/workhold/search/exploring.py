@@ -1,20 +1,21 @@
-"""Which toolkit to buy: the same part tried in many, with the number of fixtures and the best quality in each."""
+"""Which toolkit to buy: the same part tried in many, with the number of fixtures and the first choice in each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from threading import Event
 
 import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.model.quality import FIGURES, figure_number
+from workhold.listing.ranking import figure_keys
+from workhold.model.quality import FIGURES
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable
 from workhold.search.design import answer
+from workhold.statics.judging import unfit
 
-__all__ = ["Explored", "best_of", "explore"]
+__all__ = ["Explored", "explore", "first_choice"]
 
 
 @frozen
@@ -25,14 +26,16 @@ class Explored:
     ----------
     name : what it is called.
     found : fixtures of each arrangement; empty for a toolkit that cannot be.
-    best : the best value of each figure of quality over all fixtures; empty when there is none.
+    figures : of the first fixture, the one to set up; empty when there is none.
+    fit : whether that is a fixture for a workshop.
     reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
     """
 
     name: str
     found: Mapping[str, int]
-    best: Mapping[str, float]
+    figures: Mapping[str, float]
     reason: str = ""
+    fit: bool = False
 
     @property
     def fixtures(self) -> int:
@@ -61,27 +64,23 @@ def explore(queries: Iterable[tuple[str, Query | InputError]], cancel: Event | N
         if not result.complete:
             return
         reason = "" if len(result) else " ".join(result.notes)
-        yield Explored(name, dict(result.found), best_values(result.table), reason)
+        figures = dict(result[0].quality) if len(result) else {}
+        fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
+        yield Explored(name, dict(result.found), figures, reason, fit)
 
 
-def best_values(table: FixtureTable) -> dict[str, float]:
-    """The best value of each known figure of quality of a table, by its key."""
-    if len(table) == 0:
-        return {}
-    best = {}
-    for number, figure in enumerate(FIGURES):
-        values = table.quality[:, number]
-        if np.isfinite(values).all():
-            best[figure.key] = float(values.max() if figure.more_is_better else values.min())
-    return best
+def first_choice(
+    explored: Sequence[Explored], ranking: Sequence[str], is_sold: Callable[[str], bool] = lambda name: True
+) -> Explored | None:
+    """The toolkit whose first fixture stands first among those of all; None when none has a fixture.
 
-
-def best_of(explored: Sequence[Explored], key: str) -> Explored | None:
-    """The toolkit with the best value of a figure; None when none has a fixture."""
-    number = figure_number(key)
-    assert number is not None
-    figure = FIGURES[number]
-    able = [item for item in explored if key in item.best]
+    A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name, before what
+    nobody sells.
+    """
+    able = [item for item in explored if item.figures]
     if not able:
         return None
-    return (max if figure.more_is_better else min)(able, key=lambda item: round(item.best[key], 9))
+    quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
+    keys = [(not item.fit, not is_sold(item.name)) for item in able]
+    order = sorted(range(len(able)), key=lambda k: (keys[k], *(key[k] for key in figure_keys(quality, ranking))))
+    return able[order[0]]

@@ -63,7 +63,7 @@ class Previews:
         start = perf_counter()
         if self.newest is None or start < self.next_time:
             return
-        fresh, account = finish([self.newest], self.problem, None, self.hurry)
+        fresh, account = finish([self.newest], self.problem, self.hurry)
         self.newest = None
         together = fresh if self.shown is None else listed_once(joined([self.shown, fresh]))
         if len(fresh.standing):

@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from math import hypot, pi, tau
+from threading import Event
 
 import numpy as np
 from attrs import define, evolve, field
@@ -20,13 +21,14 @@ from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joine
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK
+from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
 from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.crossing.three_and_one import three_and_one_cells
-from workhold.kernels.crossing.two_and_two import STATISTICS, two_and_two_cells
+from workhold.kernels.crossing.two_and_two import STATISTICS, STOPPED, two_and_two_cells
 from workhold.kernels.curves.columns import FROM, ORIENTATION, TO
 from workhold.model.toolkit import Arrangement, Carrier
-from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, members_of_cell
+from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, member_counts, members_of_cell
 
 __all__ = ["LEAST_BLOCKS", "ToolkitSearch", "lattice_steps"]
 
@@ -51,7 +53,7 @@ def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
     Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never have.
     """
     pitch_x, pitch_y = carriers[0].pitch
-    most_columns = min(max(carrier.columns for carrier in carriers) - 1, int(longest / pitch_x))
+    most_columns = min(max(carrier.column_count for carrier in carriers) - 1, int(longest / pitch_x))
     most_rows = int(longest / pitch_y)
     if all(carrier.rows is not None for carrier in carriers):
         most_rows = min(max(carrier.rows or 0 for carrier in carriers) - 1, most_rows)
@@ -80,29 +82,33 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
     Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a blocked hole.
     """
     rows = 1 if carrier.rows is None else carrier.rows
-    free = np.ones((carrier.columns, rows), np.bool_)
+    free = np.ones((carrier.column_count, rows), np.bool_)
     for holes in carrier.blocked:
         if holes.row is None:
             free[holes.column] = False
         elif carrier.rows is not None:
             free[holes.column, holes.row] = False
     # So many pairs of free holes have a difference: the correlation of the free holes with themselves.
-    shape = 2 * carrier.columns, 2 * rows
+    shape = 2 * carrier.column_count, 2 * rows
     pairs = np.fft.irfft2(np.abs(np.fft.rfft2(free, shape)) ** 2, shape)
     column, row = steps[:, 0], steps[:, 1] * (carrier.rows is not None)
-    there = (np.abs(column) < carrier.columns) & (np.abs(row) < rows)
+    there = (np.abs(column) < carrier.column_count) & (np.abs(row) < rows)
     return np.asarray(there & (pairs[column % shape[0], row % shape[1]] > 0.5))
 
 
-def tables_of(problem: Problem, loose: Array) -> CurveTable:
+def tables_of(problem: Problem, loose: Array, threads: int, cancel: Event | None) -> CurveTable:
     """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the same."""
-    longest, carriers = problem.diameter + 1e-6, problem.frame.carriers
+    share = partial(curve_table, threads=threads, cancel=cancel)
+    longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
+    if all(arrangement.pegs[-1] == 1 for arrangement in problem.toolkit.arrangements):
+        # No two pegs move.
+        moving = evolve(moving, columns=1, rows=1, blocked=())
     if problem.standing == problem.moving:
-        return curve_table(loose, lattice_steps(carriers, longest))
+        return share(loose, lattice_steps((standing, moving), longest))
     (first, end), (begin, last) = problem.standing, problem.moving
     one, other = (
-        curve_table(rows, lattice_steps([carrier], longest))
-        for rows, carrier in zip((loose[first:end], loose[begin:last]), carriers, strict=True)
+        share(rows, lattice_steps([carrier], longest))
+        for rows, carrier in zip((loose[first:end], loose[begin:last]), (standing, moving), strict=True)
     )
     return joined(one, other, begin)
 
@@ -149,7 +155,7 @@ class ToolkitSearch:
     table : chord curves and sliding pairs between the loose features.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.
-    stats : (blocks, 4) statistics the kernels add to, one row for each block so that threads never share one.
+    stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
     problem: Problem
@@ -160,12 +166,20 @@ class ToolkitSearch:
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
 
     @classmethod
-    def of(cls, problem: Problem, counting: bool = False, most_listed: int = 0) -> ToolkitSearch:
-        """The search of a problem, with its chord curves; ``counting`` leaves the contact margin out."""
+    def of(
+        cls,
+        problem: Problem,
+        counting: bool = False,
+        most_listed: int = 0,
+        threads: int = 1,
+        cancel: Event | None = None,
+    ) -> ToolkitSearch:
+        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set; ``counting`` leaves the
+        contact margin out."""
         if counting:
             problem = evolve(problem, query=evolve(problem.query, contact_margin=0.0))
-        loose = loosened(problem.rows[:, :8])
-        return cls(problem, loose, tables_of(problem, loose), counting, most_listed)
+        loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
+        return cls(problem, loose, tables_of(problem, loose, threads, cancel), counting, most_listed)
 
     @property
     def frame(self) -> Frame:
@@ -205,12 +219,15 @@ class ToolkitSearch:
             half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
             edges = cell_edges(half_turns, half_turns * cells)
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
-            for first, last in neighbours(wanted, together):
-                blocks.append(self.crossing_block(arrangement, edges[first : last + 1]))
+            ranges = np.array(list(neighbours(wanted, together)), np.int64).reshape(-1, 2)
+            counts = member_counts(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
+            for (first, last), count in zip(ranges.tolist(), counts.tolist(), strict=True):
+                blocks.append(self.crossing_block(arrangement, edges[first : last + 1], count))
+            counts = member_counts(self.table, edges[:-1], edges[1:])
             for cell, sliding_pairs in enumerate(self.sliding_pair_cells(half_turns, edges)):
                 if len(sliding_pairs) and wanted[cell]:
                     low, high = float(edges[cell]), float(edges[cell + 1])
-                    blocks.append(self.sliding_pair_block(arrangement, low, high, sliding_pairs))
+                    blocks.append(self.sliding_pair_block(arrangement, low, high, sliding_pairs, int(counts[cell])))
         return blocks
 
     def sliding_pair_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
@@ -225,30 +242,35 @@ class ToolkitSearch:
         starts = np.searchsorted(cells[order], np.arange(len(edges)))
         return [order[first:last] for first, last in pairwise(starts)]
 
-    def crossing_block(self, arrangement: Arrangement, edges: Array) -> Block:
-        """The crossings of some neighbouring cells."""
+    def crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> Block:
+        """The crossings of some neighbouring cells, in which there are about so many curves."""
         kernel, _, weight = KERNELS[arrangement.pegs]
-        members = members_of_cell(self.table, float(edges[0]), float(edges[-1]))
-        work = partial(self.run, partial(kernel, edges), members, self.tally())
-        return Block(work, 1.0 + weight * len(members) ** 2, len(edges) - 1)
+        work = partial(self.run, partial(kernel, edges), float(edges[0]), float(edges[-1]), self.tally())
+        return Block(work, 1.0 + weight * members**2, len(edges) - 1)
 
-    def sliding_pair_block(self, arrangement: Arrangement, low: float, high: float, chosen: NDArray[np.int64]) -> Block:
-        """The sliding pairs of one cell."""
+    def sliding_pair_block(
+        self, arrangement: Arrangement, low: float, high: float, chosen: NDArray[np.int64], members: int
+    ) -> Block:
+        """The sliding pairs of one cell, in which there are about so many curves."""
         _, kernel, _ = KERNELS[arrangement.pegs]
-        members = members_of_cell(self.table, low, high)
-        work = partial(self.run, partial(kernel, chosen, self.table.sliding_pairs), members, self.tally())
-        return Block(work, 1.0 + len(chosen) * len(members))
+        work = partial(self.run, partial(kernel, chosen, self.table.sliding_pairs), low, high, self.tally())
+        return Block(work, 1.0 + len(chosen) * members)
 
     def tally(self) -> NDArray[np.int64]:
         """A new row of statistics for a kernel to add to."""
         self.stats.append(np.zeros(STATISTICS, np.int64))
         return self.stats[-1]
 
+    def stop(self) -> None:
+        """Have the kernels that run in other threads return soon with what they have found."""
+        for counts in self.stats:
+            counts[STOPPED] = 1
+
     def run(
-        self, kernel: Callable[..., Array], members: NDArray[np.int64], stats: NDArray[np.int64], margin: float
+        self, kernel: Callable[..., Array], low: float, high: float, stats: NDArray[np.int64], margin: float
     ) -> Array:
-        """Run a kernel with some curves, for fixtures of a closure margin or more."""
-        limits = self.limits_from(margin)
+        """Run a kernel with the curves of some orientations, for fixtures of a closure margin or more."""
+        limits, members = self.limits_from(margin), members_of_cell(self.table, low, high)
         return kernel(members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
 
     def limits_from(self, margin: float) -> Limits:

@@ -8,15 +8,19 @@ contact matrix : see ``kernels.statics.contact_matrix``; its inverse turns error
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import radians
+from typing import Any
 
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.features import ContactFeature, contact_features, feature_rows
+from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
+from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH, X, Y
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.model.diameter import outline_diameter
-from workhold.model.vise import Vise
+from workhold.model.fixture import Fixture
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ContactMatrices", "Touched"]
@@ -33,25 +37,31 @@ class ContactMatrices:
     points : (N, 4, 2) peg centres about the centre of the part.
     normals : (N, 4, 2) outward unit normals.
     ends : (N, 4) distances along the contact features to their nearer ends.
+    edges : (N, 4) the same to their nearer edges, ends that are no tangent joints; infinite
+        where there is none.
     inverses : (N, 4, 4) inverses of the contact matrices, NaN where there is none.
     """
 
     points: Array
     normals: Array
     ends: Array
+    edges: Array
     inverses: Array
 
 
 @define(frozen=True, eq=False)
 class Touched:
-    """What pegs of a vise touch of a workpiece; lengths in mm, everything about the centre of the part.
+    """What pegs of a toolkit touch of a workpiece; lengths in mm, everything about the centre of the part.
 
     Parameters
     ----------
     center : (2,) of the part's bounding box, in the part's coordinates.
     length : L of the wrenches, half the diameter of the peg-centre locus.
-    features : (F, 8) rows of the contact features, ordered by face.
-    starts : where the features of each face number begin in them, one more than there are segments.
+    features : (F, 10) rows of the contact features of each carrier's pegs with the slacks of their ends, one carrier after
+        the other, ordered by face.
+    starts : where the features of each face number begin in them, carrier after carrier, and where the last ones end.
+    segments : how many face numbers there are.
+    moving : (C,) 1 for a carrier that moves, 0 for others.
     axis : (2,) unit vector against which the moving pegs clamp, in the toolkit's frame.
     """
 
@@ -59,51 +69,68 @@ class Touched:
     length: float
     features: Array
     starts: NDArray[np.int64]
+    segments: int
+    moving: Array
     axis: Array
 
     @classmethod
     def of(
         cls,
         workpiece: Workpiece,
-        vise: Vise,
-        features: Sequence[ContactFeature] | None = None,
+        toolkit: Toolkit,
+        loci: Sequence[Sequence[ContactFeature]] | None = None,
         length: float | None = None,
     ) -> Touched:
-        """The contact features of a workpiece for a vise's pegs; ``features`` and L in mm where they are known already."""
-        features = contact_features(workpiece, vise.peg_radius) if features is None else list(features)
+        """The contact features of a workpiece for a toolkit's pegs.
+
+        Parameters
+        ----------
+        loci : for each carrier those of its pegs, where they are known already.
+        length : L in mm, where it is known already.
+        """
+        carriers, segments = toolkit.carriers, len(workpiece.segments)
+        loci = loci or [contact_features(workpiece, carrier.peg_radius) for carrier in carriers]
+        features = [feature for locus in loci for feature in locus]
         center = np.array(workpiece.center)
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
-        rows = np.zeros((len(features) + 1, 8))
-        rows[:-1] = feature_rows(features)
-        rows[:, 1:3] -= center
-        faces = np.array([feature.face for feature in features], np.int64)
+        rows = np.zeros((len(features) + 1, FEATURE_LENGTH))
+        rows[:-1, :SEGMENT_LENGTH] = feature_rows(features)
+        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint.
+        rows[:-1, SEGMENT_LENGTH:] = np.concatenate([end_slacks(list(locus)) for locus in loci])
+        rows[:, [X, Y]] -= center
+        faces = [number * segments + feature.face for number, locus in enumerate(loci) for feature in locus]
+        radius = max(carrier.peg_radius for carrier in carriers)
         return cls(
             center=center,
-            length=outline_diameter(workpiece) / 2 + vise.peg_radius if length is None else length,
+            length=outline_diameter(workpiece) / 2 + radius if length is None else length,
             features=rows,
-            starts=np.searchsorted(faces, np.arange(len(workpiece.segments) + 1)).astype(np.int64),
-            axis=vise.clamping * np.array(vise.moving_axis, np.float64),
+            starts=np.searchsorted(faces, np.arange(len(loci) * segments + 1)).astype(np.int64),
+            segments=segments,
+            moving=np.array([carrier.travel is not None for carrier in carriers], np.float64),
+            axis=toolkit.clamping * np.array(toolkit.moving_axis, np.float64),
         )
 
-    def contact_matrices(self, pegs: Array, pose: Array, moves: Array, faces: NDArray[np.int64]) -> ContactMatrices:
+    def contact_matrices(
+        self, pegs: Array, pose: Array, carriers: NDArray[np.integer[Any]], faces: NDArray[np.int64]
+    ) -> ContactMatrices:
         """Contact matrices of N fixtures.
 
         Parameters
         ----------
         pegs : (N, 4, 2) peg centres in the toolkit's frame, in mm.
         pose : (N, 3) orientation in radians and translation in mm.
-        moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
+        carriers : (N, 4) numbers of the pegs' carriers.
         faces : (N, 4) numbers of the faces touched.
         """
         count = len(pegs)
-        out = ContactMatrices(*(np.empty((count, 4, *shape)) for shape in ((2,), (2,), (), (4,))))
+        out = ContactMatrices(*(np.empty((count, 4, *shape)) for shape in ((2,), (2,), (), (), (4,))))
         # Copies, because a kernel is compiled anew for arrays that are read-only or laid out otherwise.
         contact_matrices_of(
             np.array(pegs, np.float64, order="C"),
             np.array(pose, np.float64, order="C"),
-            np.array(moves, np.float64, order="C"),
+            np.array(self.moving[carriers], np.float64, order="C"),
             self.axis,
-            np.array(faces, np.int64, order="C"),
+            np.array(faces + self.segments * np.asarray(carriers, np.int64), order="C"),
             self.features,
             self.starts,
             self.center,
@@ -111,6 +138,18 @@ class Touched:
             out.points,
             out.normals,
             out.ends,
+            out.edges,
             out.inverses,
+            np.empty((4, 4)),
         )
         return out
+
+    def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
+        """The contact matrix of one fixture in a toolkit."""
+        pose = fixture.pose
+        return self.contact_matrices(
+            np.array([[(peg.x, peg.y) for peg in fixture.pegs]]),
+            np.array([[radians(pose.theta_deg), pose.x, pose.y]]),
+            np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)]),
+            np.array([[peg.face for peg in fixture.pegs]]),
+        )

@@ -5,10 +5,10 @@ force that allows a balance with a load g is the linear program
 
     minimize r . x   subject to   W x = -g,  x >= 0,
 
-with r the share of each edge in pushing the right jaw. Its dual asks for the motion y of the part that does the most work
--g . y among those with W^T y <= r; these form a polytope, because the wrenches span the space, and its few corners answer
-every load. Duality: V. Chvatal, *Linear Programming* (1983), chapter 5; the cones: V.-D. Nguyen, *Constructing
-force-closure grasps*, International Journal of Robotics Research 7 (1988).
+with r the share of each edge in pushing the carrier that moves. Its dual asks for the motion y of the part that does
+the most work -g . y among those with W^T y <= r; these form a polytope, because the wrenches span the space, and its
+few corners answer every load. Duality: V. Chvatal, *Linear Programming* (1983), chapter 5; the cones: V.-D. Nguyen,
+*Constructing force-closure grasps*, International Journal of Robotics Research 7 (1988).
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ Array = NDArray[np.float64]
 
 
 def cone_edges(
-    contacts: Array, normals: Array, right: NDArray[np.bool_], closing: Array, friction: float, length: float
+    contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> tuple[Array, Array]:
-    """Wrenches (8, 3) of the edges of four friction cones, and how much each pushes the right jaw open (8,).
+    """Wrenches (8, 3) of the edges of four friction cones, and how much each pushes the moving carrier back (8,).
 
     Parameters
     ----------
     contacts : (4, 2) contact points about c in mm (with friction they are not the peg centres).
     normals : (4, 2) outward unit normals.
-    right : (4,) which pegs are on the right jaw.
-    closing : (2,) the vise's x axis in the part's frame; the right jaw closes against it.
+    moving : (4,) 1 for pegs on the carrier that moves, 0 for others.
+    against : (2,) unit vector in the part's frame against which that carrier clamps.
     friction : the coefficient mu.
     length : L in mm, which moments are divided by.
     """
@@ -43,19 +43,19 @@ def cone_edges(
     edges = np.concatenate([-normals + friction * tangents, -normals - friction * tangents])
     at = np.concatenate([contacts, contacts])
     moments = (at[:, 0] * edges[:, 1] - at[:, 1] * edges[:, 0]) / length
-    share = -(edges @ closing) * np.concatenate([right, right])
+    share = -(edges @ against) * np.concatenate([moving, moving])
     return np.column_stack([edges, moments]), share
 
 
 def possible_motions(
-    contacts: Array, normals: Array, right: NDArray[np.bool_], closing: Array, friction: float, length: float
+    contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> Array:
     """Corners (M, 3) of the dual polytope as jaw force per unit of (g_x, g_y, moment); parameters as :func:`cone_edges`.
 
     The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no corners where
-    friction alone could jam the part between pegs of one jaw: then no load needs any jaw force.
+    friction alone could jam the part between pegs of one carrier: then no load needs any jaw force.
     """
-    wrenches, share = cone_edges(contacts, normals, right, closing, friction, length)
+    wrenches, share = cone_edges(contacts, normals, moving, against, friction, length)
     corners = []
     for chosen in combinations(range(len(wrenches)), 3):
         planes = wrenches[list(chosen)]

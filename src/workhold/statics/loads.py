@@ -1,8 +1,9 @@
 """What loads do to one fixture: peg forces, and the jaw force that keeps every peg in contact.
 
-Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on the right jaw is:
-f = f0 + F h, where F is the jaw force, h the peg forces per unit of it, and f0 balances the load without pushing the right
-jaw. Friction can only be told as what it would make possible, see ``statics.friction``.
+Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on what moves is:
+f = f0 + F h, where F is that force, of a vise the jaw force, h the peg forces per unit of it, and f0 balances the load
+without pushing that carrier. That is for a jaw that keeps its force; a screw vise locks its jaw, and f0 is then what
+``statics.jaw`` makes of it. Friction can only be told as what it would make possible, see ``statics.friction``.
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.real import real
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.friction import possible_motions
+from workhold.statics.jaw import jaw_stiffness, shared_forces
 
 __all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
 
@@ -55,7 +57,8 @@ class LoadCase:
     Parameters
     ----------
     load : the load.
-    jaw_force : force on the right jaw that ``smallest`` and ``largest`` are told for.
+    jaw_stiffness : of the closed jaw, in that of one contact: infinite for a screw, 0 for a jaw that keeps its force.
+    jaw_force : force on the moving carrier, before the load comes, that ``smallest`` and ``largest`` are told for.
     smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would have to pull: it
         lets go, and the forces told are no longer those that act.
     reaction : the largest peg force with as little clamping as keeps all forces from being negative (the figure of quality
@@ -63,10 +66,11 @@ class LoadCase:
     needed : the jaw force above which no peg lets go, and the peg that does below it; never negative.
     needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no friction was given.
         Optimistic: with friction the forces are not determined by statics, and this tells what the best of all possible
-        forces would need. Pegs may let go.
+        forces would need, of a jaw that keeps its force; a locked one does with no more. Pegs may let go.
     """
 
     load: Load
+    jaw_stiffness: float
     jaw_force: float
     smallest: FourForces
     largest: FourForces
@@ -83,42 +87,42 @@ class LoadCase:
 def load_cases(
     fixture: Fixture,
     workpiece: Workpiece,
-    vise: Vise,
+    toolkit: Toolkit,
     loads: Sequence[Load],
     jaw_force: float | None = None,
     friction: float | None = None,
+    jaw: str | float = "screw",
 ) -> tuple[LoadCase, ...]:
     """What each of some loads does to a fixture; each acts by itself.
 
     Parameters
     ----------
-    fixture, workpiece, vise : the fixture, of what and in what.
+    fixture, workpiece, toolkit : the fixture, of what and in what.
     loads : see :class:`workhold.model.load.Load`.
-    jaw_force : force in N that pushes the right jaw; by default the one needed so that no peg lets go under any of them.
+    jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go under any load.
     friction : Coulomb's coefficient of friction between peg and part, to tell what it could add.
+    jaw : "screw", "constant", or how many times as stiff as one contact the jaw is; see ``statics.jaw``.
 
     Raises
     ------
     InputError
-        For a jaw force or a coefficient that is negative or not finite.
+        For a jaw force or a coefficient that is negative or not finite, and a jaw that is not known.
     """
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
         if value is not None and not (isfinite(real(value)) and value >= 0):
             raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
-    touched = Touched.of(workpiece, vise)
-    pose = np.array([[radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]])
-    right = np.array([[peg.jaw == "right" for peg in fixture.pegs]])
-    faces = np.array([[peg.face for peg in fixture.pegs]])
-    contact_matrices = touched.contact_matrices(
-        np.array([[(peg.x, peg.y) for peg in fixture.pegs]]), pose, right, faces
-    )
+    stiffness, touched = jaw_stiffness(jaw), Touched.of(workpiece, toolkit)
+    contact_matrices = touched.of_fixture(fixture, toolkit)
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.statics.contact_matrix.
-    forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
+    forces = shared_forces(contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0]), stiffness)
     motions = None
     if friction is not None:
-        contacts = contact_matrices.points[0] - vise.peg_radius * contact_matrices.normals[0]
-        closing = np.array(fixture.pose.inverse.turn(1.0, 0.0))
-        motions = possible_motions(contacts, contact_matrices.normals[0], right[0], closing, friction, touched.length)
+        carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
+        radii = np.array([toolkit.carriers[number].peg_radius for number in carriers])
+        contacts = contact_matrices.points[0] - radii[:, None] * contact_matrices.normals[0]
+        against = np.array(fixture.pose.inverse.turn(*touched.axis))
+        moving = touched.moving[carriers]
+        motions = possible_motions(contacts, contact_matrices.normals[0], moving, against, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
     needs = [needed(forces, load, center) for load in loads]
     if jaw_force is None:
@@ -127,12 +131,13 @@ def load_cases(
     return tuple(
         LoadCase(
             load=load,
+            jaw_stiffness=stiffness,
             jaw_force=jaw_force,
             smallest=four(-largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
             largest=four(largest_of(forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
             reaction=reaction(forces, load, center),
             needed=need,
-            needed_with_friction=None if motions is None else resisted(motions, load, center),
+            needed_with_friction=None if motions is None else with_friction(motions, load, center, need, stiffness),
         )
         for load, need in zip(loads, needs, strict=True)
     )
@@ -186,6 +191,12 @@ def of_peg(coefficients: Array, peg: int, load: Load, center: tuple[float, float
     """As :func:`largest_of`, said of a peg."""
     worst = largest_of(coefficients, load, center)
     return Worst(worst.value, peg, worst.point, worst.direction)
+
+
+def with_friction(motions: Array, load: Load, center: tuple[float, float], need: Worst, stiffness: float) -> float:
+    """The jaw force that friction leaves needed; no more than without it, which a locked jaw may need less of."""
+    least = resisted(motions, load, center)
+    return min(least, need.value) if stiffness else least
 
 
 def resisted(motions: Array, load: Load, center: tuple[float, float]) -> float:

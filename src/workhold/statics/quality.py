@@ -16,12 +16,15 @@ from workhold.kernels.statics.quality import figures
 from workhold.kernels.statics.reactions import LOAD_LENGTH
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, PENALTY, SMALLEST_FACE, TILT, WARNINGS
 from workhold.model.result import FixtureTable, Result, fixture_at
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
+from workhold.statics.jaw import jaw_forces_needed
+from workhold.statics.judging import Judging
+from workhold.statics.lying import face_sizes, main_direction, tilts
 
 __all__ = ["load_rows", "measured_fixture", "quality_of"]
 
@@ -33,46 +36,52 @@ BLOCK = 1 << 13
 def quality_of(
     table: FixtureTable,
     workpiece: Workpiece,
-    vise: Vise,
+    toolkit: Toolkit,
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
     threads: int = 1,
     touched: Touched | None = None,
+    jaw_force: float | None = None,
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
     Parameters
     ----------
     table : N fixtures.
-    workpiece, vise : what they hold and in what.
+    workpiece, toolkit : what they hold and in what.
     tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
     loads : for the load reaction, the worst of them; each acts by itself.
     threads : how many threads share the work; the outcome does not depend on it.
     touched : the workpiece's contact features, where they are known already.
+    jaw_force : in N, for the warning that a peg lets go under a load.
 
     Returns
     -------
-    (N, 6) array, columns in the order of ``model.quality.FIGURES``; NaN for a load reaction without loads, and for pegs
+    (N, 12) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads, and for pegs
     whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
-    known = touched or Touched.of(workpiece, vise)
+    known = touched or Touched.of(workpiece, toolkit)
     corners, arcs = extremes(workpiece)
     rows = load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
+    direction, sizes = main_direction(workpiece), face_sizes(workpiece)
+    radius = max(carrier.peg_radius for carrier in toolkit.carriers)
+    judging = Judging.of(2 * (known.length - radius), tolerance, jaw_force)
     out = np.empty((len(table), len(FIGURES)))
 
     def fill(start: int) -> None:
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
-        moves = vise.peg_carriers(block.arrangement).astype(np.float64)
-        x, y = vise.places(block.arrangement, block.column, block.row, block.jaw_separation)
-        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, moves, faces)
+        carriers = toolkit.peg_carriers(block.arrangement)
+        x, y = toolkit.places(block.arrangement, block.column, block.row, block.jaw_separation)
+        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, faces)
         figures(
             contact_matrices.points,
             contact_matrices.normals,
             contact_matrices.ends,
+            contact_matrices.edges,
             contact_matrices.inverses,
             faces,
             known.length,
@@ -80,8 +89,16 @@ def quality_of(
             corners,
             arcs,
             rows,
-            out[start : start + BLOCK],
+            filled := out[start : start + BLOCK],
+            np.empty((8, 3)),
         )
+        filled[:, JAW_FORCE_NEEDED] = (
+            jaw_forces_needed(contact_matrices.inverses, known.length, rows) if loads else np.nan
+        )
+        filled[:, TILT] = tilts(block.theta, direction)
+        filled[:, SMALLEST_FACE] = sizes[faces].min(axis=1, initial=np.inf)
+        filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
+        filled[:, PENALTY] = judging.penalty(filled)
 
     starts = range(0, len(table), BLOCK)
     if threads > 1 and len(starts) > 1:
@@ -93,12 +110,15 @@ def quality_of(
     return out
 
 
-def measured_fixture(result: Result, index: int, loads: Sequence[Load] | None = None) -> Fixture:
-    """One fixture of a result with all figures of quality that can be known, for its own loads or for others."""
+def measured_fixture(
+    result: Result, index: int, loads: Sequence[Load] | None = None, jaw_force: float | None = None
+) -> Fixture:
+    """One fixture of a result with all figures of quality, for the result's loads and jaw force or for others."""
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
-    quality = quality_of(row, result.workpiece, result.vise, result.query.tolerance, asked)
-    return fixture_at(evolve(row, quality=quality), result.vise, 0)
+    force = result.query.jaw_force if jaw_force is None else jaw_force
+    quality = quality_of(row, result.workpiece, result.toolkit, result.query.tolerance, asked, jaw_force=force)
+    return fixture_at(evolve(row, quality=quality), result.toolkit, 0)
 
 
 def extremes(workpiece: Workpiece) -> tuple[Array, Array]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+
 __all__ = ["outward_normals"]
 
 Array = NDArray[np.float64]
@@ -22,6 +24,7 @@ def outward_normals(rows: Array, points: Array) -> Array:
     -------
     (..., 2) array
     """
-    radial = rows[..., 7:8] * (points - rows[..., 1:3]) / np.where(rows[..., 6:7] == 0.0, 1.0, rows[..., 6:7])
-    straight = np.stack([rows[..., 4], -rows[..., 3]], axis=-1)
-    return np.where(rows[..., :1] == 0.0, straight, radial)
+    is_arc, radius, sign = (rows[..., k, None] for k in (IS_ARC, RADIUS, SIGN))
+    radial = sign * (points - rows[..., X : Y + 1]) / np.where(radius == 0.0, 1.0, radius)
+    straight = np.stack([rows[..., AXIS_Y], -rows[..., AXIS_X]], axis=-1)
+    return np.where(is_arc == 0.0, straight, radial)

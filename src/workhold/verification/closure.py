@@ -11,10 +11,11 @@ from collections.abc import Iterator, Sequence
 from attrs import frozen
 from flint import arb
 
-from workhold.verification.balls import Point, cross, dot
+from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.rules import LEAST_CLAMPING, LEAST_SHARE, LEAST_SPAN
+from workhold.verification.hardware import Hardware
+from workhold.verification.rules import LEAST_SHARE, LEAST_SPAN
 
 __all__ = ["Balance", "closure_findings", "minors", "span"]
 
@@ -48,7 +49,7 @@ class Balance:
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
     vector : the null vector of the wrenches, not scaled, see :func:`minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
-    clamp : the force that the moving jaw passes on in the direction in which it clamps, for these shares.
+    clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
     """
 
     points: tuple[Point, ...]
@@ -59,16 +60,15 @@ class Balance:
 
     @classmethod
     def of(cls, contacts: Sequence[Contact], pose: Pose, clamping: int) -> Balance:
-        """The balance of four contacts; ``clamping`` is 1 where closing the vise clamps, -1 where opening it does."""
+        """The balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
         points = tuple(contact.in_part(pose) for contact in contacts)
         normals = tuple(contact.side.outward(point) for contact, point in zip(contacts, points, strict=True))
         vector = tuple(minors(points, normals))
         total = sum(vector, arb(0))
         shares = tuple(entry / total for entry in vector)
-        # The push of a left peg along the vise's x axis is -n turned into the vise frame.
-        across = pose.cosine, -pose.sine
-        lefts = [k for k, contact in enumerate(contacts) if not contact.right]
-        push = -sum((shares[k] * dot(across, normals[k]) for k in lefts), arb(0))
+        # A peg pushes along -n, and clamps against its way.
+        ways = [turned(contact.way, pose.cosine, -pose.sine) for contact in contacts]
+        push = sum((s * dot(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0))
         return cls(points, normals, vector, shares, clamping * push)
 
     @property
@@ -77,8 +77,8 @@ class Balance:
         return [share / self.clamp for share in self.shares]
 
 
-def closure_findings(balance: Balance, wrench_length: float, clamping: int) -> Iterator[Finding]:
-    """Whether four contacts close, and whether closing the vise clamps (opening it, where ``clamping`` is -1).
+def closure_findings(balance: Balance, wrench_length: float, hardware: Hardware) -> Iterator[Finding]:
+    """Whether four contacts close, and whether what moves clamps.
 
     ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm.
     """
@@ -90,15 +90,14 @@ def closure_findings(balance: Balance, wrench_length: float, clamping: int) -> I
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
         yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
         return
-    for position, share in enumerate(balance.shares, 1):
+    for name, share in zip(hardware.names, balance.shares, strict=True):
         yield from rule(
             share - LEAST_SHARE,
-            f"the contacts do not hold the part: the share of peg {position} in the closure is {number(share)}",
-            f"the share of peg {position} in the closure is exactly at its limit",
+            f"the contacts do not hold the part: the share of {name} in the closure is {number(share)}",
+            f"the share of {name} in the closure is exactly at its limit",
         )
-    move = "closing" if clamping > 0 else "opening"
     yield from rule(
-        balance.clamp - LEAST_CLAMPING,
-        f"{move} the vise does not clamp: the clamping force is {number(balance.clamp)}",
+        balance.clamp - hardware.least_clamping,
+        f"{hardware.slack_words}: the clamping force is {number(balance.clamp)}",
         "the clamping force is exactly at its limit",
     )

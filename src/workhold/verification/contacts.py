@@ -1,7 +1,8 @@
-"""The four contact equations of a fixture in its unknowns theta, x, y and jaw separation.
+"""The four contact equations of a fixture in its unknowns theta, x, y and travel.
 
-A workpiece point q lies at R(theta) q + t, t = (x, y), and a right peg at its hole's place for S = 0 plus (S, 0). With u the
-vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
+A workpiece point q lies at R(theta) q + t, t = (x, y), and a peg that moves at its hole's place plus S times its way, S
+being the travel: of a vise the jaw separation, of a clamp how far its tip is from its hole. With u the vector from t to the
+peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
 - an arc about c when (|u - C|² - reach²) / 2 = 0, reach = r + rho on a convex and r - rho on a concave arc.
@@ -14,7 +15,7 @@ from collections.abc import Sequence
 from attrs import frozen
 from flint import arb, arb_mat
 
-from workhold.verification.balls import Point, turned
+from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
 
 __all__ = ["Contact", "Pose", "contact_system"]
@@ -22,19 +23,19 @@ __all__ = ["Contact", "Pose", "contact_system"]
 
 @frozen(eq=False)
 class Pose:
-    """Unknowns of a fixture: orientation in radians (cosine and sine with it), place and jaw separation in mm."""
+    """Unknowns of a fixture: orientation in radians (cosine and sine with it), place and travel in mm."""
 
     theta: arb
     x: arb
     y: arb
-    separation: arb
+    travel: arb
     cosine: arb
     sine: arb
 
     @classmethod
-    def of(cls, theta: arb, x: arb, y: arb, separation: arb) -> Pose:
+    def of(cls, theta: arb, x: arb, y: arb, travel: arb) -> Pose:
         """The pose with its cosine and sine."""
-        return cls(theta, x, y, separation, theta.cos(), theta.sin())
+        return cls(theta, x, y, travel, theta.cos(), theta.sin())
 
 
 @frozen(eq=False)
@@ -43,36 +44,41 @@ class Contact:
 
     Parameters
     ----------
-    hole : place of its hole in mm when the jaw separation is 0.
-    right : 1 on the right jaw, which moves with the jaw separation, 0 on the left one.
+    hole : where it is in mm without any travel.
+    way : unit vector along which it moves as the travel grows; (0, 0) where it stands still.
     side : the face touched.
     radius : of the peg, in mm.
     """
 
     hole: Point
-    right: int
+    way: Point
     side: Side
     radius: arb
 
     def from_origin(self, pose: Pose) -> Point:
-        """Vector in the vise frame from the workpiece's origin to the peg's centre, in mm."""
-        return self.hole[0] + self.right * pose.separation - pose.x, self.hole[1] - pose.y
+        """Vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""
+        x, y = self.place(pose)
+        return x - pose.x, y - pose.y
+
+    def place(self, pose: Pose) -> Point:
+        """The peg's centre in the toolkit's frame, in mm."""
+        return self.hole[0] + self.way[0] * pose.travel, self.hole[1] + self.way[1] * pose.travel
 
     def in_part(self, pose: Pose) -> Point:
         """The peg's centre in the workpiece's frame, in mm."""
         return turned(self.from_origin(pose), pose.cosine, -pose.sine)
 
     def equation(self, pose: Pose) -> tuple[arb, list[arb]]:
-        """Value of the contact equation, and its derivatives by theta, x, y and separation."""
+        """Value of the contact equation, and its derivatives by theta, x, y and travel."""
         u, side = self.from_origin(pose), self.side
         if isinstance(side, LineSide):
             n = turned(side.normal, pose.cosine, pose.sine)
-            value = n[0] * u[0] + n[1] * u[1] - side.level - self.radius
-            return value, [n[0] * u[1] - n[1] * u[0], -n[0], -n[1], self.right * n[0]]
+            value = dot(n, u) - side.level - self.radius
+            return value, [cross(n, u), -n[0], -n[1], dot(self.way, n)]
         c = turned(side.center, pose.cosine, pose.sine)
         w = u[0] - c[0], u[1] - c[1]
-        value = (w[0] * w[0] + w[1] * w[1] - side.reach(self.radius) ** 2) / 2
-        return value, [w[0] * c[1] - w[1] * c[0], -w[0], -w[1], self.right * w[0]]
+        value = (dot(w, w) - side.reach(self.radius) ** 2) / 2
+        return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
 
 
 def contact_system(contacts: Sequence[Contact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:

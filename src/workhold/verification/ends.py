@@ -23,7 +23,7 @@ from workhold.verification.balls import Point, cross, dot, norm, root, turned
 from workhold.verification.rules import HAIR
 from workhold.verification.sides import ArcSide, LineSide, Side
 
-__all__ = ["Barrier", "barriers", "end_distance"]
+__all__ = ["Barrier", "barriers", "edge_distances", "end_distance", "length_of", "on_circle", "on_line"]
 
 Barrier = tuple[arb, arb]
 
@@ -41,6 +41,18 @@ def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Poi
     for low, high in beside:
         nearest = nearest.min(low - place if place.mid() < low.mid() else place - high)
     return nearest
+
+
+def edge_distances(
+    side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
+) -> list[arb]:
+    """The same to every barrier and to the ends of the side that are no tangent joints, as ``smooth`` says of its two."""
+    if isinstance(side, ArcSide) and side.whole:
+        return []
+    slacks = side.slacks(center, radius)
+    place = slacks[0]
+    ways = [low - place if place.mid() < low.mid() else place - high for low, high in beside]
+    return ways + [slack for slack, joined in zip(slacks, smooth, strict=True) if not joined]
 
 
 def barriers(side: Side, radius: arb, others: Iterable[Side]) -> list[Barrier]:

@@ -1,11 +1,12 @@
 """The figures of quality, in balls and from the outline alone (model: "Quality"; what they mean is in docs/quality.md).
 
-With A the matrix of rows (n_x, n_y, q x n, n . x on the right jaw and 0 on the left) of a fixture's contacts at q with
-outward unit normals n, in the workpiece's frame and about its origin:
+With A the matrix of rows (n_x, n_y, q x n, n . w) of a fixture's contacts at q with outward unit normals n, in the
+workpiece's frame and about its origin, w being the way of a peg that moves, such as x on the right jaw, and 0 of one that
+stands still:
 
 - when peg i stands delta_i too far towards the workpiece, A y = -delta, y being the workpiece's movement, its turn and how
-  far the jaw closes;
-- forces f that balance a load (g_x, g_y, moment) while the right jaw is not pushed are A^-T (g_x, g_y, moment, 0).
+  far what moves gives way;
+- forces f that balance a load (g_x, g_y, moment) while what moves is not pushed are A^-T (g_x, g_y, moment, 0).
 
 Neither the movements of points nor the forces depend on the point that moments are taken about, or on their scale. These are
 the figures of ``statics.quality``, and nothing of it is used.
@@ -21,19 +22,23 @@ from flint import arb, arb_mat
 
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.verification.asked import Asked
-from workhold.verification.balls import Point, cross, dot, exact_point, norm, root
+from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.query import Query
+from workhold.verification.balls import Point, cross, dot, exact_point, norm, root, turned
 from workhold.verification.closure import Balance
 from workhold.verification.contacts import Contact, Pose
-from workhold.verification.ends import Barrier, barriers, end_distance
+from workhold.verification.ends import Barrier, barriers, edge_distances, end_distance, length_of
 from workhold.verification.findings import Finding, rule
+from workhold.verification.judging import main_direction, penalty, tilt, warnings
 from workhold.verification.outline import Outline
-from workhold.verification.rules import FIGURE_AGREEMENT, HAIR, ROUNDING
+from workhold.verification.rules import FIGURE_AGREEMENT, HAIR, ROUNDING, SAME_END, TANGENT
 from workhold.verification.sides import ArcSide
 
-__all__ = ["Measure", "box_center", "written_numbers"]
+__all__ = ["Measure", "box_center", "figure_missing", "written_numbers"]
 
-END_DISTANCE = "end_distance"
+# Figures of which any number in a range may be right.
+COUNTS = ("warnings", "penalty")
+RANGES = ("end_distance", "edge_distance", "tilt", *COUNTS)
 
 
 @frozen(eq=False)
@@ -84,20 +89,22 @@ class Measure:
     Parameters
     ----------
     outline : of the workpiece.
-    radius : of the pegs in mm.
     wrench_length : L in mm.
+    diameter : of the part, in mm.
     center : of the part's bounding box.
     arcs : the convex arcs of the outer loop, each face whole.
     centers, corners : (A, 4) and (C, 4) rows 1, x² + y², x, y of their centres, and of the joints of the outer loop that may
         be farthest from some point; in mm.
     peg, face : how far they may be off, in mm.
     loads : as asked for.
-    beside : the barriers on each face's contact feature, as far as they are known (``verification.ends``).
+    direction : main direction of the part in degrees (``verification.judging``).
+    jaw_force : in N, None where none was said.
+    beside : the barriers on the contact feature of each face and radius, as far as they are known (``verification.ends``).
     """
 
     outline: Outline
-    radius: arb
     wrench_length: float
+    diameter: float
     center: Point
     arcs: tuple[ArcSide, ...]
     centers: arb_mat
@@ -105,54 +112,113 @@ class Measure:
     peg: arb
     face: arb
     loads: tuple[DirectedLoad, ...]
-    beside: dict[int, list[Barrier]] = field(factory=dict, init=False)
+    direction: arb
+    jaw_force: float | None
+    beside: dict[tuple[int, float], list[Barrier]] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, outline: Outline, outer: int, radius: float, wrench_length: float, asked: Asked) -> Measure:
-        """The measure at the precision in force; the outer loop has the first ``outer`` segments."""
+    def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
+        """The measure at the precision in force."""
+        outline, outer = Outline.of(query.workpiece), len(query.workpiece.loops[0])
         silhouette = [side for number, side in outline.faces.items() if number < outer]
         arcs = tuple(side for side in silhouette if isinstance(side, ArcSide) and side.sign > 0)
         joints = [side.start for side in outline.segments[:outer]]
         return cls(
             outline,
-            arb(radius),
             wrench_length,
+            diameter,
             box_center(outline),
             arcs,
             moment_rows([arc.center for arc in arcs]),
             moment_rows(hull(joints)),
-            arb(asked.tolerance.peg),
-            arb(asked.tolerance.face),
-            tuple(DirectedLoad.of(load) for load in asked.loads),
+            arb(query.tolerance.peg),
+            arb(query.tolerance.face),
+            tuple(DirectedLoad.of(load) for load in query.loads),
+            main_direction(list(outline.faces.values())),
+            query.jaw_force,
         )
 
     def figures(
         self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance
     ) -> Mapping[str, arb]:
         """The figures of a fixture by their keys; no load reaction without loads."""
-        across = pose.cosine, -pose.sine
         rows = [
-            [*normal, cross(point, normal), contact.right * dot(across, normal)]
+            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
             for contact, point, normal in zip(contacts, balance.points, balance.normals, strict=True)
         ]
-        inverse = arb_mat(rows).inv().tolist()
+        try:
+            inverse = arb_mat(rows).inv().tolist()
+        except ZeroDivisionError:
+            # The pose is not known well enough for any figure but those of the forces.
+            return {"closure_margin": least(balance.shares), "clamp_amplification": largest(balance.forces)}
+        pegs = list(zip(contacts, faces, balance.points, strict=True))
+        edges = [edge for peg in pegs if (edge := self.edge_distance(*peg)) is not None]
         out = {
             "closure_margin": least(balance.shares),
             "clamp_amplification": largest(balance.forces),
             "wrench_radius": self.wrench_radius(balance),
             "location_error": self.location_error(inverse, faces),
-            "end_distance": least(
-                [self.end_distance(*peg) for peg in zip(contacts, faces, balance.points, strict=True)]
-            ),
+            "end_distance": least([self.end_distance(*peg) for peg in pegs]),
+            "edge_distance": least([arb(self.wrench_length), *edges]),
+            "tilt": tilt(pose, self.direction),
+            "smallest_face": least([c.side.radius if isinstance(c.side, ArcSide) else c.side.length for c in contacts]),
         }
-        return out | {"load_reaction": self.load_reaction(inverse, balance)} if self.loads else out
+        if self.loads:
+            out["load_reaction"] = self.load_reaction(inverse, balance)
+            out["jaw_force_needed"] = self.jaw_force_needed(inverse, balance)
+        part = parts_spared(balance)
+        out["warnings"] = warnings(out, edges, self.peg + self.face, self.jaw_force, part)
+        out["penalty"] = penalty(out, self.peg + self.face, self.diameter, part)
+        return out
+
+    def barriers(self, contact: Contact, face: int) -> list[Barrier]:
+        """The barriers on the contact feature of a face that a peg touches."""
+        key, others = (face, float(contact.radius)), (other for _, other in self.outline.others[face])
+        if key not in self.beside:
+            self.beside[key] = barriers(contact.side, contact.radius, others)
+        return self.beside[key]
 
     def end_distance(self, contact: Contact, face: int, center: Point) -> arb:
         """Distance in mm of a peg on a face from the nearer end of its contact feature."""
-        if face not in self.beside:
-            others = (side for _, side in self.outline.others[face])
-            self.beside[face] = barriers(contact.side, self.radius, others)
-        return end_distance(contact.side, self.radius, self.beside[face], center)
+        return end_distance(contact.side, contact.radius, self.barriers(contact, face), center)
+
+    def edge_distance(self, contact: Contact, face: int, center: Point) -> arb | None:
+        """Distance in mm of a peg on a face from the nearer edge of its contact feature; None where there is none.
+
+        A tangent joint is none, unless it is with a hollow that leaves a peg no way on. Where either is in doubt, any
+        distance between the two is right.
+        """
+        beside, outline, radius = self.barriers(contact, face), self.outline, contact.radius
+        readings: list[tuple[bool, bool]] = []
+        for side, smooth, turn in zip(outline.neighbours[face], outline.smooth[face], outline.turns[face], strict=True):
+            length, sure = length_of(side, radius), bool(turn > 2 * TANGENT or turn * radius < SAME_END)
+            open_way = smooth and bool(length > HAIR)
+            sure &= not (smooth and bool(HAIR / 10 < length < 10 * HAIR))
+            readings.append((open_way, open_way) if sure else (False, True))
+        found = []
+        for one, two in zip(*readings, strict=True):
+            ways = edge_distances(contact.side, radius, beside, center, (one, two))
+            found.append(least(ways) if ways else None)
+        near, far = found
+        if near is None:
+            return None
+        return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
+
+    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance) -> arb:
+        """Jaw force in N above which no peg of a screw vise lets go, and never less than 0.
+
+        Of the forces f0 that balance a load while the jaw keeps its force, locking it leaves the part at right angles to h:
+        the largest of (h . f0) / (h . h) - f0_i / h_i.
+        """
+        most, total = arb(0), sum((force * force for force in balance.forces), arb(0))
+        pairs = [list(zip(row, balance.forces, strict=True)) for row in inverse[:3]]
+        shares = [sum((entry * force for entry, force in row), arb(0)) / total for row in pairs]
+        for i, force in enumerate(balance.forces):
+            a, b, c = (share - row[i] / force for share, row in zip(shares, inverse[:3], strict=True))
+            for load in self.loads:
+                for x, y in load.points:
+                    most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
+        return most
 
     def wrench_radius(self, balance: Balance) -> arb:
         """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, (q - c) x n / L).
@@ -287,20 +353,40 @@ def box_center(outline: Outline) -> Point:
     return middle[0], middle[1]
 
 
-def written_numbers(fixture: Fixture, balance: Balance, figures: Mapping[str, arb]) -> Iterator[Finding]:
-    """Whether the forces and the figures of quality of the file are the derived ones.
+def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
+    """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
+    for figure in FIGURES:
+        wanted = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
+        if wanted != (figure.key in fixture.quality):
+            return (
+                f"its {figure.words} is missing" if wanted else f"its {figure.words} is given, and there are no loads"
+            )
+    return ""
+
+
+def parts_spared(balance: Balance) -> arb:
+    """To which parts of themselves forces and figures of the file agree with the derived ones."""
+    amplification = largest(balance.forces)
+    return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
+
+
+def written_numbers(
+    fixture: Fixture, names: Sequence[str], balance: Balance, figures: Mapping[str, arb]
+) -> Iterator[Finding]:
+    """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
 
     They were computed in double precision from a pose that is rounded, which moves a fixture by as much more, and then its
     forces by as much more again, as its forces are larger than the clamping force. A derived end distance is a range where
-    the clearance passes slowly through zero, and any number in it is right.
+    the clearance passes slowly through zero, and any number in it is right; so is a count beside the edge of what it counts.
     """
-    amplification = largest(balance.forces)
-    part = FIGURE_AGREEMENT + ROUNDING * amplification * amplification
-    for position, (peg, force) in enumerate(zip(fixture.pegs, balance.forces, strict=True), 1):
-        yield from written(f"the force of peg {position}", peg.force, force, part * abs(force))
+    part = parts_spared(balance)
+    for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):
+        yield from written(f"the force of {name}", peg.force, force, part * abs(force))
     for key, derived in figures.items():
         if key in fixture.quality:
-            spare = part * abs(derived) + (2 * derived.rad() if key == END_DISTANCE else 0)
+            if key in COUNTS and not fixture.quality[key].is_integer():
+                yield Finding(True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number")
+            spare = part * abs(derived) + (2 * derived.rad() if key in RANGES else 0)
             yield from written(f"its {key.replace('_', ' ')}", fixture.quality[key], derived, spare)
 
 

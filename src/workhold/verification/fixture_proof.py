@@ -12,17 +12,17 @@ from flint import arb, ctx
 
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
+from workhold.model.query import Query
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.verification.asked import Asked
 from workhold.verification.balls import PRECISIONS
 from workhold.verification.closure import Balance, closure_findings
 from workhold.verification.contacts import Contact, Pose, contact_system
 from workhold.verification.figures import Measure, written_numbers
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.holes import hole_findings, hole_place, jaw_findings
+from workhold.verification.hardware import Hardware
+from workhold.verification.kinds import hardware_of
 from workhold.verification.krawczyk import certified_zero
-from workhold.verification.outline import Outline
 from workhold.verification.rules import AGREEMENT
 from workhold.verification.sides import ArcSide
 from workhold.verification.touching import touching_findings
@@ -48,36 +48,39 @@ class Ruling:
     bits: int
 
 
-def verify_fixture(fixture: Fixture, workpiece: Workpiece, vise: Vise, contact_margin: float = 0.0) -> Ruling:
-    """Prove or refute one fixture from workpiece, vise, pegs and faces alone.
+def verify_fixture(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, contact_margin: float = 0.0) -> Ruling:
+    """Prove or refute one fixture from workpiece, toolkit, pegs and faces alone.
 
     Parameters
     ----------
     fixture : as a result lists it; floats are taken as the rational numbers they are.
     contact_margin : smallest distance in mm from a contact to the end of its feature.
     """
-    return Judge(workpiece, vise, contact_margin).rule_on(fixture)
+    return Judge(Query(workpiece, toolkit, contact_margin=contact_margin)).rule_on(fixture)
 
 
 @frozen(eq=False)
 class Judge:
-    """Proves or refutes fixtures of one workpiece in one vise; see :func:`verify_fixture`.
+    """Proves or refutes fixtures that a query asks for; see :func:`verify_fixture`.
 
-    ``asked`` tells for which tolerance and loads the figures of quality are; without it the location error is taken to be
-    that of the default tolerance.
+    Parameters
+    ----------
+    query : what is asked.
+    hardware : the rules of its toolkit.
+    diameter, wrench_length : of the part, and L of the wrenches, half that of the peg-centre locus; in mm.
     """
 
-    workpiece: Workpiece
-    vise: Vise
-    contact_margin: float = 0.0
-    asked: Asked = field(factory=Asked)
+    query: Query
     measures: dict[int, Measure] = field(factory=dict, init=False)
+    hardware: Hardware = field(init=False)
+    diameter: float = field(init=False)
     wrench_length: float = field(init=False)
 
-    @wrench_length.default
-    def half_the_locus(self) -> float:
-        """L of the wrenches in mm: half the diameter of the peg-centre locus."""
-        return outline_diameter(self.workpiece) / 2 + self.vise.peg_radius
+    def __attrs_post_init__(self) -> None:
+        hardware, diameter = hardware_of(self.query.toolkit), outline_diameter(self.query.workpiece)
+        object.__setattr__(self, "hardware", hardware)
+        object.__setattr__(self, "diameter", diameter)
+        object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
 
     def rule_on(self, fixture: Fixture) -> Ruling:
         """The ruling on one fixture, at the lowest precision that decides it."""
@@ -92,8 +95,7 @@ class Judge:
     def ruling_at(self, bits: int, fixture: Fixture) -> Ruling:
         """The ruling at the precision in force."""
         if bits not in self.measures:
-            outline, outer = Outline.of(self.workpiece), len(self.workpiece.loops[0])
-            self.measures[bits] = Measure.of(outline, outer, self.vise.peg_radius, self.wrench_length, self.asked)
+            self.measures[bits] = Measure.of(self.wrench_length, self.diameter, self.query)
         doubt = ""
         for finding in self.findings(fixture, self.measures[bits]):
             if finding.definite:
@@ -103,32 +105,31 @@ class Judge:
 
     def findings(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
         """Everything that speaks against a fixture, cheap rules first; nobody asks on after a definite finding."""
-        outline, clamping = measure.outline, self.vise.clamping
-        yield from hole_findings(fixture, self.vise)
-        for position, peg in enumerate(fixture.pegs, 1):
+        outline, hardware = measure.outline, self.hardware
+        yield from hardware.hole_findings(fixture)
+        for name, peg in zip(hardware.names, fixture.pegs, strict=True):
             if peg.face not in outline.faces:
-                yield Finding(True, f"peg {position} is on segment {peg.face}, which does not name a face")
-        contacts = [
-            Contact(hole_place(peg, self.vise), int(peg.jaw == "right"), outline.faces[peg.face], measure.radius)
-            for peg in fixture.pegs
-        ]
+                yield Finding(True, f"{name} is on segment {peg.face}, which does not name a face")
+        contacts = [hardware.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs]
         faces = [peg.face for peg in fixture.pegs]
-        for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
-            if isinstance(contact.side, ArcSide) and not contact.side.reach(measure.radius) > 0:
-                yield Finding(True, f"peg {position} does not fit into the concave face {face}")
-        yield from pose_findings(fixture, contacts, faces)
-        solution, doubts = proven_pose(fixture, contacts)
+        touching = list(zip(hardware.names, contacts, faces, strict=True))
+        for name, contact, face in touching:
+            if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
+                yield Finding(True, f"{name} does not fit into the concave face {face}")
+        yield from pose_findings(fixture, touching)
+        proven, doubts = proven_pose(fixture, contacts, hardware.travel_words)
         yield from doubts
-        if solution is None:
-            return
-        yield from jaw_findings(fixture, self.vise, solution.separation)
-        for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
-            yield from touching_findings(f"peg {position}", contact, face, solution, outline, self.contact_margin)
-        balance = Balance.of(contacts, solution, clamping)
-        loose = list(closure_findings(balance, self.wrench_length, clamping))
+        # Without a proof, what holds at no pose that agrees with the file's still refutes.
+        solution = proven or written_pose(fixture)
+        yield from hardware.standing_findings(fixture, contacts, solution, outline)
+        for name, contact, face in touching:
+            yield from touching_findings(name, contact, face, solution, outline, self.query.contact_margin)
+        balance = Balance.of(contacts, solution, self.query.toolkit.clamping)
+        loose = list(closure_findings(balance, self.wrench_length, hardware))
         yield from loose
-        if not loose:
-            yield from written_numbers(fixture, balance, measure.figures(contacts, faces, solution, balance))
+        if not loose or proven is None:
+            figures = measure.figures(contacts, faces, solution, balance)
+            yield from written_numbers(fixture, hardware.names, balance, figures)
 
 
 def degree() -> arb:
@@ -136,41 +137,47 @@ def degree() -> arb:
     return arb.pi() / 180
 
 
-def pose_findings(fixture: Fixture, contacts: list[Contact], faces: list[int]) -> Iterator[Finding]:
-    """Whether any pose that agrees with the file's, and a separation likewise, could touch all four faces.
+def pose_findings(fixture: Fixture, touching: list[tuple[str, Contact, int]]) -> Iterator[Finding]:
+    """Whether any pose that agrees with the file's, and a travel likewise, could touch all four faces.
 
     The gaps are enclosed over all of them at once; a gap that is certainly not the peg radius refutes the fixture.
     """
-    written, backward_error = fixture.pose, arb(0, AGREEMENT)
-    theta = (written.theta_deg + backward_error) * degree()
-    around = Pose.of(
-        theta, written.x + backward_error, written.y + backward_error, fixture.jaw_separation + backward_error
-    )
-    for position, (contact, face) in enumerate(zip(contacts, faces, strict=True), 1):
+    around = written_pose(fixture)
+    for name, contact, face in touching:
         off = contact.side.gap(contact.in_part(around)) - contact.radius
         if off > 0 or off < 0:
-            yield Finding(True, f"peg {position} is {number(off)} mm away from touching face {face}")
+            yield Finding(True, f"{name} is {number(off)} mm away from touching face {face}")
 
 
-def proven_pose(fixture: Fixture, contacts: list[Contact]) -> tuple[Pose | None, list[Finding]]:
-    """The proven solution of the contact equations near the file's pose, if there is one, and what is wrong with it."""
+def written_pose(fixture: Fixture) -> Pose:
+    """All poses that agree with the file's, with travels likewise."""
+    written, off = fixture.pose, arb(0, AGREEMENT)
+    theta = (written.theta_deg + off) * degree()
+    return Pose.of(theta, written.x + off, written.y + off, fixture.jaw_separation + off)
+
+
+def proven_pose(fixture: Fixture, contacts: list[Contact], travel_words: str) -> tuple[Pose | None, list[Finding]]:
+    """The proven solution of the contact equations near the file's pose, if there is one, and what is wrong with it.
+
+    ``travel_words`` say what the travel is called.
+    """
     written = fixture.pose
     start = [radians(written.theta_deg), written.x, written.y, fixture.jaw_separation]
     zero = certified_zero(partial(contact_system, contacts), start)
     if zero is None:
         words = "the contact equations have no single solution that can be proven near the pose in the file"
         return None, [Finding(False, words)]
-    theta, x, y, separation = zero
+    theta, x, y, travel = zero
     findings: list[Finding] = []
     comparisons = (
         ("angle", "degrees", theta / degree(), written.theta_deg),
         ("x", "mm", x, written.x),
         ("y", "mm", y, written.y),
-        ("jaw separation", "mm", separation, fixture.jaw_separation),
+        (travel_words, "mm", travel, fixture.jaw_separation),
     )
     for name, unit, derived, value in comparisons:
         off = abs(derived - value)
         if not off < AGREEMENT:
             words = f"the {name} in the file is {number(off)} {unit} from the one that touches all four faces"
             findings += rule(AGREEMENT - off, words, words)
-    return Pose.of(theta, x, y, separation), findings
+    return Pose.of(theta, x, y, travel), findings

@@ -1,34 +1,36 @@
 """What a result claims, number for number as its file writes it.
 
-The result reader drops what it can work out again, such as the pegs' x and y, and refuses files that contradict themselves.
-A verification has to see every number, so this module reads the file by itself. Fixtures become compact objects while the
-JSON is parsed.
+Reading a result to use it drops what can be worked out again, such as the pegs' x and y, and takes what the file does not
+give for the usual. A verification has to see every number, and what is missing. Head and lines come by the one reader
+there is of result files (``files.result.parts``); what is made of them here is compared with nothing of the search.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from attrs import field, frozen
+from attrs import frozen
 
+from workhold.archive import is_archive
 from workhold.errors import InputError
+from workhold.files.result.forms import Head
+from workhold.files.result.head import checked_head
+from workhold.files.result.parts import read_parts
+from workhold.files.text import json_value
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.holes import holes_named
+from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
+from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.vise import OpeningVise, Vise
-from workhold.model.workpiece import Workpiece
-from workhold.verification.asked import Asked, asked_in, asked_of
+from workhold.verification.columns import Columns, FixturesInColumns, columns_of
+from workhold.verification.hardware import Hardware
+from workhold.verification.kinds import hardware_of
+from workhold.verification.plate import PLATE, WAYS, clamp_place
 
 __all__ = ["Listing", "listing_of", "read_listing"]
-
-FORMAT = "workhold-result/1"
-KINDS = ("I", "II")
-TOOLKITS: Mapping[Any, type[Vise]] = {toolkit.kind: toolkit for toolkit in (Vise, OpeningVise)}
 
 
 @frozen(eq=False)
@@ -37,46 +39,46 @@ class Listing:
 
     Parameters
     ----------
-    workpiece, vise, contact_margin : what was asked.
+    query : what was asked.
     fixtures : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
+    complete, notes, statistics, proof : see ``Result``.
     faults : contradictions in the head of the file, one sentence each.
-    asked : what was asked for beyond fixtures.
     """
 
-    workpiece: Workpiece
-    vise: Vise
-    contact_margin: float
+    query: Query
     fixtures: Sequence[Fixture]
     counts: Mapping[str, int]
     found: Mapping[str, int]
     distinct: Mapping[str, int]
+    complete: bool
+    notes: Sequence[str]
+    statistics: Mapping[str, int]
+    proof: Proof | None
     faults: tuple[str, ...] = ()
-    asked: Asked = field(factory=Asked)
+
+    @property
+    def hardware(self) -> Hardware:
+        """The rules of its toolkit."""
+        return hardware_of(self.query.toolkit)
 
 
 class UnusableError(Exception):
     """A value of the wrong kind; the message goes behind the place."""
 
 
-@frozen
-class Unusable:
-    """Stands for a fixture or a part of one that cannot be used."""
-
-    reason: str
-
-
 def listing_of(result: Result) -> Listing:
     """What a result claims that is not in a file."""
     return Listing(
-        result.workpiece,
-        result.vise,
-        result.query.contact_margin,
+        result.query,
         list(result),
         result.counts,
         result.found,
         result.distinct,
-        asked=asked_of(result),
+        result.complete,
+        result.notes,
+        result.statistics,
+        result.proof,
     )
 
 
@@ -86,70 +88,200 @@ def read_listing(path: str | Path) -> Listing:
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, or describes no usable workpiece or vise.
+        When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
     """
     path = Path(path)
+    head, taken = head_and_fixtures(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        query = head.query()
+        types = query.toolkit.types
+        return Listing(
+            query,
+            taken_in(taken, hardware_of(query.toolkit)),
+            numbers_of(head.counts, "counts", types),
+            numbers_of(head.found, "found", types, head.counts),
+            numbers_of(head.distinct, "distinct", types, head.counts),
+            head.complete,
+            head.notes,
+            head.statistics,
+            None if head.proof is None else head.proof.proof(),
+            (*keys_missing(head), *turned_loops(head.workpiece.loops, query)),
+        )
+    except InputError as error:
+        raise InputError(f"{path} cannot be verified: {error}") from error
+
+
+def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns]:
+    """The head of a file, and its fixtures, or their numbers where it is one in columns.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read or is no result file.
+    """
+    try:
+        if is_archive(path):
+            text, columns = columns_of(path)
+            return checked_head(json_value(text), path), columns
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not a result file: it is not text.") from error
-    try:
-        data = json.loads(text, object_hook=compact, parse_constant=refuse_constant)
-        return checked(data)
-    except (ValueError, UnusableError) as error:
-        # An InputError about workpiece or vise is a ValueError, too.
-        raise InputError(f"{path} cannot be verified: {str(error).rstrip('.')}.") from error
-    except RecursionError as error:
-        raise InputError(f"{path} is not a result file: its brackets are nested too deeply.") from error
+    return read_parts(path, fixtures_of)
 
 
-def refuse_constant(name: str) -> NoReturn:
-    """Refuse a constant that JSON does not have."""
-    raise ValueError(f"{name} is not a number")
+def taken_in(fixtures: list[Fixture] | Columns, hardware: Hardware) -> Sequence[Fixture]:
+    """Fixtures as they are read, of a kind of toolkit.
+
+    Raises
+    ------
+    InputError
+        Naming the first one that is of another kind.
+    """
+    if not isinstance(fixtures, list):
+        return FixturesInColumns(fixtures, hardware.toolkit)
+    out = []
+    for number, fixture in enumerate(fixtures, 1):
+        try:
+            out.append(hardware.taken(fixture))
+        except InputError as error:
+            raise InputError(f"fixture {number} cannot be used: {error}.") from error
+    return out
 
 
-def compact(item: dict[str, Any]) -> Any:
-    """A JSON object as a peg, a pose or a fixture when it has the keys of one, otherwise as it is."""
-    try:
-        if "jaw" in item:
-            if item["jaw"] not in ("left", "right"):
-                raise UnusableError(f"a peg's jaw is {item['jaw']!r}, not 'left' or 'right'")
-            column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
-            return Peg(item["jaw"], column, row, real(item, "x"), real(item, "y"), segment, real(item, "force"))
-        if "theta_deg" in item:
-            return Pose(real(item, "theta_deg"), real(item, "x"), real(item, "y"))
-        if "pegs" in item:
-            return fixture_from(item)
-    except UnusableError as error:
-        return Unusable(str(error))
-    return item
+def keys_missing(head: Head) -> list[str]:
+    """A fault for every key of the form that is not there: what would be taken for it is claimed by nobody."""
+    # Of a vise and a toolkit one is enough, an account that is missing is told in any case, and a fit decides nothing.
+    spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
+    return [f"the key {key} is missing" for key in head.not_given() if key not in spared]
 
 
-def fixture_from(item: dict[str, Any]) -> Fixture:
-    """A fixture from its JSON object, whose pegs and pose are objects already.
+def numbers_of(
+    counts: Mapping[str, int] | None, key: str, types: Sequence[str], usual: Mapping[str, int] | None = None
+) -> Mapping[str, int]:
+    """Numbers of fixtures by type.
+
+    Raises
+    ------
+    InputError
+        When they are not of the toolkit's types.
+    """
+    counts = usual if counts is None else counts
+    if counts is None or set(counts) != set(types):
+        raise InputError(f"{key} does not give a number for each of the types {', '.join(types)} and no other.")
+    return counts
+
+
+def turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
+    """A fault for every loop that does not run with the material on its left, which makes its numbers ambiguous."""
+    return [
+        f"loop {index} does not have the material on its left"
+        for index, (written, used) in enumerate(zip(loops, query.workpiece.loops, strict=True))
+        if written != used.tolist()
+    ]
+
+
+def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
+    """Fixtures from their JSON objects.
+
+    Raises
+    ------
+    InputError
+        Naming the first one that cannot be used, counted from 1.
+    """
+    fixtures = []
+    for number, item in enumerate(items, 1):
+        try:
+            fixtures.append(fixture_from(item))
+        except UnusableError as error:
+            raise InputError(f"{path} cannot be verified: number {number} in fixtures: {error}.") from error
+    return fixtures
+
+
+def fixture_from(item: Any) -> Fixture:
+    """A fixture from its JSON object.
 
     Raises
     ------
     UnusableError
         Saying what is missing.
     """
-    kind, pegs, pose = item.get("type"), item["pegs"], item.get("pose")
-    if kind not in KINDS:
-        raise UnusableError(f"its type is {kind!r}, not 'I' or 'II'")
-    for part in (*(pegs if isinstance(pegs, list) else ()), pose):
-        if isinstance(part, Unusable):
-            raise UnusableError(part.reason)
-    if not isinstance(pegs, list) or len(pegs) != 4 or not all(isinstance(peg, Peg) for peg in pegs):
+    if not isinstance(item, dict):
+        raise UnusableError("it is no fixture")
+    pegs, pose, quality = item.get("pegs"), item.get("pose"), item.get("quality")
+    direction = word(item, "direction") if item.get("direction") is not None else None
+    if direction not in (None, *WAYS):
+        raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
+    if not isinstance(pegs, list) or len(pegs) != 4 or not all(isinstance(peg, dict) for peg in pegs):
         raise UnusableError("it does not have four pegs")
-    if not isinstance(pose, Pose):
+    if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
-    quality = item.get("quality", {})
     if not isinstance(quality, dict):
-        raise UnusableError("its quality is no object")
-    figures = {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality}
-    return Fixture(kind, (pegs[0], pegs[1], pegs[2], pegs[3]), pose, real(item, "jaw_separation"), figures)
+        raise UnusableError("it has no quality")
+    return Fixture(
+        word(item, "type"),
+        tuple(peg_from(peg) if direction is None else plate_peg_from(peg, direction) for peg in pegs),
+        Pose(real(pose, "theta_deg"), real(pose, "x"), real(pose, "y")),
+        # How far a clamp has travelled follows from its place.
+        real(item, "jaw_separation") if direction is None else 0.0,
+        {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality},
+        direction,
+    )
+
+
+def plate_peg_from(item: Mapping[str, Any], direction: str) -> Peg:
+    """A locator, or a clamp that moves in a direction, from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    role, line = word(item, "role"), "row" if direction.endswith("x") else "column"
+    contact = real(item, "x"), real(item, "y"), whole(item, "segment"), real(item, "force")
+    if role == "locator":
+        return Peg(PLATE, whole(item, "column"), whole(item, "row"), *contact)
+    if role != "clamp":
+        raise UnusableError("the role of a peg is neither locator nor clamp")
+    if "hole" not in item:
+        raise UnusableError("the key hole is missing")
+    hole, place = item["hole"], {"column": 0, "row": 0}
+    if hole is not None:
+        if not isinstance(hole, list) or len(hole) != 2:
+            raise UnusableError("the hole of its clamp is not a column and a row")
+        numbers = {"column": hole[0], "row": hole[1]}
+        place = {name: whole(numbers, name) for name in numbers}
+    if hole is not None and place[line] != whole(item, line):
+        raise UnusableError(f"the {line} of its clamp is not that of its hole")
+    place[line] = whole(item, line)
+    column, row = place["column"], place["row"]
+    called = clamp_place(direction, column, row, hole is not None) if min(column, row) >= 0 else None
+    return Peg(f"clamp {direction}", column, row, *contact, called)
+
+
+def peg_from(item: Mapping[str, Any]) -> Peg:
+    """A peg of a vise from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
+    x, y, force = (real(item, key) for key in ("x", "y", "force"))
+    return Peg(word(item, "jaw"), column, row, x, y, segment, force)
+
+
+def word(item: Mapping[str, Any], key: str) -> str:
+    """A word of a JSON object.
+
+    Raises
+    ------
+    UnusableError
+        When it is missing or no word.
+    """
+    value = item.get(key)
+    if not isinstance(value, str):
+        raise UnusableError(f"{key} is {value!r}, not a word" if key in item else f"the key {key} is missing")
+    return value
 
 
 def real(item: Mapping[str, Any], key: str) -> float:
@@ -178,122 +310,3 @@ def whole(item: Mapping[str, Any], key: str) -> int:
     if type(value) is not int or abs(value) > 2**31:
         raise UnusableError(f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing")
     return value
-
-
-def optional(read: Any, item: Mapping[str, Any], key: str) -> Any:
-    """A number that may be missing or null."""
-    return None if item.get(key) is None else read(item, key)
-
-
-def part_of(data: Mapping[str, Any], key: str, kind: type) -> Any:
-    """An object or a list within a JSON object.
-
-    Raises
-    ------
-    UnusableError
-        When it is missing or something else.
-    """
-    value = data.get(key)
-    if not isinstance(value, kind):
-        raise UnusableError(f"the key {key} is missing or cannot be used")
-    return value
-
-
-def checked(data: Any) -> Listing:
-    """The listing from the JSON of a file.
-
-    Raises
-    ------
-    UnusableError, InputError
-        When something is missing or cannot be used.
-    """
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise UnusableError(f"it is not a result file of the form {FORMAT}")
-    part = part_of(data, "workpiece", dict)
-    loops = part_of(part, "loops", list)
-    if part.get("units") != "mm":
-        raise UnusableError("the workpiece's units are not mm")
-    workpiece = Workpiece.from_loops(str(part.get("name", "workpiece")), loops)
-    vise = vise_from(part_of(data, "toolkit" if "toolkit" in data else "vise", dict))
-    margin = optional(real, data, "contact_margin") or 0.0
-    if margin < 0:
-        raise UnusableError("contact_margin is negative")
-    counts = counts_from(data, "counts", None)
-    return Listing(
-        workpiece,
-        vise,
-        margin,
-        fixtures_from(data, "fixtures"),
-        counts,
-        counts_from(data, "found", counts),
-        counts_from(data, "distinct", counts),
-        turned_loops(loops, workpiece),
-        asked_in(data),
-    )
-
-
-def turned_loops(loops: Sequence[Any], workpiece: Workpiece) -> tuple[str, ...]:
-    """A fault for every loop that does not run with the material on its left, which makes its numbers ambiguous."""
-    return tuple(
-        f"loop {index} does not have the material on its left"
-        for index, (written, used) in enumerate(zip(loops, workpiece.loops, strict=True))
-        if [list(map(float, vertex)) for vertex in written] != used.tolist()
-    )
-
-
-def vise_from(jaws: Mapping[str, Any]) -> Vise:
-    """The vise from its JSON object, that of a closing one where it names no kind.
-
-    Raises
-    ------
-    UnusableError, InputError
-        When a number is missing or cannot be used.
-    """
-    kind = jaws.get("kind", Vise.kind)
-    if not isinstance(kind, str) or kind not in TOOLKITS:
-        raise UnusableError(f"the toolkit's kind is {kind!r}, which cannot be verified")
-    pitch = part_of(jaws, "pitch", list)
-    if len(pitch) != 2:
-        raise UnusableError("the vise's pitch is not a pair of lengths")
-    pitch_x, pitch_y = (real({"pitch": value}, "pitch") for value in pitch)
-    return TOOLKITS[kind](
-        pitch=(pitch_x, pitch_y),
-        columns=whole(jaws, "columns"),
-        peg_radius=real(jaws, "peg_radius"),
-        rows=optional(whole, jaws, "rows"),
-        min_gap=optional(real, jaws, "min_gap"),
-        max_opening=optional(real, jaws, "max_opening"),
-        row_offset=optional(real, jaws, "row_offset") or 0.0,
-        body_radius=optional(real, jaws, "body_radius"),
-        blocked=tuple(holes_named(str(name)) for name in jaws.get("blocked") or ()),
-    )
-
-
-def counts_from(data: Mapping[str, Any], key: str, default: Mapping[str, int] | None) -> Mapping[str, int]:
-    """Numbers of fixtures by type.
-
-    Raises
-    ------
-    UnusableError
-        When they are missing or no whole numbers.
-    """
-    if data.get(key) is None and default is not None:
-        return default
-    counts = part_of(data, key, dict)
-    return {kind: whole(counts, kind) for kind in KINDS}
-
-
-def fixtures_from(data: Mapping[str, Any], key: str) -> list[Fixture]:
-    """A list of fixtures.
-
-    Raises
-    ------
-    UnusableError
-        Naming the first one that cannot be used, counted from 1.
-    """
-    fixtures: list[Any] = part_of(data, key, list)
-    for position, fixture in enumerate(fixtures, 1):
-        if not isinstance(fixture, Fixture):
-            reason = fixture.reason if isinstance(fixture, Unusable) else "it is no fixture"
-            raise UnusableError(f"number {position} in {key}: {reason}")
-    return fixtures

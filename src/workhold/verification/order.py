@@ -1,8 +1,9 @@
-"""Whether fixtures are listed in the order of their figures of quality (docs/quality.md, "Which comes first").
+"""Whether fixtures are listed in the order that was asked for (docs/quality.md, "Which comes first").
 
-Every figure but the last counts to two significant digits, the last to nine decimals. A figure is written rounded, and that
-rounding may carry it over the edge between two pairs of digits, so each is looked at a little to either side. The order of
-``listing.ranking`` is not used.
+Fixtures that are none for a workshop come last. Every figure but the last counts to two significant digits, the last to nine
+decimals; what is equal stands in the order of types, holes, orientations and faces. A figure is written rounded, and that
+rounding may carry it over the edge between two counts, so each is looked at a little to either side. The order of
+``listing`` is not used.
 """
 
 from __future__ import annotations
@@ -11,37 +12,70 @@ from collections.abc import Iterator, Sequence
 
 from workhold.model.fixture import Fixture
 from workhold.model.quality import FIGURES
-from workhold.verification.rules import HAIR
+from workhold.model.query import Query
+from workhold.verification.hardware import Hardware
+from workhold.verification.rules import HAIR, SAME, UNFIT_CLOSURE, UNFIT_LOCATION_ERROR
 
 __all__ = ["order_faults"]
 
 # Files have twelve significant digits.
 DIGITS = 1e-12
+# Beside them, for numbers near 0.
+LEAST = 1e-15
 # What a number is counted as at least and at most.
 Range = tuple[float, float]
 MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in FIGURES}
 
 
-def order_faults(fixtures: Sequence[Fixture], ranking: Sequence[str]) -> Iterator[str]:
-    """A fault when a fixture is better than the one before it; none where the figures ranked by are not written."""
-    if not ranking or any(key not in fixture.quality for fixture in fixtures for key in ranking):
+def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: Hardware) -> Iterator[str]:
+    """A fault when a fixture belongs before the one before it; none where the figures ranked by are not written."""
+    ranking, off = query.ranking, query.tolerance.peg + query.tolerance.face
+    if any(key not in fixture.quality for fixture in fixtures for key in ranking):
         return
-    rows = [ranges(fixture, ranking) for fixture in fixtures]
+    rows = [[unfit(fixture, off), *ranges(fixture, ranking)] for fixture in fixtures]
     for place in range(1, len(rows)):
-        if is_better(rows[place], rows[place - 1]):
+        better = is_better(rows[place], rows[place - 1])
+        if better:
             yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
+            return
+        if better is None and is_earlier(fixtures[place], fixtures[place - 1], hardware):
+            yield f"fixture {place + 1} is as good as the one before it, and comes before it by type, holes and pose"
             return
 
 
-def ranges(fixture: Fixture, ranking: Sequence[str]) -> list[Range]:
+def ranges(fixture: Fixture, ranking: Sequence[str]) -> Iterator[Range]:
     """What the figures of a fixture count as, the first counting most and smaller being better."""
-    out = []
     for place, key in enumerate(ranking, 1):
         value = -fixture.quality[key] if MORE_IS_BETTER[key] else fixture.quality[key]
-        spare = HAIR + DIGITS * abs(value)
-        low, high = value - spare, value + spare
-        out.append((low, high) if place == len(ranking) else (two_digits(low), two_digits(high)))
-    return out
+        spare = DIGITS * abs(value) + LEAST
+        if place == len(ranking):
+            yield round(value - spare, 9), round(value + spare, 9)
+        elif abs(value) <= HAIR:
+            # Nothing has no digits.
+            yield 0.0, 0.0
+        else:
+            yield two_digits(value - spare - HAIR), two_digits(value + spare + HAIR)
+
+
+def is_earlier(one: Fixture, other: Fixture, hardware: Hardware) -> bool:
+    """Whether a fixture certainly comes before another one that is as good."""
+    (holes, angle, faces), (others, angle_of_other, faces_of_other) = (hardware.rank(f) for f in (one, other))
+    if abs(angle - angle_of_other) > SAME:
+        return (holes, angle) < (others, angle_of_other)
+    return (holes, faces) < (others, faces_of_other)
+
+
+def unfit(fixture: Fixture, off: float) -> Range:
+    """1 for a fixture that is none for a workshop, 0 for one that is; of figures that are not written nothing is known.
+
+    ``off`` is the sum of the tolerances of peg and face, in mm.
+    """
+    margin, error = (fixture.quality.get(key) for key in ("closure_margin", "location_error"))
+    if margin is None or error is None:
+        return 0.0, 1.0
+    beyond = max(UNFIT_CLOSURE - margin, error - UNFIT_LOCATION_ERROR * off)
+    spare = HAIR + DIGITS * error
+    return float(beyond > spare), float(beyond >= -spare)
 
 
 def two_digits(value: float) -> float:
@@ -49,11 +83,11 @@ def two_digits(value: float) -> float:
     return float(f"{value:.1e}")
 
 
-def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool:
-    """Whether one row of figures is certainly better than another: at the first that may differ."""
+def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
+    """Whether one row of numbers is certainly less than another, at the first that may differ; None when they are equal."""
     for (low, high), (least, most) in zip(one, other, strict=True):
         if high < least:
             return True
         if not low == high == least == most:
             return False
-    return False
+    return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from attrs import frozen
+from flint import arb
 
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import Point
@@ -24,12 +25,16 @@ class Outline:
     faces : whole faces by their numbers.
     others : for each face, by its number, the numbers and sides of all segments that are not of it.
     smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
+    turns : by how much the normals differ at these two joints, the larger component.
+    neighbours : those of each face, by its number, segments at its start and at its end.
     """
 
     segments: tuple[Side, ...]
     faces: Mapping[int, Side]
     others: Mapping[int, tuple[tuple[int, Side], ...]]
     smooth: Mapping[int, tuple[bool, bool]]
+    turns: Mapping[int, tuple[arb, arb]]
+    neighbours: Mapping[int, tuple[Side, Side]]
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> Outline:
@@ -47,17 +52,21 @@ class Outline:
             f.number: tuple((k, side) for k, side in enumerate(segments) if k not in f.segments)
             for f in workpiece.faces
         }
-        smooth = {
-            f.number: (
-                is_smooth(segments[before[f.segments[0]]], faces[f.number], faces[f.number].start),
-                is_smooth(faces[f.number], segments[after[f.segments[-1]]], faces[f.number].end),
-            )
-            for f in workpiece.faces
+        neighbours = {
+            f.number: (segments[before[f.segments[0]]], segments[after[f.segments[-1]]]) for f in workpiece.faces
         }
-        return cls(tuple(segments), faces, others, smooth)
+        turns = {
+            number: (
+                turn_at(one, faces[number], faces[number].start),
+                turn_at(faces[number], two, faces[number].end),
+            )
+            for number, (one, two) in neighbours.items()
+        }
+        smooth = {number: (bool(one < TANGENT), bool(two < TANGENT)) for number, (one, two) in turns.items()}
+        return cls(tuple(segments), faces, others, smooth, turns, neighbours)
 
 
-def is_smooth(one: Side, two: Side, joint: Point) -> bool:
-    """Whether two sides meet tangentially at a joint."""
+def turn_at(one: Side, two: Side, joint: Point) -> arb:
+    """By how much the normals of two sides differ at a joint, the larger component; they are tangent below ``TANGENT``."""
     (ax, ay), (bx, by) = one.outward(joint), two.outward(joint)
-    return bool(abs(ax - bx) < TANGENT and abs(ay - by) < TANGENT)
+    return abs(ax - bx).max(abs(ay - by))

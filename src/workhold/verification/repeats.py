@@ -1,71 +1,78 @@
 """Fixtures that a list holds twice (model: "When two fixtures are the same").
 
-Two fixtures with the same holes, up to lattice steps, names of pegs and the half turn that swaps the jaws, and with the same
-place of the workpiece among them are one, whatever faces are named: the pose says what is touched.
+Two fixtures with the same pattern of holes (``hardware``), up to lattice steps, names of pegs and the half turn that leaves
+the toolkit as it is, and with the same place of the workpiece among them are one, whatever faces are named: the pose says
+what is touched.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import cos, pi, radians, sin, tau
-from typing import Any
+from collections.abc import Sequence
+from math import cos, pi, sin, tau
 
 from attrs import field, frozen
 
+from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
 from workhold.model.fixture import Fixture
+from workhold.model.workpiece import Workpiece
+from workhold.verification.hardware import Hardware, Key, Place
 from workhold.verification.rules import SAME
 
 __all__ = ["Seen"]
 
-Key = tuple[Any, ...]
-Place = tuple[float, float, float, float]
-
-
-def patterns(fixture: Fixture) -> Iterator[tuple[Key, Place]]:
-    """Each pattern of holes that names a fixture, with orientation and place of the workpiece and opening of the jaws.
-
-    There are two only when a half turn of the vise leaves the pattern as it is.
-    """
-    named = [pattern(fixture, sign) for sign in (1, -1)]
-    least = min(key for key, _ in named)
-    return ((key, place) for key, place in named if key == least)
-
-
-def pattern(fixture: Fixture, sign: int) -> tuple[Key, Place]:
-    """The pattern of holes as it is (sign 1) or after a half turn of the vise (-1); by motions of its own, not ``Pose``."""
-    near = "left" if sign > 0 else "right"
-    lowest = min(sign * peg.row for peg in fixture.pegs)
-    key, anchors = [], []
-    for ours in (True, False):
-        pegs = [peg for peg in fixture.pegs if (peg.jaw == near) == ours]
-        first = min(sign * peg.column for peg in pegs)
-        places = sorted((sign * peg.column - first, sign * peg.row - lowest, k) for k, peg in enumerate(pegs))
-        key.append(tuple((column, row) for column, row, _ in places))
-        anchors.append(pegs[places[0][2]])
-    theta = radians(fixture.pose.theta_deg)
-    x, y = anchors[0].x - fixture.pose.x, anchors[0].y - fixture.pose.y
-    in_part = cos(theta) * x + sin(theta) * y, cos(theta) * y - sin(theta) * x
-    return tuple(key), (theta + (pi if sign < 0 else 0.0), *in_part, sign * (anchors[1].x - anchors[0].x))
+# The symmetry of a drawing is told to a millionth of a millimetre, too.
+TURNED = 4 * SAME
 
 
 @frozen(eq=False)
 class Seen:
-    """The fixtures of a list looked at so far."""
+    """The fixtures of a list looked at so far.
 
+    Parameters
+    ----------
+    hardware : what they stand on.
+    rotations : angles in radians of the rotations of the workpiece onto itself, the identity left out.
+    center : the point in mm that they keep.
+    sets : of each type, how many sets the fixtures form when those that a rotation carries into each other count once.
+    """
+
+    hardware: Hardware
+    rotations: Sequence[float] = ()
+    center: tuple[float, float] = (0.0, 0.0)
+    sets: dict[str, int] = field(factory=dict, init=False)
     known: dict[Key, list[tuple[int, Place]]] = field(factory=dict, init=False)
 
+    @classmethod
+    def of(cls, workpiece: Workpiece, hardware: Hardware) -> Seen:
+        """Nothing seen yet of fixtures of a workpiece."""
+        faces = [face.segment for face in workpiece.faces]
+        return cls(hardware, [turn.angle for turn in rotations_onto_itself(faces)[1:]], centroid_of_joints(faces))
+
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Take in a fixture with pegs on both jaws; return the index of an earlier one that is the same, if any."""
-        first = None
-        for key, place in patterns(fixture):
+        """Take in a fixture that is not refuted; return the index of an earlier one that is the same, if any."""
+        first, alone = self.find(fixture), True
+        for key, place in self.hardware.patterns(fixture):
             known = self.known.setdefault(key, [])
-            if first is None:
-                first = next((k for k, other in known if k != index and same(place, other)), None)
+            images = [self.turned(place, angle) for angle in self.rotations]
+            alone &= not any(same(a, b, TURNED) for a in images for k, b in known if k != index)
             known.append((index, place))
+        if first is None and alone:
+            self.sets[fixture.type] = self.sets.get(fixture.type, 0) + 1
         return first
 
+    def find(self, fixture: Fixture) -> int | None:
+        """The index of a fixture taken in that is the same, if any."""
+        named = ((place, self.known.get(key, ())) for key, place in self.hardware.patterns(fixture))
+        return next((k for place, known in named for k, other in known if same(place, other)), None)
 
-def same(a: Place, b: Place) -> bool:
+    def turned(self, place: Place, angle: float) -> Place:
+        """The place of a workpiece that lies the same way after it is turned about its own centre."""
+        x, y = place[1] - self.center[0], place[2] - self.center[1]
+        turned_x, turned_y = cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
+        return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, place[3]
+
+
+def same(a: Place, b: Place, most: float = SAME) -> bool:
     """Whether two places of the workpiece agree."""
     turn = (a[0] - b[0] + pi) % tau - pi
-    return abs(turn) <= SAME and all(abs(p - q) <= SAME for p, q in zip(a[1:], b[1:], strict=True))
+    return abs(turn) <= most and all(abs(p - q) <= most for p, q in zip(a[1:], b[1:], strict=True))

@@ -14,29 +14,53 @@ from __future__ import annotations
 
 __all__ = [
     "AGREEMENT",
+    "BODY_SLACK",
     "FIGURE_AGREEMENT",
+    "GENTLE_PEG",
     "HAIR",
+    "LARGE_LOCATION_ERROR",
     "LEAST_CLAMPING",
+    "LEAST_PUSH",
     "LEAST_SHARE",
     "LEAST_SPAN",
+    "MAIN_DIRECTION",
+    "NEAR_EDGE",
+    "POINTS_PER_DECADE",
     "ROUNDING",
     "SAME",
+    "SAME_END",
+    "SMALL_FACE",
+    "SMALL_FACE_POINTS",
+    "SQUARE_TILT",
     "STRAIGHT",
+    "STRONG_PEG",
+    "STRONG_POINTS",
     "TANGENT",
+    "TILTED_POINTS",
+    "UNFIT_CLOSURE",
+    "UNFIT_LOCATION_ERROR",
+    "WEAK_CLOSURE",
     "WHOLE",
 ]
 
 # mm. A gap or an opening is met when it is missed by at most this; a contact may lie so far past a tangent joint, and lies
 # more than this inside any other end.
 HAIR = 1e-9
+# mm. The body of a clamp, which touches the part at its tip, may enter it by at most this.
+BODY_SLACK = 1e-7
 # No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in radians by
 # which the rounded coordinates and bulges of a drawing may turn them.
 TANGENT = 1e-5
+# mm. An edge or none may be told at a joint that is tangent, or nearly so, where the ends of contact features are farther
+# apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
+SAME_END = 9e-7
 # No unit. The least share of a peg in the closure, the shares scaled to sum 1: 0 when three normals meet in one point.
 LEAST_SHARE = 1e-9
 # No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact equations, where the
 # rounding of a drawing alone leaves up to 1e-7 or so.
 LEAST_CLAMPING = 1e-6
+# No unit. The same of a clamp that slides on a plate: what is told apart from none. A search lists from LEAST_CLAMPING on.
+LEAST_PUSH = 1e-9
 # No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one
 # point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
 LEAST_SPAN = 1e-7
@@ -44,7 +68,7 @@ LEAST_SPAN = 1e-7
 SAME = 1e-6
 
 # No unit. A bulge below this in size is a line: a convention of the file's form.
-STRAIGHT = 1e-12
+STRAIGHT = 2e-6
 # Radians. Arcs of one face that lack less than this of half a turn of half sweep are a whole circle.
 WHOLE = 1e-9
 
@@ -54,3 +78,10 @@ AGREEMENT = 1e-6
 # derived ones to these parts of themselves, and a hair of their unit. They are written with twelve digits; see ``figures``.
 FIGURE_AGREEMENT = 1e-7
 ROUNDING = 1e-13
+
+# What is warned of (mm, no unit, times the jaw force, times the sum of the tolerances), what makes a fixture none for a
+# workshop, and what counts against one (degrees, shares, times the jaw force, points); docs/quality.md.
+NEAR_EDGE, WEAK_CLOSURE, STRONG_PEG, LARGE_LOCATION_ERROR = 1.0, 0.02, 3.0, 5.0
+UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
+SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
+POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2

@@ -8,14 +8,25 @@ from pathlib import Path
 from attrs import frozen
 
 from workhold.model.result import Result
-from workhold.verification.asked import broken_restriction
+from workhold.model.toolkit import Toolkit
+from workhold.verification.account import account_faults
 from workhold.verification.balls import PRECISIONS
+from workhold.verification.figures import figure_missing
 from workhold.verification.fixture_proof import Judge, Verdict
-from workhold.verification.listing import KINDS, Listing, listing_of, read_listing
+from workhold.verification.kinds import hardware_of
+from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.order import order_faults
 from workhold.verification.repeats import Seen
+from workhold.verification.restrictions import broken_restriction
 
-__all__ = ["Unproven", "Verification", "verify", "verify_file", "verify_listing"]
+__all__ = ["Unproven", "Verification", "no_progress", "not_shown", "verify", "verify_file", "verify_listing"]
+
+# What a result in any toolkit alone cannot show, beside what ``not_shown`` says.
+NOT_SHOWN = (
+    "how many candidates there were and what became of each, beyond what must add up, and which others are undecided",
+    "how much work the search was: its cells and statistics, beyond their order",
+    "whether a search that says it was interrupted was",
+)
 
 # Called with the fraction done and the number of fixtures not proven so far.
 Progress = Callable[[float, int], None]
@@ -47,6 +58,7 @@ class Verification:
     unproven : those that are not proven, in the order of the file.
     faults : what is wrong with the result as a whole, one sentence each, without a full stop.
     bits : the highest precision that was needed.
+    is_compared : whether the query was answered again, and the result compared with that.
     """
 
     proven: int
@@ -55,6 +67,7 @@ class Verification:
     unproven: tuple[Unproven, ...]
     faults: tuple[str, ...]
     bits: int
+    is_compared: bool = False
 
     @property
     def fixtures(self) -> int:
@@ -67,12 +80,19 @@ class Verification:
         return not self.refuted and not self.faults
 
 
+def not_shown(toolkit: Toolkit) -> Iterator[str]:
+    """What a result in a toolkit alone cannot show; answering its query again does."""
+    yield "whether fixtures were left out, with all counts adjusted"
+    yield f"whether the query was wider: what is listed also meets one with {hardware_of(toolkit).wider_words}"
+    yield from NOT_SHOWN
+
+
 def no_progress(fraction: float, unproven: int) -> None:
     """Tell nobody."""
 
 
 def verify(result: Result, progress: Progress = no_progress) -> Verification:
-    """Derive every fixture of a result again, in ball arithmetic, from workpiece, vise, pegs and faces alone.
+    """Derive every fixture of a result again, in ball arithmetic, from workpiece, toolkit, pegs and faces alone.
 
     Examples
     --------
@@ -92,16 +112,16 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, or describes no usable workpiece or vise.
+        When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
     """
     return verify_listing(read_listing(path), progress)
 
 
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
     """Verify what a result claims."""
-    judge = Judge(listing.workpiece, listing.vise, listing.contact_margin, listing.asked)
-    everything = listing.fixtures
-    seen = Seen()
+    query, everything = listing.query, listing.fixtures
+    judge = Judge(query)
+    seen = Seen.of(query.workpiece, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
@@ -109,7 +129,8 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         verdict, reason = ruling.verdict, ruling.reason
         bits = max(bits, ruling.bits)
         if verdict != "refuted":
-            broken = broken_restriction(fixture, listing.workpiece, listing.vise, listing.asked.restrictions)
+            broken = broken_restriction(fixture, query, judge.hardware)
+            broken = broken or figure_missing(fixture, query.loads)
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
@@ -121,19 +142,15 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         Unproven(place, verdict, reason) for place, (verdict, reason) in enumerate(rulings) if verdict != "proven"
     ]
     tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
-    order = order_faults(listing.fixtures, listing.asked.ranking)
-    faults = (*listing.faults, *count_faults(listing), *order)
-    return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), faults, bits)
+    faults = [*listing.faults, *account_faults(listing), *order_faults(everything, query, judge.hardware)]
+    if not tally["refuted"]:
+        faults += distinct_faults(listing, seen)
+    return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), tuple(faults), bits)
 
 
-def count_faults(listing: Listing) -> Iterator[str]:
-    """Counts of the file that contradict what it lists, or each other."""
-    for kind in KINDS:
-        listed = sum(fixture.type == kind for fixture in listing.fixtures)
-        counts, found, distinct = listing.counts[kind], listing.found[kind], listing.distinct[kind]
-        if counts != listed:
-            yield f"counts say {counts} fixtures of type {kind}, but {listed} are listed"
-        if found < listed:
-            yield f"found says {found} fixtures of type {kind}, but {listed} are listed"
-        if not (distinct <= found and (distinct > 0) == (found > 0)):
-            yield f"distinct says {distinct} fixtures of type {kind}, which {found} cannot form"
+def distinct_faults(listing: Listing, seen: Seen) -> Iterator[str]:
+    """Numbers of distinct fixtures that are not those of the fixtures listed, where all found are listed."""
+    for kind, counts in listing.counts.items():
+        sets = seen.sets.get(kind, 0)
+        if listing.found[kind] == counts and listing.distinct[kind] != sets:
+            yield f"distinct says {listing.distinct[kind]} fixtures of type {kind}, but those listed form {sets}"

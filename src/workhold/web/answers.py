@@ -8,11 +8,8 @@ from itertools import count
 from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from attrs import evolve
-
-from workhold.files.result.writer import fixture_rows, load_entry, proof_entry, toolkit_fields
-from workhold.geometry.box import Box
+from workhold.drawing.panel import arrangement_words
+from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
@@ -20,9 +17,9 @@ from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
-from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
+from workhold.model.setting import setting_of
+from workhold.model.shown import Shown, shown
+from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -104,14 +101,17 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
 
 def vise_answer(loaded: LoadedVise) -> dict[str, Any]:
     """A vise that comes with the program."""
-    given = toolkit_fields(loaded.vise)
+    given = toolkit_fields(loaded.toolkit)
     return {
         "name": loaded.name,
         "title": loaded.title,
         "source": loaded.source,
         "unit": loaded.unit.name,
+        "arrangements": [
+            {"name": one.name, "words": arrangement_words(one, loaded.toolkit)} for one in loaded.toolkit.arrangements
+        ],
         "fields": {key: value for key, value in given.items() if key in loaded.fields},
-        "tolerance": {"peg": loaded.tolerance.peg, "face": loaded.tolerance.face},
+        "tolerance": tolerance_entry(loaded.tolerance),
     }
 
 
@@ -124,6 +124,7 @@ def figures_answer() -> list[dict[str, Any]]:
             "unit": figure.unit,
             "more_is_better": figure.more_is_better,
             "meaning": figure.meaning,
+            "decimals": figure.decimals,
         }
         for figure in FIGURES
     ]
@@ -133,47 +134,23 @@ def rows_answer(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, ranks: Iterable[int]
 ) -> list[dict[str, Any]]:
     """Fixtures as rows; ``ranks`` are those of the table's fixtures."""
-    out: list[dict[str, Any]] = []
-    quality, numbers = table.quality.tolist(), iter(ranks)
-    boxes = placed_boxes(workpiece, table.theta, *table.position.T).tolist()
-    # Figures are told one by one below, so the rows are made without them.
-    bare = evolve(table, quality=np.full_like(table.quality, np.nan))
-    arrangements = [(one.name, toolkit.carrier_names(one)) for one in toolkit.arrangements]
-    for kinds, rows in fixture_rows(bare, toolkit):
-        for kind, row in zip(kinds, rows, strict=True):
-            name, jaws = arrangements[kind]
-            pegs = [row[6 * peg : 6 * peg + 6] for peg in range(4)]
-            figures = zip(FIGURES, quality[len(out)], strict=True)
-            out.append(
-                {
-                    "rank": next(numbers),
-                    "type": name,
-                    "holes": [hole_name(jaw, peg[0], peg[1]) for jaw, peg in zip(jaws, pegs, strict=True)],
-                    "faces": [peg[4] for peg in pegs],
-                    "theta_deg": row[24],
-                    "x": row[25],
-                    "y": row[26],
-                    "jaw_separation": row[27],
-                    "pegs": [[peg[2], peg[3]] for peg in pegs],
-                    "forces": [peg[5] for peg in pegs],
-                    "carriers": carriers_answer(
-                        shown_beside(Box(*boxes[len(out)]), fixture_at(table, toolkit, len(out)), toolkit)
-                    ),
-                    "quality": {figure.key: finite(value) for figure, value in figures if not np.isnan(value)},
-                }
-            )
-    return out
+    return [
+        {"rank": rank, **fixture_answer(fixture_at(table, toolkit, number), workpiece, toolkit)}
+        for number, rank in enumerate(ranks)
+    ]
 
 
 def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
-    """What shows of each carrier.
+    """What shows of each carrier, and after them of each clamp, which has no lattice: its body is under ``clamp``.
 
-    ``origin`` is its hole in column 0 and row 0, ``pegs`` are the numbers of its pegs and ``used`` their holes;
-    ``measured`` are the upper or right ends of the axes that its travel is measured between.
+    ``origin`` is its hole in column 0 and row 0, ``pegs`` are the numbers of its pegs, ``used_columns`` and ``used_rows``
+    those of them and of clamps; ``measured`` are the upper or right ends of the axes that its travel is measured between.
     """
-    measured = {each.carrier.name: [list(start[1]), list(end[1])] for each, start, end in seen.travels}
+    measured = {}
+    if seen.measured is not None:
+        measured[seen.measured.carrier] = [list(high) for _, high in seen.measured.axes]
     numbers = count()
-    return [
+    lattices: list[dict[str, Any]] = [
         {
             "letter": each.carrier.letter,
             "origin": each.carrier.place(0, 0, each.travelled),
@@ -184,18 +161,67 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "hole_radius": each.hole_radius,
             "names_at": each.names_at,
             "pegs": [next(numbers) for _ in each.pegs],
-            "used": [[peg.column, peg.row] for peg in each.pegs],
+            "peg_radius": each.carrier.peg_radius,
+            "used_columns": sorted(each.used_columns),
+            "used_rows": sorted(each.used_rows),
             "clamping": each.clamping,
             "measured": measured.get(each.carrier.name),
+            "clamp": None,
         }
         for each in seen.carriers
     ]
+    plate = seen.carriers[0]
+    clamps = [
+        {
+            **lattice_of_none(each.carrier),
+            "plate": [each.room.x0, each.room.y0, each.room.x1, each.room.y1],
+            "pegs": [next(numbers)],
+            "peg_radius": each.carrier.peg_radius,
+            "clamping": each.clamping,
+            "measured": measured.get(each.carrier.name),
+            "clamp": {
+                "hole": each.hole,
+                "tip": [each.tip.x, each.tip.y],
+                "bolt_radius": plate.hole_radius,
+                "line": [plate.plate.x0, plate.plate.y0, plate.plate.x1, plate.plate.y1],
+            },
+        }
+        for each in seen.clamps
+    ]
+    return lattices + clamps
 
 
-def fixture_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
+def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
+    """The holes of what has none of its own."""
+    return {
+        "letter": "",
+        "origin": carrier.place(0, 0),
+        "pitch": carrier.pitch,
+        "columns": [0, -1],
+        "rows": [0, -1],
+        "hole_radius": 0.0,
+        "names_at": "left",
+        "used_columns": [],
+        "used_rows": [],
+    }
+
+
+def setting_answer(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any] | None:
+    """The length to set, with its sign and its name, and what pushes; None where nothing moves."""
+    setting = setting_of(fixture, toolkit)
+    if setting is None:
+        return None
+    return {"sign": setting.sign, "name": setting.name, "length": setting.length}
+
+
+def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """A fixture by itself, without a rank."""
     return {
         "type": fixture.type,
+        "title": toolkit.arrangement(fixture.type, fixture.direction).title,
+        "setting": setting_answer(fixture, toolkit),
+        "mover": toolkit.moving.noun,
+        "origin": hole_name(toolkit.carriers[0].name, 0, 0),
         "holes": [peg.hole for peg in fixture.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "theta_deg": fixture.pose.theta_deg,
@@ -204,13 +230,13 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[s
         "jaw_separation": fixture.jaw_separation,
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
-        "carriers": carriers_answer(shown(fixture, vise, workpiece)),
+        "carriers": carriers_answer(shown(fixture, toolkit, workpiece)),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
 
 
-def contact_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
-    """Outward normals and contacts of a fixture's pegs in the vise frame, and which pegs are on the right jaw."""
+def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
+    """Outward normals and contacts of a fixture's pegs in the toolkit's frame."""
     segments = {face.number: face.segment for face in workpiece.faces}
     normals, contacts = [], []
     for peg in fixture.pegs:
@@ -218,8 +244,9 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, vise: Vise) -> dict[s
         nx, ny = segment.normal(segment.parameter(fixture.pose.inverse.apply(peg.x, peg.y)))
         x, y = (float(v) / hypot(nx, ny) for v in fixture.pose.turn(nx, ny))
         normals.append([x, y])
-        contacts.append([peg.x - vise.peg_radius * x, peg.y - vise.peg_radius * y])
-    return {"normals": normals, "contacts": contacts, "right_jaw": [peg.jaw == "right" for peg in fixture.pegs]}
+        radius = toolkit.carrier(peg.carrier).peg_radius
+        contacts.append([peg.x - radius * x, peg.y - radius * y])
+    return {"normals": normals, "contacts": contacts}
 
 
 def proof_answer(proof: Proof) -> dict[str, Any]:
@@ -248,7 +275,7 @@ def worst_answer(worst: Worst) -> dict[str, Any]:
     return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
 
 
-def explanation_answer(explanation: Explanation, workpiece: Workpiece, vise: Vise) -> dict[str, Any]:
+def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """Why there is no fixture."""
     nearest = explanation.nearest
     return {
@@ -260,7 +287,7 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, vise: Vis
         "last_rule": explanation.last_rule,
         "nearest": None
         if nearest is None
-        else {"row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, vise)}, "words": nearest.words},
+        else {"row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)}, "words": nearest.words},
         "helps": [
             {"change": help.change, "fixtures": help.fixtures, "complete": help.complete} for help in explanation.helps
         ],

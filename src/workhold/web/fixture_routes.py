@@ -6,13 +6,15 @@ from datetime import date
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from workhold.model.result import Result
+from workhold.model.units import unit_named
 from workhold.web.answers import contact_answer, rows_answer
-from workhold.web.forms import LoadsForm
+from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.paper import KINDS, PaperOrder
 from workhold.web.state import at_desk
@@ -22,6 +24,12 @@ __all__ = ["router"]
 router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
 
 Rank = Annotated[int, Path(ge=1, le=10**9)]
+UnitName = Literal["mm", "inch"]
+JawForce = Annotated[float | None, Query(gt=0, le=1e9, description="in N")]
+Jaw = Annotated[str, Query(max_length=20, description="screw, constant, or how many times as stiff as a contact it is")]
+Loads = Annotated[str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")]
+Words = Annotated[str | None, Query(max_length=100)]
+Size = Annotated[float | None, Query(gt=0, le=1e6)]
 Revision = Annotated[int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")]
 
 
@@ -43,8 +51,8 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
     """Its row, with contacts and outward normals in the vise frame."""
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
-    row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.vise, [rank])[0]
-    return {**row, **contact_answer(result[index], result.workpiece, result.vise)}
+    row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.toolkit, [rank])[0]
+    return {**row, **contact_answer(result[index], result.workpiece, result.toolkit)}
 
 
 @router.post("/loads", summary="What loads do to a fixture")
@@ -52,8 +60,36 @@ async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revisi
     """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
     result = result_of_job(found_job(request, name), revision)
     chosen = result[ranked(result, rank)]
-    cases = await at_desk(request, "loads", (chosen, result.workpiece, result.vise, form))
+    cases = await at_desk(request, "loads", (chosen, result.workpiece, result.toolkit, form))
     return {"rank": rank, "cases": cases}
+
+
+@router.get("/warnings", summary="What to beware of")
+async def warnings(
+    request: Request,
+    name: str,
+    rank: Rank,
+    unit: UnitName = "mm",
+    jaw_force: JawForce = None,
+    jaw: Jaw = "screw",
+    loads: Loads = None,
+    revision: Revision = None,
+) -> dict[str, Any]:
+    """The sentences of the setup sheet of a fixture, under its search's loads or those given as JSON."""
+    from workhold.drawing.sheet_facts import same_holes
+
+    result = result_of_job(found_job(request, name), revision)
+    index = ranked(result, rank)
+    others = same_holes(result.table, index)
+    small = evolve(result, table=result.table.take(slice(index, index + 1)))
+    asked = {
+        "unit": unit_named(unit),
+        "jaw_force": jaw_force,
+        "jaw": jaw,
+        "loads": asked_loads(loads),
+        "others": others,
+    }
+    return {"rank": rank, "warnings": await at_desk(request, "warnings", (small, asked))}
 
 
 @router.get("/{kind}", summary="A setup sheet, a drawing or a picture", response_class=Response)
@@ -63,17 +99,41 @@ async def paper(
     rank: Rank,
     kind: Literal["sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg"],
     paper: Literal["a4", "letter"] = "a4",
-    unit: Literal["mm", "inch"] = "mm",
-    jaw_force: Annotated[float | None, Query(gt=0, le=1e9)] = None,
+    unit: UnitName = "mm",
+    jaw_force: JawForce = None,
+    jaw: Jaw = "screw",
+    loads: Loads = None,
     friction: Annotated[float | None, Query(gt=0, le=100)] = None,
+    zero: Words = None,
+    dowel: Words = None,
+    machine_x: Annotated[float | None, Query(ge=-1e6, le=1e6)] = None,
+    machine_y: Annotated[float | None, Query(ge=-1e6, le=1e6)] = None,
+    thickness: Size = None,
+    peg_length: Size = None,
+    peg_height: Size = None,
+    clearance: Annotated[float | None, Query(ge=0, le=1e6)] = None,
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,
 ) -> Response:
-    """Of a fixture; all but the picture wait for the search to be over. The date is today's if not given."""
+    """Of a fixture; all but the picture wait for the search to be over. Lengths are in the unit asked for, loads JSON as in
+    a search, and the date is today's if not given."""
     job = found_job(request, name)
     result = result_of_job(job, revision, when_over=kind != "picture.svg")
     ranked(result, rank)
-    order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), jaw_force, friction, job.result_hash)
+    given = unit_named(unit)
+    sizes = {"thickness": thickness, "peg_length": peg_length, "peg_height": peg_height, "clearance": clearance}
+    machine = None if machine_x is None or machine_y is None else (given.length(machine_x), given.length(machine_y))
+    wishes = {
+        "jaw_force": jaw_force,
+        "jaw": jaw,
+        "loads": asked_loads(loads),
+        "friction": friction,
+        "zero": zero,
+        "dowel": dowel,
+        "machine_position": machine,
+        **{name: None if size is None else given.length(size) for name, size in sizes.items()},
+    }
+    order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), wishes, job.result_hash)
     content, result_hash = await at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:
         job.result_hash = result_hash

@@ -1,24 +1,24 @@
-"""The shapes of requests, checked by pydantic, and what they are in the model."""
+"""The shapes of requests, checked by pydantic: those of a result file within limits, and with no key that is not known."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from attrs import evolve
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import Load
-from workhold.model.query import Query
-from workhold.model.restrictions import Restrictions, zone_of
+from workhold.model.plate import DIRECTIONS, Plate
+from workhold.model.query import Query, asked_ranking
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "sentence_of"]
+__all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "asked_loads", "sentence_of"]
 
 # Beyond this, in mm, degrees, N or N mm, a number is a mistake.
 LARGEST = 1e9
@@ -91,44 +91,67 @@ class ViseForm(Form):
     body_radius: Number | None = None
     blocked: list[Name] = Field(default=[], max_length=MOST_NAMES)
 
-    def vise(self) -> Vise:
-        """The vise.
+    def toolkit(self) -> Toolkit:
+        """The toolkit.
 
         Raises
         ------
         InputError
-            When there is no such vise.
+            When there is no such toolkit.
         """
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
-class RestrictionsForm(Form):
+class PlateForm(Form):
+    """A plate with locators and a clamp; lengths in mm."""
+
+    kind: Literal["translating-clamp"]
+    pitch: Point
+    peg_radius: Number
+    columns: int | None = Field(default=None, ge=1, le=MOST_COLUMNS)
+    rows: int | None = Field(default=None, ge=1, le=MOST_ROWS)
+    clamp_radius: Number | None = None
+    travel: Point | None = None
+    directions: list[Name] | None = Field(default=None, max_length=len(DIRECTIONS))
+
+    def toolkit(self) -> Toolkit:
+        """The toolkit.
+
+        Raises
+        ------
+        InputError
+            When there is no such plate.
+        """
+        return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
+
+
+def form_of(value: Any) -> str:
+    """Which form a toolkit's fields are given in."""
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return PLATE if kind == Plate.kind else VISE
+
+
+# How the two forms are told apart; the words are no part of any message.
+VISE, PLATE = "<vise>", "<plate>"
+HeldIn = Annotated[Annotated[ViseForm, Tag(VISE)] | Annotated[PlateForm, Tag(PLATE)], Discriminator(form_of)]
+
+
+class RestrictionsForm(Form, RestrictionsPart):
     """What is ruled out."""
 
     avoid: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
     zones: list[LoopForm] = Field(default=[], max_length=MOST_RANGES)
     angles: list[Point] = Field(default=[], max_length=MOST_RANGES)
 
-    def restrictions(self) -> Restrictions:
-        """The restrictions.
 
-        Raises
-        ------
-        InputError
-            When a zone or a range of angles is none.
-        """
-        ranges = tuple((low, high) for low, high in self.angles)
-        return Restrictions(tuple(self.avoid), tuple(zone_of(loop) for loop in self.zones), ranges)
-
-
-class ToleranceForm(Form):
+class ToleranceForm(Form, TolerancePart):
     """How far pegs and faces may be off, in mm."""
 
     peg: Number
     face: Number
 
 
-class LoadForm(Form):
+class LoadForm(Form, LoadPart):
     """A load, in N, mm, degrees and N mm."""
 
     name: Name = ""
@@ -137,17 +160,6 @@ class LoadForm(Form):
     directions: Point = [0.0, 360.0]
     moment: Number = 0.0
 
-    def load(self) -> Load:
-        """The load.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
-        points = tuple((x, y) for x, y in self.points)
-        return Load(points, self.force, (self.directions[0], self.directions[1]), self.moment, self.name)
-
 
 class LoadsForm(Form):
     """Loads on a fixture."""
@@ -155,6 +167,27 @@ class LoadsForm(Form):
     loads: list[LoadForm] = Field(min_length=1, max_length=MOST_LOADS)
     jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
     friction: Annotated[float, Field(ge=0, le=100)] | None = None
+    jaw: Literal["screw", "constant"] | Annotated[float, Field(ge=0, le=LARGEST)] = "screw"
+
+
+SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS)])
+
+
+def asked_loads(text: str | None) -> tuple[Load, ...] | None:
+    """The loads of an address, JSON as in a search; None where none are given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return None
+    try:
+        return tuple(form.load() for form in SeveralLoads.validate_json(text))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        raise InputError(sentence_of({**first, "loc": ("query", "loads", *map(str, first["loc"]))})) from error
 
 
 class SearchForm(Form):
@@ -165,6 +198,8 @@ class SearchForm(Form):
     contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     restrictions: RestrictionsForm = RestrictionsForm()
     ranking: list[Name] | None = Field(default=None, max_length=10)
+    prefer: Name | None = None
+    jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
 
@@ -176,22 +211,24 @@ class SearchForm(Form):
         InputError
             For the first value that cannot be.
         """
+        loads = tuple(form.load() for form in self.loads)
         return Query(
             self.workpiece.workpiece(most_segments),
             toolkit,
             self.types,
             self.contact_margin,
             self.restrictions.restrictions(),
-            self.ranking,
-            None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
-            (form.load() for form in self.loads),
+            asked_ranking(self.ranking, self.prefer, loads),
+            None if self.tolerance is None else self.tolerance.tolerance(),
+            loads,
+            jaw_force=self.jaw_force,
         )
 
 
 class JobForm(SearchForm):
     """A search for every fixture."""
 
-    vise: ViseForm
+    vise: HeldIn
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """The query, which has no name.
@@ -201,7 +238,7 @@ class JobForm(SearchForm):
         InputError
             For the first value that cannot be.
         """
-        return (("", self.query(self.vise.vise(), most_segments)),)
+        return (("", self.query(self.vise.toolkit(), most_segments)),)
 
 
 class NamedViseForm(ViseForm):
@@ -210,10 +247,21 @@ class NamedViseForm(ViseForm):
     title: Name = ""
 
 
+class NamedPlateForm(PlateForm):
+    """A plate to compare, with what to call it."""
+
+    title: Name = ""
+
+
+NamedHeldIn = Annotated[
+    Annotated[NamedViseForm, Tag(VISE)] | Annotated[NamedPlateForm, Tag(PLATE)], Discriminator(form_of)
+]
+
+
 class ExploreForm(SearchForm):
     """A comparison of vises; without vises, of all that come with the program."""
 
-    vises: list[NamedViseForm] | None = Field(default=None, min_length=1, max_length=MOST_VISES)
+    vises: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_VISES)
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """The queries, one for each vise, and what the vises are called.
@@ -226,19 +274,31 @@ class ExploreForm(SearchForm):
         from workhold.files.toolkit.presets import preset, preset_names
 
         if self.vises is not None:
-            named: list[tuple[str, Vise, Tolerance | None]] = [(form.title, form.vise(), None) for form in self.vises]
+            named: list[tuple[str, Toolkit, Tolerance | None]] = [
+                (form.title, form.toolkit(), None) for form in self.vises
+            ]
         else:
-            named = [(name, loaded.vise, loaded.tolerance) for name in preset_names() for loaded in [preset(name)]]
+            named = [
+                (one.name, one.toolkit, one.tolerance) for one in map(preset, preset_names()) if one.is_on_the_page
+            ]
         asked = self.query(named[0][1], most_segments)
         return tuple(
-            (title, evolve(asked, toolkit=vise, tolerance=asked.tolerance if self.tolerance else tolerance))
-            for title, vise, tolerance in named
+            (
+                title,
+                evolve(
+                    asked,
+                    toolkit=toolkit,
+                    arrangements=self.types,
+                    tolerance=asked.tolerance if self.tolerance else tolerance,
+                ),
+            )
+            for title, toolkit, tolerance in named
         )
 
 
 def sentence_of(error: dict[str, Any]) -> str:
     """One thing that pydantic finds wrong with a request, as a sentence."""
-    loc = [str(part) for part in error.get("loc", ())]
+    loc = [str(part) for part in error.get("loc", ()) if part not in (VISE, PLATE)]
     if error.get("type") == "json_invalid":
         return "The request is not valid JSON: send one object."
     where, rest = (loc[0], loc[1:]) if loc else ("body", [])

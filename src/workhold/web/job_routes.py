@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from workhold.model.result import FixtureTable, Result
+from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
@@ -161,21 +162,24 @@ async def fixtures(
     type: Annotated[str | None, Query(max_length=40)] = None,
     face: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     angle: Annotated[str | None, Query(max_length=60, description="from..to in degrees")] = None,
+    together: Annotated[bool, Query(description="of fixtures that are alike only the first")] = False,
+    unfit: Annotated[bool, Query(description="also what is no fixture for a workshop")] = True,
 ) -> dict[str, Any]:
     """A page of them, also of those known so far while the search runs; ranks count all, best first, from 1."""
     job = found_job(request, name)
-    selection = Selection(sort, descending, type, face, None if angle is None else angle_range(angle))
+    selection = Selection(sort, descending, type, face, None if angle is None else angle_range(angle), together, unfit)
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is told even then.
         selection.indices(EMPTY, job.queries[0][1].toolkit)
-        return {"total": 0, "revision": revision, "rows": []}
-    indices = await asyncio.to_thread(job.chosen, selection)
-    page = indices[offset : offset + limit]
-    rows = await asyncio.to_thread(
-        rows_answer, result.table.take(page), result.workpiece, result.vise, (page + 1).tolist()
-    )
-    return {"total": len(indices), "revision": revision, "rows": rows}
+        return {"total": 0, "unfit": 0, "revision": revision, "rows": []}
+    found = await asyncio.to_thread(job.chosen, selection, result)
+    page = found.index[offset : offset + limit]
+    table, like = result.table.take(page), found.like[offset : offset + limit].tolist()
+    rows = await asyncio.to_thread(rows_answer, table, result.workpiece, result.toolkit, (page + 1).tolist())
+    bad = unfit_of(table.quality, result.query.tolerance).tolist()
+    told = [row | {"like": more, "unfit": none} for row, more, none in zip(rows, like, bad, strict=True)]
+    return {"total": len(found.index), "unfit": found.unfit, "revision": revision, "rows": told}
 
 
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
@@ -185,7 +189,7 @@ async def explanation(request: Request, name: str) -> dict[str, Any]:
     result = result_of_job(job, when_over=True)
     if len(result) or not result.complete:
         raise HTTPException(409, "There is nothing to explain: fixtures were found, or the search was not complete.")
-    return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.vise)
+    return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
 
 
 @router.post("/jobs/{name}/resist", summary="Which fixtures resist loads best")

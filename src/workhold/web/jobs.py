@@ -14,12 +14,12 @@ from secrets import token_urlsafe
 from time import monotonic
 from typing import Any
 
-import numpy as np
 from attrs import define, evolve, field
-from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.listing.alike import Entries
 from workhold.model.explanation import Explanation
+from workhold.model.notes import kept_note, stopped_note
 from workhold.model.result import Result
 from workhold.web.answers import proof_answer
 from workhold.web.limits import Limits
@@ -75,7 +75,7 @@ class Job:
     used: float = field(factory=monotonic)
     version: int = 0
     watchers: set[asyncio.Event] = field(factory=set)
-    orders: dict[tuple[int, Selection], NDArray[np.intp]] = field(factory=dict)
+    orders: dict[tuple[int, Selection], Entries] = field(factory=dict)
     result_hash: str | None = None
 
     @property
@@ -122,16 +122,14 @@ class Job:
             "table": list(self.table) if self.compares else None,
         }
 
-    def chosen(self, selection: Selection) -> NDArray[np.intp]:
-        """Indices of the fixtures of a selection; the last few selections are remembered."""
-        if self.result is None:
-            return np.zeros(0, np.intp)
+    def chosen(self, selection: Selection, result: Result) -> Entries:
+        """What a selection chooses of the result; the last few selections are remembered."""
         key = (self.revision, selection)
         if key not in self.orders:
-            indices = selection.indices(self.result.table, self.result.vise)
+            found = selection.entries(result)
             while len(self.orders) >= ORDERS_KEPT:
                 self.orders.pop(next(iter(self.orders)))
-            self.orders[key] = indices
+            self.orders[key] = found
         return self.orders[key]
 
 
@@ -225,16 +223,9 @@ class Jobs:
         """Keep the outcome of a search."""
         result, notes = found.result, list(found.result.notes)
         if found.left_out:
-            notes.insert(
-                0,
-                f"{len(result) + found.left_out:,} fixtures were found; this server keeps the best {len(result):,} of them.",
-            )
+            notes.insert(0, kept_note(len(result) + found.left_out, len(result)))
         if not result.complete and job.task is not None and not job.task.stop.is_set():
-            notes.insert(
-                0,
-                f"The search was stopped after {self.limits.seconds:g} s, the longest this server allows: this is a part of "
-                "the fixtures only.",
-            )
+            notes.insert(0, stopped_note(self.limits.seconds))
         job.result = evolve(result, query=job.queries[0][1], notes=tuple(notes))
         job.notes = tuple(notes)
         job.found = sum(result.found.values())

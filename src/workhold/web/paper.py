@@ -39,8 +39,8 @@ class PaperOrder:
     paper : "a4" or "letter".
     unit : "mm" or "inch".
     day : written on the sheet.
-    jaw_force : in N, or None.
-    friction : coefficient, or None.
+    wishes : what is asked of a sheet or a set-up, named as in :func:`workhold.drawing.result_sheet.result_details` and
+        :func:`workhold.files.dxf.setup.setup_dxf`; lengths in mm.
     result_hash : of the result's file, or None where it is not known yet.
     """
 
@@ -51,8 +51,7 @@ class PaperOrder:
     paper: str
     unit: str
     day: date
-    jaw_force: float | None
-    friction: float | None
+    wishes: dict[str, Any]
     result_hash: str | None
 
     @classmethod
@@ -93,8 +92,7 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
         day=order.day,
         paper=order.paper,
         unit=unit_named(order.unit),
-        jaw_force=order.jaw_force,
-        friction=order.friction,
+        **{name: wish for name, wish in order.wishes.items() if name != "clearance"},
     )
     if order.kind == "sheet.svg":
         return stacked(pages).encode("utf-8"), digest
@@ -115,10 +113,15 @@ def hash_of(result: Result) -> str:
 
 def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as DXF."""
-    from workhold.files.dxf.setup import setup_dxf
+    from workhold.files.dxf.setup import CLEARANCE, setup_dxf
+    from workhold.model.part_zero import part_zero
+    from workhold.model.units import unit_named
 
     result = order.result
-    return setup_dxf(order.fixture, result.workpiece, result.vise), None
+    zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
+    clearance = order.wishes["clearance"]
+    clearance = CLEARANCE if clearance is None else clearance
+    return setup_dxf(order.fixture, result.workpiece, result.toolkit, zero, clearance), None
 
 
 def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -128,9 +131,13 @@ def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
 
         raise InputError(f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it.")
     from workhold.files.step.setup import setup_step
+    from workhold.model.part_zero import part_zero
+    from workhold.model.units import unit_named
 
     result = order.result
-    return setup_step(order.fixture, result.workpiece, result.vise), None
+    zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
+    sizes = {name: order.wishes[name] for name in ("thickness", "peg_length", "peg_height")}
+    return setup_step(order.fixture, result.workpiece, result.toolkit, zero=zero, **sizes), None
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -139,7 +146,7 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
-    return draw_fixture(order.fixture, result.workpiece, result.vise, title=title).encode("utf-8"), None
+    return draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title).encode("utf-8"), None
 
 
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {

@@ -110,7 +110,7 @@ async def vises() -> list[dict[str, Any]]:
     """Plates that people own; lengths in mm."""
     from workhold.files.toolkit.presets import preset, preset_names
 
-    return [vise_answer(preset(name)) for name in preset_names()]
+    return [vise_answer(one) for one in map(preset, preset_names()) if one.is_on_the_page]
 
 
 @router.get("/figures", summary="The figures of quality")

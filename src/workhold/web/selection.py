@@ -7,9 +7,11 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.listing.alike import Entries, alike, first_of_each
 from workhold.model.quality import FIGURES, figure_number
-from workhold.model.result import FixtureTable
+from workhold.model.result import FixtureTable, Result
 from workhold.model.toolkit import Toolkit
+from workhold.statics.judging import unfit
 
 __all__ = ["Selection", "angle_range"]
 
@@ -25,6 +27,8 @@ class Selection:
     type : name of an arrangement, or None for all.
     face : only fixtures that touch this face.
     angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
+    together : of fixtures that are alike (``listing.alike``) only the first.
+    unfit : also those that are none for a workshop; where there are no others they are chosen all the same.
     """
 
     sort: str = "rank"
@@ -32,6 +36,26 @@ class Selection:
     type: str | None = None
     face: int | None = None
     angle: tuple[float, float] | None = None
+    together: bool = False
+    unfit: bool = True
+
+    def entries(self, result: Result) -> Entries:
+        """The chosen fixtures of a result, in order, each with how many that are like it are left out.
+
+        Raises
+        ------
+        InputError
+            As :meth:`indices`.
+        """
+        found = self.indices(result.table, result.toolkit)
+        chosen, bad = found, unfit(result.table.quality, result.query.tolerance)
+        if not (self.unfit or bad.all()):
+            chosen = found[~bad[found]]
+        like = np.zeros(len(chosen), np.int64)
+        if self.together:
+            first, like = first_of_each(alike(result.table, result.workpiece, result.toolkit)[chosen])
+            chosen = chosen[first]
+        return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
     def indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
         """Indices of the chosen fixtures of a table, in order.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import socket
 from collections import Counter
 from collections.abc import Callable, Collection
-from contextlib import suppress
 from ipaddress import ip_address
+from types import FrameType
 from typing import Any
 
 import uvicorn
@@ -23,7 +24,8 @@ __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 LOCAL = ("localhost", "127.0.0.1", "::1")
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
 HEADER_SECONDS = 15.0
-STOP_SECONDS = 2
+STOP_SECONDS = 1
+TERMINATED = 143
 
 
 class PatientProtocol(H11Protocol):
@@ -85,11 +87,18 @@ class PatientProtocol(H11Protocol):
 
 
 class Server(uvicorn.Server):
-    """Tells when it listens."""
+    """Tells when it listens, and by which signal it was stopped; uvicorn would raise that again."""
 
     def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
         super().__init__(config)
         self.listening = listening
+        self.stopped_by: int | None = None
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Stop, in order at first, and without a wait when told again."""
+        self.force_exit = self.should_exit
+        self.should_exit = True
+        self.stopped_by = sig
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, and tell."""
@@ -134,9 +143,9 @@ def run_server(
     try:
         if prepare is not None:
             prepare()
-        # uvicorn raises an interrupt again after a clean stop.
-        with suppress(KeyboardInterrupt):
-            server.run(sockets=[listener])
+        server.run(sockets=[listener])
+        if server.stopped_by == signal.SIGTERM:
+            raise SystemExit(TERMINATED)
     finally:
         listener.close()
 

@@ -26,7 +26,7 @@ from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
-    from workhold.model.vise import Vise
+    from workhold.model.toolkit import Toolkit
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
 __all__ = ["TASKS", "Found", "NamedQuery", "Upload", "warm_up", "work"]
@@ -38,6 +38,16 @@ NamedQuery = tuple[str, Query]
 PAUSE = 0.1
 # Best fixtures told when loads are asked for over all of them.
 MOST_RESISTING = 10
+# What the questions of a part's readers are called on the page, or by those who ask the server for more.
+CALLED = {
+    "unit": '"File drawn in"',
+    "drawing_unit": '"File drawn in"',
+    "layers": "the choice of layers",
+    "part_number": "the part number",
+    "join_tolerance": "join tolerance",
+    "axis": "axis",
+    "section": "the height of a section",
+}
 ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 
 
@@ -122,7 +132,8 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
             "title": row.name,
             "vise": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
             "counts": dict(row.found),
-            "best": dict(row.best),
+            "figures": dict(row.figures),
+            "fit": row.fit,
             "note": row.reason,
         }
         order.report(("row", entry))
@@ -178,7 +189,7 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
         path = Path(folder) / f"part{ending}"
         path.write_bytes(upload.content)
         try:
-            loaded = read_workpiece(path, **upload.options)
+            loaded = read_workpiece(path, **upload.options, called=CALLED)
         except InputError as error:
             raise InputError(str(error).replace(f"{path.name}: ", "", 1)) from error
         except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
@@ -189,15 +200,23 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
 
 
-def loads(payload: tuple[Fixture, Workpiece, Vise, LoadsForm], order: Order) -> list[dict[str, Any]]:
+def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
     """What loads do to a fixture."""
     from workhold.statics.loads import load_cases
     from workhold.web.answers import load_case_answer
 
-    fixture, workpiece, vise, form = payload
+    fixture, workpiece, toolkit, form = payload
     asked = [load.load() for load in form.loads]
-    cases = load_cases(fixture, workpiece, vise, asked, form.jaw_force, form.friction)
+    cases = load_cases(fixture, workpiece, toolkit, asked, form.jaw_force, form.friction, form.jaw)
     return [load_case_answer(case) for case in cases]
+
+
+def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[str, str]]:
+    """What to beware of with the only fixture of a result."""
+    from workhold.drawing.result_sheet import result_cautions
+
+    result, asked = payload
+    return [{"kind": caution.kind, "sentence": caution.sentence} for caution in result_cautions(result, 1, **asked)]
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
@@ -209,7 +228,9 @@ def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, f
 
     result, form = payload
     asked = [load.load() for load in form.loads]
-    reaction = quality_of(result.table, result.workpiece, result.vise, result.query.tolerance, asked)[:, LOAD_REACTION]
+    reaction = quality_of(result.table, result.workpiece, result.toolkit, result.query.tolerance, asked)[
+        :, LOAD_REACTION
+    ]
     order_of = np.argsort(reaction, kind="stable")[:MOST_RESISTING]
     return [(int(index) + 1, float(reaction[index])) for index in order_of if np.isfinite(reaction[index])]
 
@@ -223,6 +244,7 @@ TASKS: Tasks = {
     "builtin_part": builtin_part,
     "read_part": read_part,
     "loads": loads,
+    "warnings": warnings,
     "resist": resist,
     "paper": make_paper,
 }

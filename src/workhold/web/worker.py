@@ -20,6 +20,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.apart import limit_memory, limit_processor
+from workhold.limits import lacks_memory
 
 __all__ = ["CANCEL", "Order", "Tasks", "worker_main"]
 
@@ -79,21 +80,21 @@ def worker_main(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up
             answer = ("done", number, tasks[name](payload, Order(report, cancel, seconds)))
         except InputError as error:
             answer = ("refused", number, str(error))
-        except MemoryError:
-            answer = (
-                "failed",
-                number,
-                f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives.",
-            )
-        except OSError:
-            # The server is gone, or the disk is full; neither can be told from here.
-            traceback.print_exc(file=sys.stderr)
-            answer = ("failed", number, "The system refused something the work needs.")
-        except Exception:
-            traceback.print_exc(file=sys.stderr)
-            answer = ("failed", number, "The program has a mistake that this request brought out; please report it.")
+        except Exception as error:
+            answer = ("failed", number, said_of(error, memory_bytes))
         del payload
         connection.send(answer)
+
+
+def said_of(error: Exception, memory_bytes: int) -> str:
+    """What a client is told of a task that failed; what its operator has to know goes to standard error."""
+    if lacks_memory(error):
+        return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
+    traceback.print_exception(error, file=sys.stderr)
+    if isinstance(error, OSError):
+        # The server is gone, or the disk is full; neither can be told from here.
+        return "The system refused something the work needs."
+    return "The program has a mistake that this request brought out; please report it."
 
 
 def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from math import atan, atan2, cos, hypot, pi, radians, sin
 from pathlib import Path
@@ -13,8 +16,9 @@ from attrs import evolve
 from drawing_examples import PART_AREA, diamond, example, hole_area
 from ezdxf import options
 from ezdxf.document import Drawing
+from plate_examples import WAYS, on_plate
 
-from workhold.files.dxf.setup import LAYERS, layer_of, setup_dxf, write_setup_dxf
+from workhold.files.dxf.setup import layers_of, setup_dxf, write_setup_dxf
 from workhold.model.fixture import Fixture
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
@@ -50,6 +54,19 @@ def distance_to_part(document: Drawing, x: float, y: float) -> float:
     return min(distances)
 
 
+@pytest.mark.parametrize(("body", "clearance", "radius"), [(None, 1.0, 4.0), (5.0, 2.5, 7.5), (None, 0.0, 3.0)])
+def test_the_cutter_keeps_off_the_pegs(body: float | None, clearance: float, radius: float) -> None:
+    """About each peg there is a circle on KEEP_OUT, the clearance larger than the peg's thickest part."""
+    fixture, part, vise = diamond()
+    text = setup_dxf(fixture, part, evolve(vise, body_radius=body or vise.peg_radius), clearance=clearance)
+    circles = (
+        ezdxf.read(io.TextIOWrapper(io.BytesIO(text), encoding="utf-8")).modelspace().query('*[layer=="KEEP_OUT"]')
+    )
+    found = sorted((c.dxf.center.x, c.dxf.center.y, c.dxf.radius) for c in circles)
+    expected = sorted((peg.x, peg.y, radius) for peg in fixture.pegs)
+    assert sum(found, ()) == pytest.approx(sum(expected, ()))
+
+
 @pytest.mark.parametrize("size", [0.01, 1.0, 40.0])
 @pytest.mark.parametrize("rounded", [False, True])
 def test_pegs_touch_the_part(size: float, rounded: bool) -> None:
@@ -73,7 +90,7 @@ def test_audit_finds_nothing(made: Callable[[], Held]) -> None:
     assert not auditor.has_errors and not auditor.has_fixes
     assert document.header["$INSUNITS"] == 4
     used = {entity.dxf.layer for entity in document.modelspace()}
-    assert used == {*LAYERS, *map(layer_of, held[2].carriers)}
+    assert used == {*layers_of(held[2])}
     assert all(name in document.layers for name in used)
 
 
@@ -150,3 +167,43 @@ def test_bytes_are_the_same_every_time(tmp_path: Path) -> None:
     path = tmp_path / "setup.dxf"
     write_setup_dxf(*example(), path)
     assert path.read_bytes() == setup_dxf(*example())
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
+def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) -> None:
+    """Each locator and the clamp's tip is its radius from the part, on layers of their own, and the clamp's body, a closed
+    capsule, keeps off the part; the file is clean.
+    """
+    held = on_plate(way, bolted)
+    document = reread(held)
+    space = document.modelspace()
+    auditor = document.audit()
+    assert not auditor.has_errors and not auditor.has_fixes
+    assert {entity.dxf.layer for entity in space} == set(layers_of(held[2]))
+    circles = [*space.query('CIRCLE[layer=="LOCATORS"]'), *space.query('CIRCLE[layer=="CLAMP"]')]
+    assert [tuple(circle.dxf.center)[:2] for circle in circles] == [(peg.x, peg.y) for peg in held[0].pegs]
+    for circle in circles:
+        assert abs(distance_to_part(document, *tuple(circle.dxf.center)[:2]) - circle.dxf.radius) < 1e-6
+    bodies = list(space.query('LWPOLYLINE[layer=="CLAMP"]'))
+    assert len(bodies) == int(bolted) and all(body.closed for body in bodies)
+    for body in bodies:
+        corners = [(x, y) for x, y, _ in body.get_points("xyb")]
+        assert min(distance_to_part(document, x, y) for x, y in corners) > 0
+        assert [bulge for _, _, bulge in body.get_points("xyb")] == pytest.approx([0, 1, 0, 1])
+    used = {tuple(round(v, 9) for v in hole.dxf.center)[:2] for hole in space.query('CIRCLE[layer=="HOLES_USED"]')}
+    assert len(used) == 3 + bolted
+
+
+def test_bytes_do_not_depend_on_the_process() -> None:
+    """Two processes that order sets in different ways write the same file."""
+    code = (
+        "import hashlib, drawing_examples; from workhold.files.dxf.setup import setup_dxf; "
+        "print(hashlib.sha256(setup_dxf(*drawing_examples.example())).hexdigest())"
+    )
+    said = set()
+    for seed in ("4", "5"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(sys.path)}
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=True)
+        said.add(done.stdout)
+    assert len(said) == 1

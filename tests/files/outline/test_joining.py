@@ -121,7 +121,7 @@ def test_the_tolerance_decides(tmp_path: Any) -> None:
     with pytest.raises(
         InputError,
         match=r"no outline is closed: LWPOLYLINE \w+ ends at \(0, 0\), 0.05 mm from the nearest other end.*"
-        r"\(0, 0.05\).*--join-tolerance above 0.05",
+        r"\(0, 0.05\).*give a larger join_tolerance, above 0.05",
     ):
         read_dxf(tmp_path, draw)
     loaded = read_dxf(tmp_path, draw, join_tolerance=0.06)
@@ -250,7 +250,7 @@ def test_a_crowd_of_ends_asks_for_a_smaller_tolerance(tmp_path: Any) -> None:
         for k in range(100):
             space.add_line((0, k * 0.01), (50 + k, k * 3))
 
-    with pytest.raises(InputError, match="smaller --join-tolerance"):
+    with pytest.raises(InputError, match="smaller join_tolerance"):
         read_dxf(tmp_path, draw, join_tolerance=5)
 
 

@@ -60,7 +60,7 @@ def test_the_largest_part_is_used_and_told(tmp_path: Path) -> None:
     assert loaded.remarks == (
         "The file holds 3 separate parts: part 1 is 60 x 40 mm at (0, 0) with 1 hole; part 2 is 20 x 20 mm at (20, 10) "
         "with 1 hole; part 3 is 9 x 9 mm at (100, 0) with no holes. Part 1 is used, the largest (choose another with "
-        "--part).",
+        "part_number).",
     )
     assert [part.area for part in loaded.parts] == pytest.approx([2400 - 225 * pi, 91 * pi, 81])
 

@@ -26,7 +26,7 @@ def test_every_row_is_a_fixture(tmp_path: Path) -> None:
         assert float(row["jaw_separation"]) == pytest.approx(fixture.jaw_separation)
         assert float(row["closure_margin"]) == pytest.approx(fixture.quality["closure_margin"])
         for k, peg in enumerate(fixture.pegs, 1):
-            assert (row[f"peg{k}_hole"], row[f"peg{k}_jaw"]) == (peg.hole, peg.jaw)
+            assert (row[f"peg{k}_hole"], row[f"peg{k}_jaw"]) == (peg.hole, peg.carrier)
             assert (int(row[f"peg{k}_column"]), int(row[f"peg{k}_row"])) == (peg.column, peg.row)
             assert (float(row[f"peg{k}_x"]), float(row[f"peg{k}_y"])) == pytest.approx((peg.x, peg.y))
             assert int(row[f"peg{k}_face"]) == peg.face

@@ -21,8 +21,10 @@ from workhold.errors import InputError
 from workhold.files.result import writer as result_file
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result, write_result_to
+from workhold.files.toolkit.presets import preset
 from workhold.model.proof import Undecided
 from workhold.model.result import FixtureTable
+from workhold.model.tolerance import Tolerance
 
 
 @pytest.fixture
@@ -45,6 +47,22 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path, count: int) 
     assert (again.found, again.distinct) == (result.found, result.distinct)
     assert (again.complete, again.notes) == (False, ("remark ä",))
     assert again.query == result.query
+
+
+@pytest.mark.parametrize("types", [("I",), ("II",), ("I", "II")])
+def test_the_types_asked_for_survive_and_bound_what_is_listed(tmp_path: Path, types: tuple[str, ...]) -> None:
+    """A file that says for which types it was asked says so when written again, and may list no other."""
+    result = fake_result(6)
+    query, names = attrs.evolve(result.query, arrangements=types), [fixture.type for fixture in result]
+    write_result(attrs.evolve(result, query=query), tmp_path / "a.json")
+    assert json.loads((tmp_path / "a.json").read_text())["types"] == list(types)
+    strange = [number for number, name in enumerate(names, 1) if name not in types]
+    if strange:
+        with pytest.raises(InputError, match=f"fixture {strange[0]} is of a type that was not asked for"):
+            read_result(tmp_path / "a.json")
+        table = result.table.take(np.array([name in types for name in names]))
+        write_result(attrs.evolve(result, query=query, table=table), tmp_path / "a.json")
+    assert read_result(tmp_path / "a.json").query == query
 
 
 def test_numbers_survive_within_their_rounding(tmp_path: Path) -> None:
@@ -72,7 +90,9 @@ def test_the_file_says_what_the_fixture_objects_say(tmp_path: Path) -> None:
         for peg, expected in zip(entry["pegs"], fixture.pegs, strict=True):
             assert list(peg) == ["jaw", "column", "row", "x", "y", "segment", "force"]
             peg["face"] = peg.pop("segment")
-            assert peg == pytest.approx(attrs.asdict(expected), abs=1e-8)
+            peg["carrier"] = peg.pop("jaw")
+            expected_entry = {name: value for name, value in attrs.asdict(expected).items() if name != "place"}
+            assert peg == pytest.approx(expected_entry, abs=1e-8)
 
 
 def test_one_fixture_stands_on_one_line(tmp_path: Path) -> None:
@@ -120,7 +140,7 @@ def test_any_layout_of_the_same_json_is_read(tmp_path: Path, document: dict[str,
 
 
 def test_the_keys_of_the_model_are_enough(tmp_path: Path, document: dict[str, Any]) -> None:
-    for key in ("contact_margin", "found", "distinct", "complete", "notes"):
+    for key in ("types", "contact_margin", "found", "distinct", "complete", "notes"):
         del document[key]
     for fixture in document["fixtures"]:
         fixture["quality"] = {}
@@ -129,8 +149,9 @@ def test_the_keys_of_the_model_are_enough(tmp_path: Path, document: dict[str, An
     (tmp_path / "a.json").write_text(json.dumps(document))
     result = read_result(tmp_path / "a.json")
     assert result.complete
+    assert result.query.arrangements == ("I", "II")
     assert result.found == result.counts
-    assert all(fixture.pegs[0].jaw == "left" and fixture.pegs[-1].jaw == "right" for fixture in result)
+    assert all(fixture.pegs[0].carrier == "left" and fixture.pegs[-1].carrier == "right" for fixture in result)
     np.testing.assert_allclose(result.table.null_vector.sum(axis=1), 1)
 
 
@@ -250,6 +271,7 @@ def test_the_account_of_the_search_survives_the_round_trip(tmp_path: Path) -> No
                 "columns": [0, 1, 0, -k],
                 "rows": [0, -3, 1, k],
                 "theta_deg": 7.25 * k,
+                "reach_deg": None,
                 "reason": f"reason {k}",
             }
             for k, kind in enumerate(("I", "II"))
@@ -355,3 +377,12 @@ def test_statistics_survive_the_round_trip(tmp_path: Path) -> None:
     assert again.statistics == result.statistics
     write_result(again, tmp_path / "b.json")
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def test_the_fit_of_the_dowels_survives_the_round_trip(tmp_path: Path) -> None:
+    """What a named vise says of its pins and their holes is what the sheet of the result tells; None stays None."""
+    for fit in (preset("plate-20mm").fit, None):
+        result = fake_result(2)
+        result = attrs.evolve(result, query=attrs.evolve(result.query, tolerance=Tolerance(0.0145, 0.02, fit)))
+        write_result(result, tmp_path / "r.json")
+        assert read_result(tmp_path / "r.json").query.tolerance == result.query.tolerance

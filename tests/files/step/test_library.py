@@ -81,7 +81,7 @@ def test_a_missing_library_is_one_sentence_with_the_remedy(
     result = fake_result(1)
     for attempt in (
         lambda: read_step(STEP.encode()),
-        lambda: write_setup_step(result[0], result.workpiece, result.vise, tmp_path / "set-up.step"),
+        lambda: write_setup_step(result[0], result.workpiece, result.toolkit, tmp_path / "set-up.step"),
     ):
         with pytest.raises(InputError) as caught:
             attempt()

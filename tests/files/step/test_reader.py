@@ -192,7 +192,7 @@ def test_a_lying_cylinder_is_a_rectangle_seen_from_above_and_a_circle_along_its_
     rod = cylinder(5, 30, (0, 0, 0), (1, 0, 0))
     loaded = read(tmp_path, rod)
     assert area(loaded.workpiece) == pytest.approx(300, rel=1e-12)
-    assert loaded.remarks[-1].startswith("Along x no face leans: give --axis x")
+    assert loaded.remarks[-1].startswith("Along x no face leans: give axis x")
     along_x = read(tmp_path, rod, axis="x")
     assert lines_and_circles(along_x.workpiece) == (set(), {(0, 0, 5, 1)})
     assert along_x.remarks == ()
@@ -325,7 +325,7 @@ def test_a_silhouette_of_ellipses_is_refused_with_a_remedy(tmp_path: Path) -> No
     assert "an ellipse from" in refusal(tmp_path, cylinder(5, 30, (0, 0, 0), (1, 0, 1)))
     said = refusal(tmp_path, BRepPrimAPI_MakeTorus(20, 5).Solid(), axis="x")
     assert re.search(r"a rounded rim at heights 0 to 50 mm reaches [\d.]+ mm out of", said)
-    assert "give --section HEIGHT" in said
+    assert "give section, the height" in said
 
 
 def test_surfaces_without_a_solid_are_refused(tmp_path: Path) -> None:
@@ -398,8 +398,8 @@ def test_sections_that_do_not_fill_the_solid_are_refused() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"unit": "mm"}, "leave --drawing-unit out"),
-        ({"layers": ["0"]}, "leave --layer out"),
+        ({"unit": "mm"}, "leave unit out"),
+        ({"layers": ["0"]}, "leave layers out"),
         ({"axis": "w"}, "give x, y or z"),
     ],
 )

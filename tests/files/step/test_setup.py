@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from cmath import exp
+from io import BytesIO
 from math import atan, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
@@ -13,14 +14,21 @@ import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
+from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.gp import gp_Pnt
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_FACE, TopAbs_VERTEX
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
+from plate_examples import WAYS, on_plate
 
 from workhold.errors import InputError
 from workhold.files.step.setup import setup_step, write_setup_step
 from workhold.files.step.solids import Solid, read_solids
 from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.part_zero import part_zero
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
@@ -96,7 +104,7 @@ def test_pegs_stand_in_holes_of_the_plates(pose: Pose) -> None:
     left, right = sorted(bodies(pose)["plate"], key=lambda plate: plate.low[0])
     for peg in fixture(pose).pegs:
         axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, -7), gp_Pnt(peg.x, peg.y, -1)).Edge()
-        own = left if peg.jaw == "left" else right
+        own = left if peg.carrier == "left" else right
         assert distance(axis, own.shape) == pytest.approx(3, abs=1e-9)
 
 
@@ -105,8 +113,33 @@ def test_bodies_are_named_by_what_they_are() -> None:
     text = setup_step(fixture(POSES[1]), part(POSES[1], "Joe's bracket"), VISE).decode()
     names = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text)
     pegs = ["peg L-A1", "peg L-A3", "peg R-B1", "peg R-B3"]
-    assert names == ["Joe''s bracket set-up", "Joe''s bracket", *pegs, "left jaw", "right jaw"]
+    assert names == ["Joe''s bracket set-up", "Joe''s bracket", *pegs, "left jaw", "right jaw", "part zero X0 Y0"]
     assert "SI_UNIT(.MILLI.,.METRE.)" in text
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_part_zero_stands_where_it_was_asked_for(pose: Pose) -> None:
+    """The three ends of its axes: the centre of the hole, a pitch along the part's x and half of one along its y."""
+    zero = part_zero(part(pose), "hole 1")
+    reader = STEPControl_Reader()
+    reader.ReadStream("zero.step", BytesIO(setup_step(fixture(pose), part(pose), VISE, zero=zero)))
+    reader.TransferRoots()
+    shape = reader.OneShape()
+    loose, ends = TopExp_Explorer(shape, TopAbs_VERTEX, TopAbs_FACE), set()
+    while loose.More():
+        point = BRep_Tool.Pnt_s(TopoDS.Vertex(loose.Current()))
+        ends.add((round(point.X(), 6), round(point.Y(), 6), round(point.Z(), 6)))
+        loose.Next()
+    along = exp(1j * radians(pose.theta_deg))
+    places = [complex(40, 15), complex(40, 15) + 10 * along, complex(40, 15) + 5j * along]
+    assert ends == {(round(z.real, 6), round(z.imag, 6), 0.0) for z in places}
+
+
+def test_pegs_are_as_long_as_asked_for() -> None:
+    """Pegs 15 mm long that stand 6 mm out of the plates."""
+    solids = read_solids(setup_step(fixture(POSES[0]), part(POSES[0]), VISE, peg_length=15, peg_height=6))
+    heights = [(round(solid.low[2], 9), round(solid.high[2], 9)) for solid in solids]
+    assert heights.count((-9.0, 6.0)) == 4
 
 
 def test_the_same_set_up_gives_the_same_bytes(tmp_path: Path) -> None:
@@ -131,6 +164,7 @@ def test_plates_of_a_nearly_closed_vise_do_not_overlap() -> None:
     [
         (0.0, {}, "pegs of radius 0 have no body"),
         (3.0, {"thickness": 0.0}, "thickness 0.0 is not a positive length"),
+        (3.0, {"peg_length": -1.0}, "peg length -1.0 is not a positive length"),
         (3.0, {"plate_thickness": float("nan")}, "plate thickness nan is not a positive length"),
     ],
 )
@@ -138,3 +172,29 @@ def test_what_has_no_body_is_refused(radius: float, options: dict[str, float], s
     """Points for pegs, and bodies of no thickness."""
     with pytest.raises(InputError, match=said):
         setup_step(fixture(POSES[0]), part(POSES[0]), attrs.evolve(VISE, peg_radius=radius), **options)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
+def test_a_plate_has_its_locators_and_its_clamp(way: str, bolted: bool) -> None:
+    """One plate, three dowels through it, the clamp's body on it, which touches the part and enters nothing, its bolt."""
+    fixture, workpiece, plate = on_plate(way, bolted)
+    text = setup_step(fixture, workpiece, plate, thickness=12, plate_thickness=8)
+    named = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text.decode())
+    dowels = [f"locator {peg.hole}" for peg in fixture.pegs[:3]]
+    tip = fixture.pegs[3]
+    bolt = [f"bolt {tip.hole.removeprefix('clamp ')}"] if bolted else []
+    assert named == ["rectangle set-up", "rectangle", *dowels, tip.hole, *bolt, "plate", "part zero X0 Y0"]
+    solids = read_solids(text)
+    heights = [(round(solid.low[2], 6), round(solid.high[2], 6)) for solid in solids]
+    assert sorted(heights) == [*[(-8, 0)] * (1 + bolted), *[(-8, 12)] * 3, (0, 12), (0, 12)]
+    body, part = sorted((one for one in solids if round(one.low[2], 6) == 0), key=lambda solid: solid.volume)
+    length = abs(fixture.jaw_separation) if bolted else 0.0
+    assert body.volume == pytest.approx(12 * (pi * 25 + 10 * length), rel=1e-9)
+    assert distance(body.shape, part.shape) == pytest.approx(0, abs=1e-6)
+    axis = BRepBuilderAPI_MakeEdge(gp_Pnt(tip.x, tip.y, 0), gp_Pnt(tip.x, tip.y, 12)).Edge()
+    assert distance(axis, part.shape) == pytest.approx(5, abs=1e-6)
+    for peg in fixture.pegs[:3]:
+        axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, 0), gp_Pnt(peg.x, peg.y, 12)).Edge()
+        assert distance(axis, part.shape) == pytest.approx(5, abs=1e-6)
+        assert distance(axis, body.shape) > 5

@@ -8,8 +8,9 @@ only where there was a reason.
 from __future__ import annotations
 
 import io
+import random
 from itertools import groupby
-from math import hypot
+from math import cos, hypot, sin
 from typing import Any
 
 import numpy as np
@@ -105,6 +106,48 @@ def failures(start: int, stop: int) -> list[str]:
 def test_random_drawings_are_read_as_they_look() -> None:
     """A hundred drawings."""
     assert failures(0, 100) == []
+
+
+def nested_rings(chance: random.Random, x: float, y: float, radius: float) -> str:
+    """Path data of a circle with up to three circles side by side inside it, and so on; each is run either way."""
+    data, sweep = [], chance.randrange(2)
+    data.append(
+        f"M{x - radius} {y}a{radius} {radius} 0 1 {sweep} {2 * radius} 0a{radius} {radius} 0 1 {sweep} {-2 * radius} 0z"
+    )
+    if radius > 6:
+        for turn in chance.sample(range(3), chance.randint(0, 3)):
+            angle, inner = 2.1 * turn, radius * chance.uniform(0.2, 0.42)
+            data.append(nested_rings(chance, x + 0.5 * radius * cos(angle), y + 0.5 * radius * sin(angle), inner))
+    chance.shuffle(data)
+    return " ".join(data)
+
+
+@pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
+def test_a_hole_is_what_is_not_painted(rule: str) -> None:
+    """Circles in circles, run either way: loops told apart by how many are around them give the picture of the fill rule."""
+    chance = random.Random(7)
+    for _ in range(60):
+        data = nested_rings(chance, 50.0, 50.0, 48.0)
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 {SIZE} {SIZE}">'
+        svg = f'{head}<path fill-rule="{rule}" d="{data}"/></svg>'
+        different = picture(svg) ^ picture(redrawn(read_svg(svg.encode(), unit=None), 'fill-rule="evenodd"'))
+        assert not (~grown(~different)).any(), svg
+
+
+def test_loops_that_meet_stay_to_be_refused() -> None:
+    """A square that lies across the edge of another of its direction, and one on top of the other, are not passed over."""
+    for second in ("M20 20h30v30h-30z", "M0 0h30v30h-30z", "M0 5h10v10h-10z"):
+        head = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="0 0 90 90">'
+        svg = f'{head}<path d="M0 0h30v30h-30z{second}"/></svg>'
+        assert len(read_svg(svg.encode(), unit=None).chains) == 2
+
+
+def test_a_loop_in_the_notch_of_another_is_painted() -> None:
+    """Its box lies within the other's and it runs the same way round, yet nothing is around it."""
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" viewBox="0 0 90 90">'
+    for other in ("M20 20h9v9h-9z", "M20 20v9h9v-9z"):
+        svg = f'{head}<path d="M0 0h30v10h-20v20h-10z{other}"/></svg>'
+        assert len(read_svg(svg.encode(), unit=None).chains) == 2
 
 
 def test_most_drawings_are_read_and_have_ink() -> None:

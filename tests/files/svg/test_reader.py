@@ -52,7 +52,7 @@ def test_y_points_up_and_the_page_corner_is_the_origin(tmp_path: Path) -> None:
 def test_files_without_physical_size_need_a_unit(tmp_path: Path, unit: str, mm: float) -> None:
     """Pixels are no length: without width and height in mm the user says what a user unit is."""
     for root in ("", 'width="100" height="50"', 'width="100px" height="50px" viewBox="0 0 100 50"', 'width="100%"'):
-        with pytest.raises(InputError, match=r"drawn\.svg: the drawing has no physical size.*--unit mm"):
+        with pytest.raises(InputError, match=r"drawn\.svg: the drawing has no physical size.*unit mm"):
             read_svg(tmp_path, D, root)
         assert area(read_svg(tmp_path, D, root, unit=unit).workpiece) == pytest.approx((800 + 50 * pi) * mm**2)
 
@@ -115,11 +115,21 @@ def test_large_arcs_and_arcs_too_small_for_their_ends(tmp_path: Path) -> None:
 
 def test_holes_loose_lines_and_subpaths(tmp_path: Path) -> None:
     """Subpaths are loops of their own, and loose lines are joined as in DXF."""
-    body = '<path d="M0 0 H60 V40 H0 Z M10 10 H20 V20 H10 Z"/><line x1="30" y1="10" x2="40" y2="10"/>'
+    body = '<path d="M0 0 H60 V40 H0 Z M10 10 V20 H20 V10 Z"/><line x1="30" y1="10" x2="40" y2="10"/>'
     body += '<polyline points="40,10 40,20 30,20 30,10"/>'
     part = read_svg(tmp_path, body, MM).workpiece
     assert area(part) == pytest.approx(2400 - 200)
     assert len(part.loops) == 3
+
+
+def test_a_loop_that_is_painted_over_is_told(tmp_path: Path) -> None:
+    """Two squares of one path, run the same way: by the nonzero rule the inner one is not seen; else it is a hole."""
+    data = 'd="M0 0 H60 V40 H0 Z M10 10 H20 V20 H10 Z"'
+    over = read_svg(tmp_path, f"<path {data}/>", MM)
+    assert area(over.workpiece) == pytest.approx(2400)
+    assert any("Left out 1 loop that is painted over" in remark for remark in over.remarks)
+    for attribute in ('fill-rule="evenodd"', 'fill="none" stroke="#000"', 'stroke="#000"'):
+        assert area(read_svg(tmp_path, f"<path {attribute} {data}/>", MM).workpiece) == pytest.approx(2300)
 
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

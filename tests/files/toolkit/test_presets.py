@@ -14,7 +14,6 @@ from workhold.errors import InputError
 from workhold.files.toolkit.dowels import dowel_series, dowel_size
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.presets import load_vise, preset_names
-from workhold.model.holes import holes_named
 from workhold.model.tolerance import Tolerance
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
@@ -34,7 +33,7 @@ def test_presets_are_vises_with_a_source(name: str) -> None:
     assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)+", name)
     assert loaded.name == name
     assert loaded.title and loaded.source
-    assert loaded.vise.rows is None
+    assert loaded.toolkit.rows is None
     content = tomllib.loads((files("workhold") / "data" / "vises" / f"{name}.toml").read_text())
     assert checked(content) == content
     assert 0 < loaded.tolerance.peg < 0.2
@@ -44,8 +43,11 @@ def test_presets_are_vises_with_a_source(name: str) -> None:
 def test_figures_of_the_presets() -> None:
     """Pitch, peg diameter and columns as published, in mm; an inch is 25.4 mm."""
     figures = {name: load_vise(name).fields for name in preset_names()}
-    told = {name: (f["pitch"], 2 * f["peg_radius"], f["columns"]) for name, f in figures.items()}
+    told = {name: (f["pitch"], 2 * f["peg_radius"], f.get("columns")) for name, f in figures.items()}
     assert told == {
+        "clamp-plate-20mm": ((20, 20), 6, None),
+        "clamp-plate-one-inch": ((25.4, 25.4), 6.35, None),
+        "clamp-table-50mm": ((50, 50), 16, None),
         "gripper-one-column": ((10, 10), 6, 1),
         "gripper-two-columns": ((10, 10), 6, 2),
         "plate-half-inch": ((12.7, 12.7), 6.35, 4),
@@ -120,7 +122,7 @@ def test_a_file_in_inches(tmp_path: Path) -> None:
         "min_gap": 12.7,
         "max_opening": 152.4,
         "row_offset": -6.35,
-        "blocked": (holes_named("L-A"), holes_named("R-B3")),
+        "blocked": ("L-A", "R-B3"),
     }
     # The smallest pin in the widest hole: 0.0010 of clearance and 0.0005 of size, halved.
     assert loaded.tolerance.peg == pytest.approx((0.00075 + 0.0005) * 25.4, abs=1e-8)
@@ -150,7 +152,7 @@ BAD = [
     ({"unit": WITHOUT}, 'unit is missing: write unit = "mm" or unit = "inch"'),
     ({"pitch": WITHOUT}, "pitch is missing: write the distance between holes"),
     ({"unit": '"ell"'}, "Unit 'ell' is not known"),
-    ({"unit": '"m"'}, 'the unit of a vise is "mm" or "inch"'),
+    ({"unit": '"m"'}, 'the unit of a toolkit is "mm" or "inch"'),
     ({"pitch": '"20"'}, "pitch is not what it should be"),
     ({"pitch": "[20]"}, "pitch is not what it should be"),
     ({"pitch": "nan"}, "pitch is not what it should be"),
@@ -193,8 +195,8 @@ def test_bad_files_are_one_sentence_with_the_file_and_the_entry(
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("plate-20", "'plate-20': file not found, and no vise has that name (try plate-20mm, "),
-        ("welding", "(try gripper-one-column, gripper-two-columns, plate-half-inch, "),
+        ("plate-20", "'plate-20': file not found, and no toolkit has that name (try plate-20mm, "),
+        ("welding", "(try clamp-plate-20mm, clamp-plate-one-inch, clamp-table-50mm, "),
         ("", "'': file not found"),
         ("jaws.toml", "'jaws.toml': file not found"),
         (".", ".: this is not a file"),

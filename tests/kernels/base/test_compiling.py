@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 
 import workhold
-from workhold.kernels.base import compiling
+from workhold.kernels.base import compiling, sources
 
+# What compiling takes of the kernels' base.
+BASE = ("__init__", "built", "compiling", "feature", "shallow", "sources", "storing")
 PROGRAM = """
 import numpy as np
 from workhold.kernels.base.distance import outline_distance
@@ -41,7 +43,10 @@ def copy(tmp_path: Path) -> Path:
         "__init__.py",
         "version.py",
         "conventions.py",
-        *(f"kernels/{name}.py" for name in ("__init__", "base/__init__", "base/compiling")),
+        "errors.py",
+        "limits.py",
+        "plain.py",
+        *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
     ):
         shutil.copy(source / name, package / name)
     text = (source / "kernels" / "base" / "distance.py").read_text()
@@ -110,17 +115,17 @@ def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
     for name in ("base/compiling.py", "a.py", "other/b.py", "../conventions.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(f"# {name}")
-    monkeypatch.setattr(compiling, "__file__", str(package / "base" / "compiling.py"))
-    hashes = [compiling.source_hash(), compiling.source_hash()]
+    monkeypatch.setattr(sources, "KERNELS", package)
+    hashes = [sources.source_hash(), sources.source_hash()]
     assert hashes[0] == hashes[1]
     (package / "other" / "b.py").write_text("# b.py changed")
-    hashes.append(compiling.source_hash())
+    hashes.append(sources.source_hash())
     (package / "c.py").write_text("")
-    hashes.append(compiling.source_hash())
+    hashes.append(sources.source_hash())
     (package / "c.py").rename(package / "other" / "c.py")
-    hashes.append(compiling.source_hash())
+    hashes.append(sources.source_hash())
     (tmp_path / "conventions.py").write_text("# another number that decides")
-    hashes.append(compiling.source_hash())
+    hashes.append(sources.source_hash())
     assert len(set(hashes)) == 5
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import acos, atan2, cos, hypot, inf, isfinite, pi, sin
+from math import acos, asin, atan2, cos, hypot, inf, isfinite, pi, sin
 from random import Random
 from typing import Any
 
@@ -22,13 +22,14 @@ from chord_examples import (
     turn_at,
     unlike_arcs,
 )
-from exact_chords import Point, exact_chord, exactly, minus
-from rounding import ROUNDED, error_of
+from exact_chords import Point, exact_chord, exact_distance, exactly, minus
+from rounding import ROUNDED, Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from strategies import random_row
-from workhold.kernels.chord import discs, evaluation, intervals
+from workhold.conventions import EXACT
+from workhold.kernels.chord import coincidences, discs, evaluation, intervals
 from workhold.kernels.chord.coincidences import NONE, are_concentric, coincidence
-from workhold.kernels.curves.columns import BACKWARD_ERROR, KAPPA
+from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Pair = tuple[Array, Array, float]
@@ -266,13 +267,106 @@ def tangency_rounded(kinds: tuple[str, str]) -> Callable[[Random, Kernel], float
 
 
 def of_lines(form: Kernel) -> Kernel:
-    names = {"add_event": changed(intervals.add_event), "beyond_line": intervals.beyond_line.py_func}
+    names = {"add_event": changed(intervals.add_event), "beyond_line": changed(intervals.beyond_line, **ROUNDED)}
     return changed(form, add_pair=changed(intervals.add_pair, **names, **ROUNDED), **names, **ROUNDED)
+
+
+def of_pair(form: Kernel) -> Kernel:
+    names = {"add_event": changed(intervals.add_event), "beyond_line": changed(intervals.beyond_line, **ROUNDED)}
+    return changed(intervals.add_line_tangencies, add_pair=changed(form, **names, **ROUNDED), **names, **ROUNDED)
 
 
 def of_arcs(form: Kernel) -> Kernel:
     names = {"add_event": changed(intervals.add_event), "are_one_chord_apart": intervals.are_one_chord_apart.py_func}
     return changed(intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED)
+
+
+def turn_rounded(random: Random, kernel: Kernel) -> float:
+    """Rounding of the angle of a range's middle from a coincidence, over what is added for it."""
+    low, middle = random.uniform(0, 4 * pi), random.uniform(-pi, pi)
+    high = low + 10 ** random.uniform(-9, -1)
+    center, (first, last) = kernel(low, high, middle)
+    with exactly():
+        off = (arb(low) + arb(high)) / 2 - middle - center
+        off -= round(float(off.mid()) / (2 * pi)) * 2 * arb.pi()
+        added = (arb(last) - arb(first) - (arb(high) - arb(low))) / 2
+        return float((abs(off) / added).upper())
+
+
+def place_rounded(random: Random, kernel: Kernel) -> float:
+    """Rounding of a place on an arc, counted by machine, over its error as told."""
+    row, angle = np.array(random_row(random, "circle")), random.uniform(-pi, pi)
+    x, y = row[1] + row[6] * cos(angle), row[2] + row[6] * sin(angle)
+    told = kernel(row, row, (x, y, *[1.0] * 6, 0.0, 0.0), 1.0, 0.0, evaluation.POSITION)[2]
+    return error_of(ROUNDED_PLACE(row.tolist(), Rounded(float(x)), Rounded(float(y)))) / float(told)
+
+
+ROUNDED_PLACE = changed(evaluation.parameter_on, angle_on=changed(evaluation.angle_on, **ROUNDED), **ROUNDED)
+
+
+def regular_rounded(random: Random, kernel: Kernel) -> float:
+    """Rounding of a tail found by the regular formulas, counted by machine, over its error as told."""
+    a, b, d = at_a_coincidence(random)
+    curve = curve_row(a, b, d, random.choice([1.0, -1.0]))
+    psi = float(curve[MIDDLE]) + random.choice([-1, 1]) * 10 ** random.uniform(-4, 0)
+    applies, motion = ROUNDED_MOTION(a.tolist(), b.tolist(), curve.tolist(), Rounded(psi, 9e-16))
+    if not applies:
+        return 0.0
+    x, y, dx, dy = motion[:4]
+    tail, center = (hypot(error_of(one), error_of(two)) for one, two in ((x, y), (x - dy, y + dx)))
+    return max(tail, center / (1 + d * float(curve[KAPPA]))) / float(kernel(curve))
+
+
+ROUNDED_MOTION = changed(
+    coincidences.motion,
+    from_coincidence=coincidences.from_coincidence.py_func,
+    is_regular=changed(coincidences.is_regular, **ROUNDED),
+    **ROUNDED,
+)
+
+
+def nearly_at_a_coincidence(random: Random, kernel: Kernel) -> float:
+    """How far the contacts of the regular formulas are off features that miss a coincidence by up to ``EXACT``, over how
+    far they may be as told."""
+    a, b, d = at_a_coincidence(random)
+    arc = a if a[0] else b
+    arc[1:3] += EXACT * random.uniform(0.9, 1) * np.array([random.choice([-1, 1]), random.choice([-1, 0, 1])])
+    curve = curve_row(a, b, d, random.choice([1.0, -1.0]))
+    alpha = float(curve[MIDDLE]) + random.choice([-1, 1]) * 10 ** random.uniform(-3, 0)
+    applies, motion = coincidences.motion(a, b, curve, alpha)
+    if not applies:
+        return 0.0
+    with exactly():
+        tail = arb(motion[0]), arb(motion[1])
+        head = tail[0] + d * arb(alpha).cos(), tail[1] + d * arb(alpha).sin()
+        off = max(float(exact_distance(a, tail).upper()), float(exact_distance(b, head).upper()))
+    return off / float(kernel(curve))
+
+
+def within_a_disc(random: Random, kernel: Kernel) -> float:
+    """How far the places on an arc of the points of a disc may be, over how far as told."""
+    row = np.array(random_row(random, "circle"))
+    radius, angle = row[6] * random.uniform(0.01, 0.5), random.uniform(-pi, pi)
+    disc = (*(row[1:3] + row[6] * np.array([cos(angle), sin(angle)])), radius)
+    _, told = changed(kernel, tail_disc=lambda *_: disc)(row, row, np.zeros(0), 0.0, 0.0, evaluation.POSITION)
+    return asin(radius / row[6]) / float(told)
+
+
+def anywhere(line: bool) -> Callable[[Random, Kernel], float]:
+    """How far a tail anywhere on its feature may be from one told without a bound, over how far as told."""
+
+    def ratio(random: Random, kernel: Kernel) -> float:
+        row, angle = np.array(random_row(random, "line" if line else "circle")), random.uniform(-pi, pi)
+        axis, part = row[3:5], random.uniform(-1, 1)
+        place = row[1:3] + (part * row[5] * axis if line else row[6] * np.array([cos(angle), sin(angle)]))
+        stub = {"chord_state": lambda *_: (*place, *[0.0] * 8), "tail_radius": lambda *_: inf}
+        curve = curve_row(row, row, 1.0, 1.0)
+        curve[COINCIDENCE] = NONE
+        x, y, radius = changed(kernel, **stub, disc_radius=lambda *_: inf)(row, row, curve, 0.0, 0.0)
+        ends = [row[1:3] + side * row[5] * axis for side in (-1, 1)] if line else [2 * row[1:3] - place]
+        return max(hypot(*(end - (x, y))) for end in ends) / float(radius)
+
+    return ratio
 
 
 ARC_FIRST, LINE_FIRST = ("circle", "line"), ("line", "circle")
@@ -296,6 +390,36 @@ CONSTANTS = [
     Constant("disc of arcs, e / 2", discs.arcs_radius, in_disc(two_arcs, True), 2.0, 1, times=10.0),
     Constant("disc of arcs, 1.01", discs.arcs_radius, in_disc(two_arcs, True), 1.01),
     Constant("disc of arcs, 1.6 e", discs.arcs_radius, in_disc(like_arcs, True), 1.6),
+    Constant("place on an arc, 1e-15", evaluation.valued, place_rounded, 1e-15),
+    Constant("angle from a coincidence, 3e-15", coincidences.angle_box, turn_rounded, 3e-15, draws=1000),
+    Constant("regular chord, 4 misfits", evaluation.regular_error, nearly_at_a_coincidence, 4.0),
+    Constant(
+        "regular chord, 2 η",
+        evaluation.regular_error,
+        regular_rounded,
+        2.0,
+        within=lambda form: changed(form, EXACT=0.0),
+    ),
+    Constant("place in a disc, 1.1", discs.value_disc, within_a_disc, 1.1),
+    Constant("tail anywhere on an arc, 2.2 R", discs.chord_tail, anywhere(False), 2.2, 0, draws=50),
+    Constant("tail anywhere on a line, 1.1", discs.chord_tail, anywhere(True), 1.1, draws=50),
+    Constant(
+        "tangency of line and arc, 2 roundings",
+        intervals.add_pair,
+        tangency_rounded(LINE_FIRST),
+        2.0,
+        within=of_pair,
+        draws=1000,
+    ),
+    Constant(
+        "tangency of arcs, 2 errors",
+        intervals.add_gap,
+        tangency_rounded(("circle", "circle")),
+        2.0,
+        2,
+        within=of_arcs,
+        draws=3000,
+    ),
     Constant(
         "tangency of line and arc, 10 half units",
         intervals.add_line_tangencies,

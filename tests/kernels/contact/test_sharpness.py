@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from contact_examples import held, limits
+from rounding import Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.given import Features
@@ -51,6 +52,26 @@ def minors_off(turned: bool) -> Callable[[Random, Kernel], float]:
         return worst / float(kernel(OFF if turned else 0.0, 0.0 if turned else OFF, length))
 
     return ratio
+
+
+def minors_rounded(random: Random, kernel: Kernel) -> float:
+    """Rounding of a minor of four wrenches, counted by machine, over what is told for it."""
+    length = random.uniform(5, 50)
+    points = [[Rounded(length * random.uniform(-1, 1)) for _ in range(2)] for _ in range(4)]
+    angles = [random.uniform(-pi, pi) for _ in range(4)]
+    out: list[Any] = [0.0] * 4
+    ROUNDED_MINORS(Rows(points), Rows([[Rounded(cos(a)), Rounded(sin(a))] for a in angles]), length, out)
+    return max(map(error_of, out)) / float(kernel(0.0, 0.0, length))
+
+
+class Rows(list):  # type: ignore[type-arg]
+    """Rows of numbers of any kind, read as a kernel reads an array."""
+
+    def __getitem__(self, place: Any) -> Any:
+        return list.__getitem__(self, place[0])[place[1]]
+
+
+ROUNDED_MINORS = changed(closure.minors, cross=closure.cross.py_func)
 
 
 def needed(keeps: Callable[[float], bool]) -> float:
@@ -146,6 +167,7 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
 CONSTANTS = [
     Constant("minor, 20 swing", closure.minor_band, minors_off(True), 20.0, draws=400),
     Constant("minor, 4 away / L", closure.minor_band, minors_off(False), 4.0, draws=400),
+    Constant("minor, rounding", closure.minor_band, minors_rounded, symbol="ROUNDING"),
     Constant("contact past the end, 1.2", rules.is_within, past_the_end, 1.2),
     Constant("gap, 2 radii", rules.is_fixture, at_the_edge("gap"), 2.0, 0, draws=60),
     Constant("clamping, 3 bands", rules.is_fixture, at_the_edge("clamp"), 3.0, 0, draws=1500),

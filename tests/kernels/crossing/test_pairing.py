@@ -34,7 +34,6 @@ from workhold.kernels.crossing.roots import (
     may_meet,
 )
 from workhold.kernels.crossing.three_and_one import (
-    TRIPLE_ROWS,
     faces_away,
     farthest_right,
     height_range,
@@ -50,9 +49,10 @@ from workhold.kernels.crossing.two_and_two import (
     flat_slope,
     may_cross,
     place_chord,
-    sort_roles,
+    sort_from_right,
     write_roles,
 )
+from workhold.kernels.crossing.work_space import TRIPLE_ROWS
 from workhold.kernels.curves.columns import CENTER, HEAD, TAIL
 from workhold.kernels.curves.piece_columns import (
     CURVE,
@@ -324,13 +324,14 @@ def test_roles_are_sorted_by_their_places(seed):
     """The order runs from the rightmost role to the leftmost and holds each role once."""
     random = Random(seed)
     count = random.randint(0, 300)
-    roles = np.zeros((count + 3, ROLE_LENGTH))
-    roles[:, ROLE_X] = [random.choice([random.uniform(-50, 50), 1.0, 2.0]) for _ in range(count + 3)]
+    roles, out = np.zeros((count, ROLE_LENGTH)), np.empty((count, ROLE_LENGTH))
+    roles[:, ROLE_X] = [random.choice([random.uniform(-50, 50), 1.0, 2.0]) for _ in range(count)]
+    roles[:, -1] = range(count)
     keys, order = np.empty(count), np.empty(count, np.int64)
-    sort_roles(roles, count, keys, order)
+    sort_from_right(roles, keys, order, out)
     assert sorted(order.tolist()) == list(range(count))
-    assert (np.diff(roles[order, ROLE_X]) <= 0).all()
-    assert (keys == roles[order, ROLE_X]).all()
+    assert (out == roles[order]).all()
+    assert (np.diff(out[:, ROLE_X]) <= 0).all()
 
 
 @given(seeds)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot
-from workhold.kernels.chord.intervals import point_on
+from workhold.kernels.base.shallow import point_at
 from workhold.kernels.crossing.sliding_pairs import sliding_pairs_between
 
 
@@ -31,7 +31,7 @@ def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:
 
 def touches(a, b, d, s, alpha, slack):
     """Whether the chord with its tail at parameter s of a touches both features, ends moved out by slack mm."""
-    tail = np.array([point_on(a, s)])
+    tail = np.array([point_at(a, s)])
     head = tail + d * np.array([cos(alpha), sin(alpha)])
     on = overshoot(a, tail)[0] <= slack and overshoot(b, head)[0] <= slack
     return on and off_carrier(b, head)[0] < 1e-9

@@ -1,4 +1,4 @@
-"""Narrowed boxes keep every solution that may be a fixture, and nothing decided is decided otherwise in ball arithmetic."""
+"""Contracted boxes keep every solution that may be a fixture; nothing decided is decided otherwise in ball arithmetic."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 import ladders
 from exact_chords import exactly
 from workhold.kernels.base.given import Lattice, Limits, Setting
-from workhold.kernels.contact.record import PSI, RADIUS, RECORD_LENGTH, SEPARATION, TAIL_X, TAIL_Y
-from workhold.kernels.proof import interval_newton as narrowing
+from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, RECORD_LENGTH, SEPARATION, TAIL_X, TAIL_Y
+from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof import variation as variations
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, OPEN
 from workhold.proof.interval_newton import Box, solutions_in
@@ -36,15 +36,15 @@ def interval_newton(
     row: NDArray[np.float64], features: NDArray[np.float64] = FEATURES
 ) -> tuple[int, NDArray[np.float64]]:
     """The verdict on one record, and its roots."""
-    left, _, right = np.linalg.svd(narrowing.jacobians(row, features, SETTING))
+    left, _, right = np.linalg.svd(in_doubles.jacobians(row, features, SETTING))
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
-    verdicts, roots = narrowing.interval_newton(row, features, SETTING, frames)
+    verdicts, roots = in_doubles.interval_newton(row, features, SETTING, frames)
     return int(verdicts[0]), roots
 
 
-def settled(row: NDArray[np.float64]) -> list[float]:
+def decided(row: NDArray[np.float64]) -> list[float]:
     """Orientations of the fixtures of the same box in ball arithmetic."""
-    reach, radius = float(row[0, 17]) + 1e-9 / LENGTH, float(row[0, RADIUS]) + 1e-9
+    reach, radius = float(row[0, 17]) + 1e-9 / LENGTH, float(row[0, LARGEST_RADIUS]) + 1e-9
     places = list(zip(row[0, 5:9].tolist(), row[0, 9:13].tolist(), strict=True))
     middle = (float(row[0, PSI]), float(row[0, TAIL_X]), float(row[0, TAIL_Y]), float(row[0, SEPARATION]))
     widths = (reach, radius, radius, 2.0 * (radius + LENGTH * reach))
@@ -62,7 +62,7 @@ def test_the_solution_that_clamps_is_kept(rest: float, aside: float) -> None:
         low, high = (float(psi) for psi in ladders.orientations(height))
     row = record(height, aside * (high - low) / 2.0, 2.0 * (high - low))
     verdict, roots = interval_newton(row)
-    fixtures = settled(row)
+    fixtures = decided(row)
     assert len(fixtures) == 1
     assert verdict == OPEN or (np.abs(roots[:, PSI] - fixtures[0]) <= roots[:, 17] + 1e-15).any()
     if rest > 1e-9:
@@ -95,15 +95,15 @@ def test_roots_hold_the_solution_and_are_small() -> None:
             verdict, roots = interval_newton(record(height, z[0] - np.pi / 4 + 1e-4, 2e-3))
             assert verdict == DISCARDED
             for root in roots:
-                assert root[RADIUS] < 1e-9
+                assert root[LARGEST_RADIUS] < 1e-9
                 assert abs(root[PSI] - z[0]) <= root[17] + 1e-15
-                assert np.abs(root[TAIL_X : TAIL_Y + 1] - z[1:3]).max() <= root[RADIUS] + 1e-14
+                assert np.abs(root[TAIL_X : TAIL_Y + 1] - z[1:3]).max() <= root[LARGEST_RADIUS] + 1e-14
 
 
 def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the variation of normals and moments over a part solutions are lost, and the comparison above sees it."""
 
-    spread = narrowing.spread
+    spread = in_doubles.spread
 
     def still(*arguments: object) -> None:
         spread(*arguments)
@@ -116,15 +116,12 @@ def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None
     with exactly():
         low, high = (float(psi) for psi in ladders.orientations(height))
     row = record(height, 0.0, 2.0 * (high - low))
-    (fixture,) = settled(row)
-    left, _, right = np.linalg.svd(narrowing.jacobians(row, FEATURES, SETTING))
+    (fixture,) = decided(row)
+    left, _, right = np.linalg.svd(in_doubles.jacobians(row, FEATURES, SETTING))
     frame = np.stack([left[0], right[0].T])
-    roots, work = (
-        np.empty((4, RECORD_LENGTH)),
-        (np.empty((256, 2, 4)), np.empty((18, 4)), np.empty((3, 4, 2)), np.empty(4)),
-    )
-    found = narrowing.narrow.py_func(row[0], FEATURES, SETTING, frame, *work, roots)
+    roots, space = np.empty((4, RECORD_LENGTH)), in_doubles.work_space()
+    found = in_doubles.solutions_in.py_func(row[0], FEATURES, SETTING, frame, space, roots)
     assert found > 0 and (np.abs(roots[:found, PSI] - fixture) <= roots[:found, 17] + 1e-15).any()
-    monkeypatch.setattr(narrowing, "spread", still)
-    found = narrowing.narrow.py_func(row[0], FEATURES, SETTING, frame, *work, roots)
+    monkeypatch.setattr(in_doubles, "spread", still)
+    found = in_doubles.solutions_in.py_func(row[0], FEATURES, SETTING, frame, space, roots)
     assert not (np.abs(roots[: max(found, 0), PSI] - fixture) <= roots[: max(found, 0), 17] + 1e-15).any()

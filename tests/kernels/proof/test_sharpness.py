@@ -17,7 +17,7 @@ from exact_chords import exact_solution, exactly
 from rounding import ROUNDED, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.contact.equations import INVERSE, OFF, UNKNOWNS, touch
+from workhold.kernels.contact.equations import INVERSE, OFF, SLOPES, UNKNOWNS, touch
 from workhold.kernels.proof import newton_kantorovich as kantorovich
 from workhold.kernels.proof import variation
 from workhold.kernels.proof.newton_kantorovich import OPEN
@@ -107,6 +107,42 @@ class Rows:
 
 
 ROUNDED_TOUCH = changed(touch, **ROUNDED)
+
+
+def jacobian_rounded(random: Random, kernel: Kernel) -> float:
+    """Largest rounding of a row of the Jacobian, counted by machine, over what a certificate allows for in I - A J, where
+    lines are touched."""
+    contacts = held(random, True)
+    work, points = contacts.work()
+    rows, centers = Rows(work), Rows(points)
+    ROUNDED_TOUCH([int(v) for v in RECORD], contacts.rows.tolist(), contacts.length, rows, centers)
+    off = max(sum(error_of(rows[SLOPES + k, j]) for j in range(4)) for k in range(4))
+    # With an inverse of 1 what is told to be the only solution's reach falls by as much as I - A J may be off; it is
+    # looked at with a thousandfold rounding.
+    work[OFF], sizes = 0.0, kantorovich.sizes(RECORD, contacts.rows, points)
+    work[SLOPES : SLOPES + 4] = work[INVERSE : INVERSE + 4] = np.eye(4)
+    exact, less = (
+        changed(kernel, ROUNDINGS=scale * kantorovich.ROUNDINGS, invert=lambda _: 1.0)(
+            work, *sizes, contacts.length, 0.0
+        )
+        for scale in (0.0, 1e3)
+    )
+    return 1e3 * off / float(1.0 - less[1] / exact[1])
+
+
+def far_from_an_arc(random: Random, kernel: Kernel) -> float:
+    """Largest second derivative of a contact equation as far away as a solution may be told to be the only one, over its
+    bound: all of the way counts where the arc is small."""
+    contacts = held(random, False)
+    work, points = contacts.work()
+    work[OFF] = 0.0
+    _, smallest = kantorovich.sizes(RECORD, contacts.rows, points)
+    # An inverse so small that the arc alone limits how far that is.
+    work[INVERSE : INVERSE + 4], work[SLOPES : SLOPES + 4] = 1e-3 * np.eye(4), 1e3 * np.eye(4)
+    _, unique = changed(kernel, invert=lambda _: 1.0)(work, 0.0, smallest, contacts.length, 0.0)
+    told = 2.0 * 4.42**2 / smallest + 4.0 / contacts.length
+    shifts = (0.999 * unique * np.array([random.choice([-1, 1]) for _ in range(4)]) for _ in range(4))
+    return max(second_derivative(contacts, shift) for shift in shifts) / told
 
 
 def equations_rounded(contacts: Held) -> float:
@@ -226,8 +262,12 @@ def judged_from_aside(rule: str, lines: bool) -> Callable[[Random, Kernel], floa
             row[5] = 1.0 if lines else 0.8
             row[1:5] = ended(row, points[peg], random.choice([1.0, -1.0]))
             asked = setting(contacts.length, margin=0.0)
-        else:
+        elif rule == "span":
             others["LEAST_SPAN"] = size
+        else:
+            others["LEAST_CLOSURE"] = float(contacts.forces(points, psi)[0].min()) / size
+            if not others["LEAST_CLOSURE"] > 0.0:
+                return 0.0
         judge = changed(kernel, **others)
         smallest = float(np.where(contacts.rows[:, 0] == 0.0, inf, contacts.rows[:, 6]).min())
         worst = 0.0
@@ -273,8 +313,16 @@ CONSTANTS = [
     Constant("judged, end 1.2", kantorovich.judged, judged_from_aside("end", True), 1.2, draws=20),
     Constant("judged, gap 1.5", kantorovich.judged, judged_from_aside("gap", True), 1.5, 0, draws=20),
     Constant("judged, reach 4.5", kantorovich.judged, judged_from_aside("end", True), 4.5, draws=20),
+    Constant("certificate, R / 16", kantorovich.certificate, far_from_an_arc, 16.0),
+    Constant("judged, closure 1.1 bands", kantorovich.judged, judged_from_aside("closure", True), 1.1, draws=200),
     Constant("judged, span 4 bands", kantorovich.judged, judged_from_aside("span", True), 4.0, 0, draws=20),
 ]
+
+
+def test_the_rounding_of_a_jacobian_is_allowed_for() -> None:
+    """What a certificate adds to I - A J holds the roundings of a row, and is no more than twenty times as much."""
+    random = Random(9)
+    assert 0.05 < max(jacobian_rounded(random, kantorovich.certificate) for _ in range(60)) <= 1.0
 
 
 @pytest.mark.parametrize("constant", CONSTANTS, ids=lambda constant: constant.name)

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import json
+import zlib
+from urllib.parse import parse_qs, urlsplit
+
 import pytest
 from walking import SEARCH_PATIENCE, Walk
 
@@ -18,6 +23,8 @@ def test_the_list_of_ten_thousand_has_few_rows_in_the_page(walk: Walk) -> None:
     walk.search()
     count = walk.count()
     assert count > 10_000
+    page.check("#each")
+    page.check("#unfit")
     most = page.evaluate(
         """async () => {
           const list = document.querySelector("#list");
@@ -35,6 +42,27 @@ def test_the_list_of_ten_thousand_has_few_rows_in_the_page(walk: Walk) -> None:
     assert last.inner_text().startswith(str(count))
 
 
+def test_near_copies_are_one_row(walk: Walk) -> None:
+    """With how many are like it, and what is no fixture for a workshop is left out; both come when asked for."""
+    page = walk.page
+    walk.take()
+    walk.search()
+    walk.seen('#list [aria-posinset="1"]:not(.coming)')
+    size = 'document.querySelector("#list .row").getAttribute("aria-setsize")'
+    entries = int(page.evaluate(size))
+    job = f"/api/jobs/{walk.job()}/fixtures"
+    told = walk.server.client.get(job, params={"together": True, "unfit": False, "limit": 1000}).json()
+    listed = entries + sum(row["like"] for row in told["rows"]) + told["unfit"]
+    assert told["total"] == entries and listed == walk.count()
+    # The first entry of several shows how many are like it.
+    index, like = next((k, row["like"]) for k, row in enumerate(told["rows"]) if row["like"])
+    words = walk.seen(f'#list [aria-posinset="{index + 1}"]:not(.coming)').inner_text()
+    assert f"and {like} like it" in words
+    page.check("#each")
+    page.check("#unfit")
+    walk.seen(f'#list [aria-setsize="{walk.count()}"]:not(.coming)')
+
+
 def test_filters_keep_only_what_matches(walk: Walk) -> None:
     """By type, by face and by angle; the count of matches is the server's."""
     page = walk.page
@@ -46,9 +74,27 @@ def test_filters_keep_only_what_matches(walk: Walk) -> None:
     page.select_option("#filter-face", "4")
     page.fill("#filter-angle", "0..180")
     page.press("#filter-angle", "Enter")
-    query = "type=II&face=4&angle=0..180"
+    query = "type=II&face=4&angle=0..180&together=true&unfit=false"
     total = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures?{query}").json()["total"]
     walk.seen(f"#count-words:has-text('{total} match')")
+
+
+def test_a_type_that_is_not_ticked_is_not_sought(walk: Walk) -> None:
+    """The boxes are the vise's arrangements, the last ticked one stays so, and a reload keeps them."""
+    page = walk.page
+    walk.take()
+    boxes = page.locator("#types input")
+    assert boxes.evaluate_all("boxes => boxes.map((box) => box.value)") == ["I", "II"]
+    boxes.first.uncheck()
+    boxes.last.click()
+    assert [box.is_checked() for box in boxes.all()] == [False, True]
+    walk.search()
+    job = walk.server.client.get(f"/api/jobs/{walk.job()}").json()
+    assert job["counts"]["I"] == 0 < job["counts"]["II"]
+    walk.reload()
+    walk.seen("#types input:not(:checked)")
+    assert [box.is_checked() for box in boxes.all()] == [False, True]
+    assert page.locator("#filter-type option").all_inner_texts() == ["all", "I", "II"]
 
 
 def test_a_dragged_force_is_answered_as_the_server_answers_it(walk: Walk) -> None:
@@ -91,6 +137,46 @@ def test_a_dragged_force_is_answered_as_the_server_answers_it(walk: Walk) -> Non
         page.click("#rank-load")
     walk.searched()
     assert walk.shown()["quality"]["load_reaction"] == pytest.approx(best["load_reaction"])
+
+
+def test_the_jaw_chosen_counts_in_bars_sheet_and_warnings(walk: Walk) -> None:
+    """Locked, keeping its force, or so many times as stiff as a contact: the page reckons as the server does, says which,
+    and the sheet's address holds force, jaw force and jaw; what the sheet warns of stands below the drawing."""
+    page = walk.page
+    walk.take()
+    walk.search()
+    page.click("#push")
+    row = walk.shown()
+    page.fill("#force-size", "400")
+    page.fill("#force-jaw", "20")
+    url = f"/api/jobs/{walk.job()}/fixtures/{row['rank']}"
+    for choice, kind in (("constant", "constant"), ("ratio", 2.5)):
+        page.select_option("#force-kind", choice)
+        if choice == "ratio":
+            page.fill("#force-ratio", "2.5")
+        force = page.evaluate("async () => (await import('/static/state.js')).state.force")
+        assert force["kind"] == kind
+        load = {"points": [[force["x"], force["y"]]], "force": 400.0, "directions": [force["direction"]] * 2}
+        body = {"loads": [load], "jaw": kind, "jaw_force": 20.0}
+        case = walk.server.client.post(f"{url}/loads", json=body).json()["cases"][0]
+        mine = page.evaluate(
+            """async () => {
+              const { state } = await import("/static/state.js");
+              const { reactions } = await import("/static/forces.js");
+              return reactions(state.part, state.selected, state.force);
+            }"""
+        )
+        assert mine["forces"] == pytest.approx(case["largest"], abs=1e-3)
+        assert mine["needed"] == pytest.approx(case["needed"]["value"], abs=1e-3)
+        query = parse_qs(urlsplit(str(page.get_attribute("#take-sheet", "href"))).query)
+        assert (query["jaw"], query["jaw_force"]) == ([str(kind)], ["20"])
+        (sent,) = json.loads(query["loads"][0])
+        assert (sent["force"], sent["points"][0]) == (400, [force["x"], force["y"]])
+    asked = {name: query[name][0] for name in ("jaw", "jaw_force", "loads")}
+    told = walk.server.client.get(f"{url}/warnings", params=asked).json()["warnings"]
+    assert "load" in [one["kind"] for one in told]
+    walk.seen("#warnings li.load")
+    assert page.locator("#warnings li").all_inner_texts() == [one["sentence"] for one in told]
 
 
 def test_two_fixtures_side_by_side(walk: Walk) -> None:
@@ -151,3 +237,52 @@ def test_the_sweep_tells_which_vise_suits(walk: Walk) -> None:
     page.click("#vises-table button[aria-label='Use plate-25mm']")
     assert page.input_value("#preset") == "plate-25mm"
     assert float(page.input_value("#pitch-x")) == 25
+
+
+@pytest.mark.parametrize("way", ["-x", "+y"])
+@pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
+def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> None:
+    """From a link with a plate: one plate, four pegs where they stand, the clamp from its hole to its tip or its line,
+    and the length to set as the server tells it; what is said is not of a vise's opening.
+    """
+    plate = {
+        "kind": "translating-clamp",
+        "pitch": [20, 20],
+        "peg_radius": 5,
+        "columns": 8,
+        "rows": 6,
+        "directions": [way],
+    }
+    loop = [[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]
+    kept = {"vise": plate | ({"travel": [10, 30]} if bolted else {}), "viseName": "own", "types": None}
+    kept |= {
+        "part": {"name": "rectangle", "loops": [loop]},
+        "job": None,
+        "searched": False,
+        "rank": None,
+        "pinned": None,
+    }
+    packed = zlib.compressobj(wbits=-15)
+    text = base64.urlsafe_b64encode(packed.compress(json.dumps(kept).encode()) + packed.flush()).decode().rstrip("=")
+    walk.page.goto("about:blank")
+    walk.open(f"{walk.home}#{text}")
+    walk.seen("#faces button")
+    walk.search()
+    row = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/1").json()
+    clamp = row["carriers"][-1]["clamp"]
+    page = walk.page
+    walk.seen("#drawing-fixture .clamp-push")
+    assert page.locator("#drawing-fixture .plate").count() == 1
+    assert page.locator("#drawing-fixture .peg").count() == 4
+    assert page.locator("#drawing-fixture .clamp-line").count() == int(not bolted)
+    page.wait_for_function("() => !document.querySelector('#drawing-fixture [transform^=translate]')")
+    if bolted:
+        body = page.locator("#drawing-fixture .clamp-edge")
+        ends = [float(body.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
+        assert ends == pytest.approx([*clamp["hole"], *clamp["tip"]], abs=1e-6)
+        assert float(body.get_attribute("stroke-width") or "nan") == 10
+    words, number = page.inner_text("#pose-words"), f"{row['setting']['length']:.3f} mm".replace("-", "−")
+    assert words.startswith("Stroke" if bolted else f"Tip {way[1]}") and number in words
+    assert "hole A1" in words and "clamp force" in words
+    dimension = page.locator("#drawing-fixture .dimension-text").inner_html()
+    assert dimension.startswith(f"{row['setting']['sign']} = ")

@@ -53,11 +53,8 @@ def test_a_reload_and_a_link_restore_everything(walk: Walk) -> None:
     walk.seen("#place:has-text('3 of')")
     holes, count, job = walk.holes(), walk.count(), walk.job()
     page.wait_for_url(re.compile("#.{100,}"))
-    # The address follows the state after a moment of quiet.
-    page.evaluate("async () => (await import('/static/link.js')).keep()")
 
-    page.reload()
-    walk.ready()
+    walk.reload()
     walk.searched()
     walk.seen("#drawing-fixture")
     assert (walk.holes(), walk.count(), walk.job()) == (holes, count, job)
@@ -151,6 +148,10 @@ def test_the_keys_are_enough(walk: Walk) -> None:
     page.focus("#search")
     page.keyboard.press("Enter")
     walk.searched()
+    for box in ("#each", "#unfit"):
+        page.focus(box)
+        page.keyboard.press("Space")
+    walk.seen(f'#list [aria-setsize="{walk.count()}"]:not(.coming)')
     page.focus("#list")
     page.keyboard.press("End")
     page.wait_for_selector(f'#list [aria-posinset="{walk.count()}"][aria-selected="true"]')

@@ -52,6 +52,12 @@ class Walk:
         self.page.goto(address or self.home)
         self.ready()
 
+    def reload(self) -> None:
+        """Load the page again, once the address holds the state; it follows it after a moment of quiet."""
+        self.page.evaluate("async () => (await import('/static/link.js')).keep()")
+        self.page.reload()
+        self.ready()
+
     def ready(self) -> None:
         """Wait until the page has set itself up."""
         self.page.wait_for_selector("body[data-ready]")

@@ -17,6 +17,7 @@ from workhold.errors import InputError
 from workhold.files.dxf.walk import Nest, Walk
 from workhold.files.outline.chain import Drawing
 from workhold.files.outline.placement import Placement
+from workhold.files.questions import DRAWING_UNIT, UNIT
 from workhold.model.units import unit_named
 
 __all__ = ["read_dxf"]
@@ -133,12 +134,12 @@ def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float
     if known is not None:
         if usual_unit is not None and known[1] != unit_named(usual_unit).millimetres:
             # Whoever gave the unit for the drawing's sake learns here that it did not count.
-            return known[1], [f"The file says its unit is {known[0]}; it was read so (--drawing-unit overrides it)."]
+            return known[1], [f"The file says its unit is {known[0]}; it was read so ({DRAWING_UNIT} overrides it)."]
         return known[1], []
     if usual_unit is not None:
         return unit_named(usual_unit).millimetres, []
     if code:
         raise InputError(
-            f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with --unit mm (or inch)."
+            f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with {UNIT} mm (or inch)."
         )
-    raise InputError("the drawing does not say its unit: give it with --unit mm (or inch, cm, m).")
+    raise InputError(f"the drawing does not say its unit: give it with {UNIT} mm (or inch, cm, m).")

@@ -1,14 +1,15 @@
 """A set-up as a DXF drawing for a CAM system: part in pose, pegs, holes and plates on layers of their own.
 
-Exact geometry in millimetres in the vise frame, whose origin is the left jaw's hole L-A1. Lines and arcs of the part are
-closed LWPOLYLINEs with bulges, whole circles are CIRCLEs, pegs and holes too.
+Exact geometry in millimetres in the vise frame, whose origin is the left jaw's hole L-A1, or hole A1 of a plate. Lines
+and arcs of the part are closed LWPOLYLINEs with bulges, whole circles are CIRCLEs, pegs and holes too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
+from math import tan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,11 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
 from workhold.files.atomic import write_bytes
-from workhold.geometry.segment import Arc, Point
+from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.holes import column_letters
+from workhold.model.part_zero import PartZero, part_zero
+from workhold.model.setting import mover_of
 from workhold.model.shown import MOST_HOLES, Shown, shown
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
@@ -27,54 +30,73 @@ from workhold.model.workpiece import Workpiece
 if TYPE_CHECKING:
     from ezdxf.layouts.layout import Modelspace
 
-__all__ = ["LAYERS", "setup_dxf", "write_setup_dxf"]
+__all__ = ["CLEARANCE", "fixed_stamps", "layers_of", "setup_dxf", "write_setup_dxf"]
 
-# Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT.
-LAYERS = {
-    "PART": 7,
-    "PEGS": 1,
-    "HOLES": 8,
-    "HOLES_USED": 1,
-    "OPENING": 6,
-    "PART_ZERO": 2,
-    "TEXT": 7,
-}
+# Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or CLAMP, the pegs
+# have one, PEGS or LOCATORS, and so has what is set, OPENING or CLAMP_SETTING.
+PART, HOLES, OTHERS = {"PART": 7}, {"KEEP_OUT": 30, "HOLES": 8, "HOLES_USED": 1}, {"PART_ZERO": 2, "TEXT": 7}
+PEGS, SETTING = 1, 6
 STILL, SLIDING = 5, 3
+# mm. How far the cutter is to keep off the pegs where nobody says.
+CLEARANCE = 1.0
 VERSION = "R2010"
 # Sizes as shares of the smaller pitch: height of text, and length of the axes at the part's zero.
 TEXT_HEIGHT, AXIS = 0.3, 1.0
+# The head of the arrow behind a clamp: its length and half its width, as shares of the pitch.
+ARROW_HEAD, HALF_HEAD = 0.3, 0.12
 # Radius of a hole whose pegs are points, as a share of the pitch.
 POINT_HOLE = 1 / 7
 
 
-def write_setup_dxf(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, path: str | Path) -> None:
+def write_setup_dxf(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    path: str | Path,
+    *,
+    zero: PartZero | None = None,
+    clearance: float = CLEARANCE,
+) -> None:
     """Write a set-up as a DXF drawing; the same set-up gives the same bytes.
+
+    Parameters
+    ----------
+    zero : part zero; that of :func:`part_zero` without a wish if None.
+    clearance : how far the cutter is to keep off the pegs' bodies, in mm.
 
     Raises
     ------
     InputError
         When the file cannot be written.
     """
-    write_bytes(path, setup_dxf(fixture, workpiece, toolkit))
+    write_bytes(path, setup_dxf(fixture, workpiece, toolkit, zero, clearance))
 
 
-def setup_dxf(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> bytes:
+def setup_dxf(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    zero: PartZero | None = None,
+    clearance: float = CLEARANCE,
+) -> bytes:
     """The bytes of a set-up's DXF drawing, see :func:`write_setup_dxf`."""
     with fixed_stamps():
         document = new(VERSION)
         document.units = units.MM
         document.header["$MEASUREMENT"] = 1
         document.header["$LASTSAVEDBY"] = "workhold"
-        for name, color in LAYERS.items():
+        for name, color in layers_of(toolkit).items():
             document.layers.add(name, color=color)
-        for carrier in toolkit.carriers:
-            document.layers.add(layer_of(carrier), color=STILL if carrier.travel is None else SLIDING)
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
         add_part(space, workpiece.placed(fixture.pose))
-        add_pegs(space, seen)
-        add_travel(space, seen)
-        add_zero(space, fixture.pose, AXIS * seen.pitch)
+        add_pegs(space, seen, clearance)
+        add_clamps(space, seen, clearance)
+        add_travel(space, seen, setting_layer(mover_of(fixture, toolkit)))
+        add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
+        # The library would add them in an order that differs from process to process.
+        for name in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(name)
         stream = StringIO()
         document.write(stream)
         return document.encode(stream.getvalue())
@@ -87,7 +109,37 @@ def layer_of(carrier: Carrier) -> str:
     >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
+    if carrier.on is not None or carrier.name == carrier.noun:
+        return carrier.noun.upper()
     return f"{carrier.noun}_{carrier.name}".upper()
+
+
+def peg_layer(carrier: Carrier) -> str:
+    """The layer that a carrier's pegs are on: of a clamp that of its body."""
+    return layer_of(carrier) if carrier.on is not None else f"{carrier.peg}s".upper()
+
+
+def setting_layer(mover: Carrier) -> str:
+    """The layer of the length to set on what moves."""
+    return "OPENING" if mover.on is None else f"{layer_of(mover)}_SETTING"
+
+
+def layers_of(toolkit: Toolkit) -> dict[str, int]:
+    """The layers of a toolkit's set-ups, and their colours.
+
+    >>> from workhold import Plate
+    >>> [*layers_of(Plate(pitch=20, peg_radius=5))]
+    ['PART', 'LOCATORS', 'CLAMP', 'KEEP_OUT', 'HOLES', 'HOLES_USED', 'CLAMP_SETTING', 'PART_ZERO', 'TEXT', 'PLATE']
+    """
+    moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
+    return {
+        **PART,
+        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers},
+        **HOLES,
+        **{setting_layer(carrier): SETTING for carrier in moving},
+        **OTHERS,
+        **{layer_of(carrier): SLIDING if carrier in moving else STILL for carrier in toolkit.carriers},
+    }
 
 
 @contextmanager
@@ -113,15 +165,49 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
             space.add_lwpolyline(loop.tolist(), format="xyb", close=True, dxfattribs={"layer": "PART"})
 
 
-def add_pegs(space: Modelspace, seen: Shown) -> None:
-    """Add the pegs, as points if they have no size, and the names of their holes."""
+def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
+    """Add the pegs, as points if they have no size, the names of their holes, and where the cutter is not to go."""
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
-                space.add_circle((peg.x, peg.y), each.carrier.peg_radius, {"layer": "PEGS"})
+                space.add_circle((peg.x, peg.y), each.carrier.peg_radius, {"layer": peg_layer(each.carrier)})
             else:
-                space.add_point((peg.x, peg.y), {"layer": "PEGS"})
+                space.add_point((peg.x, peg.y), {"layer": peg_layer(each.carrier)})
+            out = each.carrier.body_radius + clearance
+            if out > 0:
+                space.add_circle((peg.x, peg.y), out, {"layer": "KEEP_OUT"})
             add_text(space, peg.hole, (peg.x, peg.y), seen)
+
+
+def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
+    """Add the clamps: the circle of each tip, its body from the hole to the tip, what to keep out of, and behind it an arrow
+    along its push.
+    """
+    for clamp in seen.clamps:
+        layer, radius, tip = {"layer": layer_of(clamp.carrier)}, clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
+        if radius > 0:
+            space.add_circle(tip, radius, layer)
+        else:
+            space.add_point(tip, layer)
+        if clamp.hole is not None and radius > 0:
+            add_outline(space, clamp.outline(), layer_of(clamp.carrier))
+        if radius + clearance > 0:
+            add_outline(space, clamp.outline(clearance), "KEEP_OUT")
+        head, half = radius + ARROW_HEAD * clamp.pitch, HALF_HEAD * clamp.pitch
+        for away, aside in ((radius + clamp.pitch, 0.0), (head, half), (head, -half)):
+            space.add_line(clamp.behind(radius), clamp.behind(away, aside), layer)
+        add_text(space, clamp.tip.hole, clamp.back, seen)
+
+
+def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> None:
+    """Add a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
+    first = outline[0]
+    if isinstance(first, Arc) and first.is_full:
+        space.add_circle(first.center, first.radius, {"layer": layer})
+        return
+    bulges = [piece.sign * tan(piece.half_sweep / 2) if isinstance(piece, Arc) else 0.0 for piece in outline]
+    points = [(*piece.start, bulge) for piece, bulge in zip(outline, bulges, strict=True)]
+    space.add_lwpolyline(points, format="xyb", close=True, dxfattribs={"layer": layer})
 
 
 def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
@@ -149,27 +235,28 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
             add_text(space, str(row + 1), (beside, y), seen)
 
 
-def add_travel(space: Modelspace, seen: Shown) -> None:
-    """Add the axes that each travel is measured between, and the travel itself beyond the plates."""
-    layer = {"layer": "OPENING"}
-    for each, *axes in seen.travels:
-        (x0, y0), (x1, y1) = (high for _, high in axes)
-        pitch_x, pitch_y = each.carrier.pitch
-        if each.upright:
-            out = max(x0, x1) + pitch_x
-            start, end, name_at = (out, y0), (out, y1), (out + pitch_x / 2, (y0 + y1) / 2)
-        else:
-            out = max(y0, y1) + pitch_y
-            start, end, name_at = (x0, out), (x1, out), ((x0 + x1) / 2, out + pitch_y / 2)
-        for (low, _), high in zip(axes, (start, end), strict=True):
-            space.add_line(low, high, layer)
-        space.add_line(start, end, layer)
-        add_text(space, f"S = {each.travelled:.6g} mm", name_at, seen)
+def add_travel(space: Modelspace, seen: Shown, layer_name: str) -> None:
+    """Add the axes that the length to set is measured between, and the length itself beyond the plates."""
+    layer, measured = {"layer": layer_name}, seen.measured
+    if measured is None:
+        return
+    (x0, y0), (x1, y1) = (high for _, high in measured.axes)
+    pitch_x, pitch_y = measured.pitch
+    if measured.is_upright:
+        out = max(x0, x1) + pitch_x
+        start, end, name_at = (out, y0), (out, y1), (out + pitch_x / 2, (y0 + y1) / 2)
+    else:
+        out = max(y0, y1) + pitch_y
+        start, end, name_at = (x0, out), (x1, out), ((x0 + x1) / 2, out + pitch_y / 2)
+    for (low, _), high in zip(measured.axes, (start, end), strict=True):
+        space.add_line(low, high, layer)
+    space.add_line(start, end, layer)
+    add_text(space, f"{measured.setting.sign} = {measured.setting.length:.6g} mm", name_at, seen)
 
 
-def add_zero(space: Modelspace, pose: Pose, length: float) -> None:
+def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
     """Add the part's zero point with its x axis, as long as told, and a y axis half as long."""
-    layer = {"layer": "PART_ZERO"}
-    space.add_point((pose.x, pose.y), layer)
-    for end in (pose.apply(length, 0.0), pose.apply(0.0, length / 2)):
-        space.add_line((pose.x, pose.y), end, layer)
+    layer, (x, y) = {"layer": "PART_ZERO"}, zero
+    space.add_point(pose.apply(x, y), layer)
+    for end in (pose.apply(x + length, y), pose.apply(x, y + length / 2)):
+        space.add_line(pose.apply(x, y), end, layer)

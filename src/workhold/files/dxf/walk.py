@@ -19,6 +19,7 @@ from workhold.errors import InputError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, counted, listed
 from workhold.files.outline.placement import Placement
+from workhold.files.questions import LAYERS
 
 __all__ = ["Nest", "Walk"]
 
@@ -132,7 +133,7 @@ class Walk:
             x, y = placement(place_of(entity))
             raise InputError(
                 f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: convert it to "
-                "lines and arcs in the CAD program, or leave its layer out with --layer."
+                f"lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
             )
         raw = said_of(label, SHAPES[kind], entity)
         if not raw.bulges:
@@ -217,7 +218,7 @@ class Walk:
             have = listed(sorted(self.names.values())) or "none"
             raise InputError(f"no line or arc is on layer '{missing[0]}': layers with some are {have}.")
         if self.wanted is not None and not self.wanted:
-            raise InputError("no layer was chosen: name one, or leave --layer out.")
+            raise InputError(f"no layer was chosen: name one, or leave {LAYERS} out.")
 
     def remarks(self) -> list[str]:
         """What was left out, one sentence for each reason."""
@@ -229,7 +230,7 @@ class Walk:
             total = sum(self.hidden.values())
             places = ", ".join(f"{count} {where}" for where, count in sorted(self.hidden.items()))
             remarks.append(
-                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer with --layer "
+                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer with {LAYERS} "
                 "to read it all the same."
             )
         if self.missing_blocks:

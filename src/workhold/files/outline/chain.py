@@ -163,6 +163,8 @@ def refuse_unusable(chain: Chain) -> None:
             raise InputError(
                 f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."
             )
+        if abs(bulge) > MOST_LENGTH / SHORTEST:
+            raise InputError(f"{label} is an arc that bulges by {bulge:.3g} times half its chord: correct it.")
 
 
 def without_doubled_points(chain: Chain) -> Chain | None:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.files.questions import JOIN_TOLERANCE
 
 __all__ = ["close_pairs", "groups"]
 
@@ -62,7 +63,7 @@ def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArr
                 k = int(np.flatnonzero(near)[0])
                 raise InputError(
                     f"More than {CROWD} ends lie within {tolerance:g} mm of each other near ({x[k]:.6g}, {y[k]:.6g}): "
-                    "give a smaller --join-tolerance."
+                    f"give a smaller {JOIN_TOLERANCE}."
                 )
             near &= np.hypot(x[step:] - x[:-step], y[step:] - y[:-step]) <= tolerance
             first = np.flatnonzero(near)

@@ -12,6 +12,7 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import at, counted, listed
 from workhold.files.outline.joining import Stray
 from workhold.files.outline.nesting import Part
+from workhold.files.questions import JOIN_TOLERANCE, PART_NUMBER
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Point, segment_from_bulge
 
@@ -53,7 +54,7 @@ def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
         if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1 and gap < NEARLY_CLOSED * size:
             raise InputError(
                 f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all the same, "
-                f"give --part {part.number}."
+                f"give {PART_NUMBER} {part.number}."
             )
 
 
@@ -86,7 +87,8 @@ def open_ends(strays: Sequence[Stray]) -> str:
     ]
     more = f", and {len(ends) - len(words)} more ends are open" if len(ends) > len(words) else ""
     smallest = found[0][0]
-    return f"{'; '.join(words)}{more}; close the drawing, or give a --join-tolerance above {rounded_up(smallest)} mm."
+    larger = f"give a larger {JOIN_TOLERANCE}, above {rounded_up(smallest)} mm"
+    return f"{'; '.join(words)}{more}; close the drawing, or {larger}."
 
 
 def rounded_up(gap: float) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing, cleaned
@@ -15,6 +15,7 @@ from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
+from workhold.files.questions import AXIS, DRAWING_UNIT, LAYERS, PART_NUMBER, SECTION, worded
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 
@@ -98,6 +99,7 @@ def read_workpiece(
     join_tolerance: float = 1e-3,
     axis: str | None = None,
     section: float | None = None,
+    called: Mapping[str, str] | None = None,
 ) -> Loaded:
     """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
 
@@ -105,6 +107,7 @@ def read_workpiece(
     ----------
     usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those of
         :func:`load`.
+    called : what the questions of ``files.questions`` are called where the part is asked for; None is for Python.
 
     Raises
     ------
@@ -121,23 +124,26 @@ def read_workpiece(
         content = read_bytes(path)
         kind = kind_of(path, content)
         if kind == "step":
-            return from_step(path, content, unit, layers, part_number, axis, section)
-        refuse_axis(axis, section)
-        if kind == "json":
-            own = path == builtin_path(path.stem)
-            return from_json(path, content, unit, layers, part_number, own)
-        if kind == "dxf":
-            from workhold.files.dxf.reader import read_dxf
-
-            drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers)
+            loaded = from_step(path, content, unit, layers, part_number, axis, section)
         else:
-            refuse_layers(layers)
-            from workhold.files.svg.reader import read_svg
+            refuse_axis(axis, section)
+            if kind == "json":
+                own = path == builtin_path(path.stem)
+                loaded = from_json(path, content, unit, layers, part_number, own)
+            elif kind == "dxf":
+                from workhold.files.dxf.reader import read_dxf
 
-            drawing = read_svg(content, unit=unit, usual_unit=usual_unit)
-        return from_drawing(path, drawing, part_number, join_tolerance)
+                drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers)
+                loaded = from_drawing(path, drawing, part_number, join_tolerance)
+            else:
+                refuse_layers(layers)
+                from workhold.files.svg.reader import read_svg
+
+                drawing = read_svg(content, unit=unit, usual_unit=usual_unit)
+                loaded = from_drawing(path, drawing, part_number, join_tolerance)
     except InputError as error:
-        raise InputError(f"{path.name}: {error}") from error
+        raise InputError(f"{path.name}: {worded(str(error), called)}") from error
+    return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
 
 
 def found(part: str | Path) -> Path:
@@ -224,7 +230,7 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
         When layers were chosen.
     """
     if layers is not None:
-        raise InputError("layers can be chosen in DXF files only: leave --layer out.")
+        raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
 
 
 def refuse_axis(axis: str | None, section: float | None) -> None:
@@ -236,8 +242,8 @@ def refuse_axis(axis: str | None, section: float | None) -> None:
         When an axis or a section was chosen.
     """
     if axis is not None or section is not None:
-        option = "--axis" if axis is not None else "--section"
-        raise InputError(f"only a STEP file can be looked at along an axis: leave {option} out.")
+        question = AXIS if axis is not None else SECTION
+        raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
 
 
 def from_json(
@@ -254,7 +260,7 @@ def from_json(
 
     refuse_layers(layers)
     if unit is not None:
-        raise InputError('the JSON file gives its own "units": leave --drawing-unit out.')
+        raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -289,7 +295,7 @@ def from_step(
 
     refuse_layers(layers)
     if unit is not None:
-        raise InputError("the STEP file gives its own unit: leave --drawing-unit out.")
+        raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
     drawing = read_step_apart(content, axis=axis, section_height=section, part_number=part_number)
     return from_drawing(path, drawing, None, 0.0)
 
@@ -355,6 +361,6 @@ def part_remarks(parts: Sequence[Part], chosen: Part, asked: int | None) -> list
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
-    because = "" if asked is not None else ", the largest (choose another with --part)"
+    because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
     return [f"The file holds {len(parts)} separate parts: {listing}{more}. Part {chosen.number} is used{because}."]

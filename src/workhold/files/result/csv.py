@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
 from workhold.files.result.writer import fixture_rows, known_figures
-from workhold.model.holes import column_letters
 from workhold.model.result import Result
 
 __all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
@@ -43,8 +41,8 @@ def result_csv_text(result: Result) -> Iterator[str]:
     figures = known_figures(result.table)
     pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
     yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
-    letters = cache(column_letters)
-    arrangements = [(one.name, result.toolkit.carrier_names(one)) for one in result.toolkit.arrangements]
+    carriers = result.toolkit.carriers
+    arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in result.toolkit.arrangements]
     number = 0
     for kinds, rows in fixture_rows(result.table, result.toolkit):
         lines = []
@@ -56,7 +54,16 @@ def result_csv_text(result: Result) -> Iterator[str]:
             fields += [f"{value:.12g}" for value in quality]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
-                hole = f"{jaw[0].upper()}-{letters(column)}{hole_row + 1}"
-                fields += [hole, jaw, str(column), str(hole_row), repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
+                hole = jaw.place_name(column, hole_row)
+                fields += [
+                    hole,
+                    jaw.name,
+                    str(column),
+                    str(hole_row),
+                    repr(peg_x),
+                    repr(peg_y),
+                    str(face),
+                    f"{force:.12g}",
+                ]
             lines.append(",".join(fields) + "\n")
         yield "".join(lines)

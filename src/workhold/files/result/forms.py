@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from workhold.errors import InputError
+from workhold.model.dowel import Fit
 from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.plate import Plate
 from workhold.model.proof import Proof, Undecided
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, zone_of
@@ -16,13 +19,29 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Head", "ProofPart"]
+__all__ = ["TAGS", "Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]
+
+
+LONGEST_STANDARD = 40
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 class Part(BaseModel):
     """What a key of the head must look like; further keys are allowed."""
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+    def not_given(self, place: str = "") -> Iterator[str]:
+        """The keys that the file does not give, in it and in the parts of it, such as ``vise.rows``."""
+        for name in type(self).model_fields:
+            value: Any = getattr(self, name)
+            if name not in self.model_fields_set:
+                yield place + name
+                continue
+            several = value if isinstance(value, list) else [value]
+            for number, part in enumerate(several):
+                if isinstance(part, Part):
+                    yield from part.not_given(f"{place}{name}." + (f"{number}." if several is value else ""))
 
 
 class WorkpiecePart(Part):
@@ -36,7 +55,7 @@ class WorkpiecePart(Part):
 class VisePart(Part):
     """The vise's keys."""
 
-    pitch: list[float] = Field(min_length=2, max_length=2)
+    pitch: Pair
     columns: int
     peg_radius: float
     rows: int | None = None
@@ -47,10 +66,38 @@ class VisePart(Part):
     blocked: list[str] = []
 
 
-class ToolkitPart(VisePart):
-    """The keys of a toolkit that is no vise: its kind, and for now those of the vise."""
+class OtherVisePart(VisePart):
+    """The keys of a toolkit with two jaws that is not the usual one."""
 
     kind: str
+
+
+class PlatePart(Part):
+    """The keys of a plate."""
+
+    kind: str
+    pitch: Pair
+    columns: int | None = None
+    rows: int | None = None
+    peg_radius: float
+    clamp_radius: float | None = None
+    travel: Pair | None = None
+    directions: list[str] | None = None
+
+
+# What tells the parts of a toolkit apart; they are no keys of a file.
+TAGS = ("<vise>", "<plate>")
+
+
+def tag_of(value: Any) -> str:
+    """Which part a toolkit's keys are."""
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return TAGS[kind == Plate.kind]
+
+
+ToolkitPart = Annotated[
+    Annotated[OtherVisePart, Tag(TAGS[0])] | Annotated[PlatePart, Tag(TAGS[1])], Discriminator(tag_of)
+]
 
 
 class RestrictionsPart(Part):
@@ -58,7 +105,7 @@ class RestrictionsPart(Part):
 
     avoid: list[int] = []
     zones: list[list[list[float]]] = []
-    angles: list[list[float]] = []
+    angles: list[Pair] = []
 
     def restrictions(self) -> Restrictions:
         """The restrictions.
@@ -66,12 +113,25 @@ class RestrictionsPart(Part):
         Raises
         ------
         InputError
-            When a zone or a range of angles is none.
+            When a zone is none.
         """
         zones = tuple(zone_of(loop) for loop in self.zones)
-        if any(len(pair) != 2 for pair in self.angles):
-            raise InputError("a range of angles is not two numbers.")
-        return Restrictions(tuple(self.avoid), zones, tuple((pair[0], pair[1]) for pair in self.angles))
+        return Restrictions(tuple(self.avoid), zones, tuple((low, high) for low, high in self.angles))
+
+
+class FitPart(Part):
+    """The fit of the dowels that are the pegs."""
+
+    pin: Pair
+    hole: Pair
+    position: float = Field(ge=0)
+    position_assumed: bool = False
+    standard: str = Field(default="", max_length=LONGEST_STANDARD)
+
+    def fit(self) -> Fit:
+        """The fit."""
+        (low, high), hole = self.pin, self.hole
+        return Fit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
 
 
 class TolerancePart(Part):
@@ -79,19 +139,27 @@ class TolerancePart(Part):
 
     peg: float
     face: float
+    fit: FitPart | None = None
+
+    def tolerance(self) -> Tolerance:
+        """The tolerance.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit())
 
 
 class LoadPart(Part):
     """A load."""
 
     name: str = ""
-    points: list[tuple[float, float]] = []
+    points: list[Pair] = []
     force: float = 0.0
-    directions: tuple[float, float] = ANY_DIRECTION
+    directions: Pair = list(ANY_DIRECTION)
     moment: float = 0.0
-
-    # JSON has no tuples.
-    model_config = ConfigDict(strict=False, allow_inf_nan=False)
 
     def load(self) -> Load:
         """The load.
@@ -101,7 +169,8 @@ class LoadPart(Part):
         InputError
             When it is none.
         """
-        return Load(tuple(self.points), self.force, self.directions, self.moment, self.name)
+        low, high = self.directions
+        return Load(tuple((x, y) for x, y in self.points), self.force, (low, high), self.moment, self.name)
 
 
 Counts = dict[str, Annotated[int, Field(ge=0)]]
@@ -115,12 +184,13 @@ class UndecidedPart(Part):
     columns: list[int] = Field(min_length=4, max_length=4)
     rows: list[int] = Field(min_length=4, max_length=4)
     theta_deg: float = Field(ge=0, lt=360)
+    reach_deg: float | None = Field(default=None, ge=0)
     reason: str = Field(min_length=1)
 
     def undecided(self) -> Undecided:
         """The entry as the model has it."""
         faces, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
-        return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason)
+        return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
 
 class ProofPart(Part):
@@ -147,6 +217,7 @@ class Head(Part):
     vise: VisePart | None = None
     toolkit: ToolkitPart | None = None
     counts: Counts
+    types: list[str] | None = None
     contact_margin: float = 0.0
     found: Counts | None = None
     distinct: Counts | None = None
@@ -158,6 +229,8 @@ class Head(Part):
     ranking: list[str] | None = None
     tolerance: TolerancePart | None = None
     loads: list[LoadPart] = []
+    best: int | None = None
+    jaw_force: float | None = None
 
     def asked_toolkit(self) -> Toolkit:
         """The toolkit.
@@ -186,9 +259,12 @@ class Head(Part):
         return Query(
             Workpiece.from_loops(self.workpiece.name, self.workpiece.loops),
             self.asked_toolkit(),
+            self.types,
             contact_margin=self.contact_margin,
             restrictions=self.restrictions.restrictions(),
             ranking=["closure_margin"] if self.ranking is None else self.ranking,
-            tolerance=None if self.tolerance is None else Tolerance(self.tolerance.peg, self.tolerance.face),
+            tolerance=None if self.tolerance is None else self.tolerance.tolerance(),
             loads=(part.load() for part in self.loads),
+            best=self.best,
+            jaw_force=self.jaw_force,
         )

@@ -1,12 +1,13 @@
 """Reading a result file back (MODEL, "Result file"), from workhold or from any other program that writes the form.
 
-The head is checked by pydantic, the fixtures by array operations. A file with one fixture per line, as workhold writes
-it, is read line by line; any other layout of the same JSON is read as a whole. Messages count fixtures and pegs from 1.
+The head is checked by pydantic (``files.result.head``), the fixtures by array operations. A file in columns is mapped into
+memory, and its fixtures are checked when they are looked at. What a file is, its first bytes tell, not its name. Messages
+count fixtures and pegs from 1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -14,14 +15,15 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
+from workhold.archive import is_archive
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
-from workhold.files.result.forms import Head, ProofPart
-from workhold.files.text import json_value
-from workhold.model.proof import Proof
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOAD_REACTION
+from workhold.files.result.checks import LARGEST_LENGTH, LARGEST_NUMBER, refuse_faulty, refuse_unknown_types
+from workhold.files.result.columns import read_columns
+from workhold.files.result.head import checked_query, result_with
+from workhold.files.result.parts import read_parts
+from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.toolkit import Toolkit
@@ -29,15 +31,12 @@ from workhold.model.toolkit import Toolkit
 __all__ = ["read_result"]
 
 BLOCK = 4096
-LARGEST_NUMBER = 2**31 - 1
-# Bytes of a file of another layout, which takes twenty times as much memory.
-LARGEST_WHOLE = 200_000_000
 
 
 @frozen
 class Columns:
     """The fixtures of a file as arrays: (N,) types and (N, 4) jaws by name, (N, 4, 3) holes and faces, (N, 4, 3) x, y and
-    forces, (N, 4) pose in degrees and mm and jaw separation, (N, 6) figures of quality (NaN where the file gives none)."""
+    forces, (N, 4) pose in degrees and mm and jaw separation, (N, 12) figures of quality (NaN where the file gives none)."""
 
     types: NDArray[np.str_]
     jaws: NDArray[np.str_]
@@ -45,10 +44,6 @@ class Columns:
     contacts: NDArray[np.float64]
     placing: NDArray[np.float64]
     quality: NDArray[np.float64]
-
-
-class OtherLayoutError(Exception):
-    """The file does not have one fixture on every line."""
 
 
 def read_result(path: str | Path) -> Result:
@@ -61,155 +56,13 @@ def read_result(path: str | Path) -> Result:
     """
     path = Path(path)
     try:
-        try:
-            data, columns = read_lines(path)
-        except OtherLayoutError:
-            data, columns = read_whole(path)
+        if is_archive(path):
+            return read_columns(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not a result file: it is not text.") from error
-    except RecursionError as error:
-        raise InputError(f"{path} is not a result file: its brackets are nested too deeply.") from error
-    head = checked_head(data, path)
-    try:
-        query = head.query()
-        refuse_other_types(head, query.toolkit)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    result = Result(
-        query,
-        measured(checked_table(columns, query, path), query),
-        found=head.found or head.counts,
-        distinct=head.distinct or head.counts,
-        complete=head.complete,
-        notes=tuple(head.notes),
-        statistics=head.statistics,
-        proof=None if head.proof is None else checked_proof(head.proof, query, path),
-    )
-    for name, listed in result.counts.items():
-        if head.counts[name] != listed:
-            said = head.counts[name]
-            raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
-    return result
-
-
-def refuse_other_types(head: Head, toolkit: Toolkit) -> None:
-    """Refuse counts of other types than the toolkit's.
-
-    Raises
-    ------
-    InputError
-        Naming the counts.
-    """
-    names = [one.name for one in toolkit.arrangements]
-    for key in ("counts", "found", "distinct"):
-        counts = getattr(head, key)
-        if counts is not None and set(counts) != set(names):
-            raise InputError(f"{key} does not give a number for each of the types {', '.join(names)} and no other.")
-
-
-def read_lines(path: Path) -> tuple[Any, Columns]:
-    """Head and fixtures of a file with one fixture per line, never holding more than a block of them as objects.
-
-    Raises
-    ------
-    OtherLayoutError
-        When the lines are not of that form.
-    """
-    with path.open(encoding="utf-8-sig") as stream:
-        before: list[str] = []
-        for line in stream:
-            before.append(line)
-            if line.strip() == '"fixtures": [':
-                break
-        else:
-            raise OtherLayoutError
-        after: list[str] = []
-        columns = collected(fixture_lines(stream, after), path)
-        try:
-            data = json_value("".join(before + after) + stream.read())
-        except ValueError as error:
-            raise OtherLayoutError from error
-    return data, columns
-
-
-def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
-    """The fixtures on their lines; the line that ends the list goes to ``after``."""
-    last = False
-    for line in stream:
-        text = line.strip()
-        if text.startswith("]"):
-            after.append(line)
-            return
-        if last:
-            raise OtherLayoutError
-        last = not text.endswith(",")
-        try:
-            yield json_value(text.removesuffix(","))
-        except ValueError as error:
-            raise OtherLayoutError from error
-    raise OtherLayoutError
-
-
-def read_whole(path: Path) -> tuple[Any, Columns]:
-    """Head and fixtures of a file of any layout."""
-    if path.is_file() and path.stat().st_size > LARGEST_WHOLE:
-        raise InputError(
-            f"{path} is too large a file to be read but with one fixture on every line, as workhold writes it."
-        )
-    text = path.read_text(encoding="utf-8-sig")
-    if not text.strip():
-        raise InputError(f"{path} is empty: it is not a result file.")
-    try:
-        data = json_value(text)
-    except InputError as error:
-        raise InputError(f"{path} is not a result file: {error}") from error
-    if not isinstance(data, dict) or not isinstance(data.get("fixtures"), list):
-        raise InputError(f"{path} is not a result file: it has no list of fixtures.")
-    return data, collected(data.pop("fixtures"), path)
-
-
-def checked_head(data: Any, path: Path) -> Head:
-    """Check the head's keys.
-
-    Raises
-    ------
-    InputError
-        Naming the first key that is missing or cannot be used.
-    """
-    try:
-        return Head.model_validate(data)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        if first["type"] == "missing":
-            raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
-        reason = first["msg"][:1].lower() + first["msg"][1:]
-        raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
-
-
-def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
-    """The account of the search.
-
-    Raises
-    ------
-    InputError
-        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no face.
-    """
-    accounted = part.discarded_by_bound + part.verified + len(part.undecided)
-    if accounted != part.candidates:
-        raise InputError(
-            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
-        )
-    faces = {face.number for face in query.workpiece.faces}
-    types = [one.name for one in query.toolkit.arrangements]
-    for number, item in enumerate(part.undecided, 1):
-        if item.type not in types:
-            raise InputError(f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}.")
-        if not faces.issuperset(item.segments):
-            raise InputError(f"{path}: undecided candidate {number} of the proof names a segment that is no face.")
-    return part.proof()
+    head, columns = read_parts(path, collected)
+    query = checked_query(head, path)
+    return result_with(measured(checked_table(columns, query, path), query), head, query, path)
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:
@@ -249,22 +102,48 @@ def fixture_row(
     pegs, pose = fixture["pegs"], fixture["pose"]
     if not isinstance(pegs, list) or len(pegs) != 4:
         raise ValueError("it does not have four pegs")
-    jaws = [peg["jaw"] for peg in pegs]
-    if not all(isinstance(word, str) for word in (name, *jaws)):
+    direction = fixture.get("direction")
+    name = name if direction is None else f"{name} {direction}"
+    jaws, holes = [], []
+    for peg in pegs:
+        carrier, column, row = peg_place(peg, direction)
+        jaws.append(carrier)
+        holes.append([column, row, peg["segment"]])
+    if not all(isinstance(word, str) for word in (fixture["type"], *jaws)):
         raise ValueError("its type or a peg's jaw is not text")
-    holes = [[peg["column"], peg["row"], peg["segment"]] for peg in pegs]
     contacts = [[peg["x"], peg["y"], peg["force"]] for peg in pegs]
     figures = fixture.get("quality", {})
     known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
-    placing = [pose["theta_deg"], pose["x"], pose["y"], fixture["jaw_separation"]]
+    # The travel of a clamp follows from its place.
+    travel = fixture["jaw_separation"] if direction is None else 0.0
+    placing = [pose["theta_deg"], pose["x"], pose["y"], travel]
     if {type(value) for hole in holes for value in hole} != {int}:
         raise ValueError("a peg's column, row or segment is not a whole number")
     if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
         raise ValueError("a peg's column, row or segment is negative or far too large")
     numbers = [value for contact in contacts for value in contact] + placing + known
-    if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > 1e300 for value in numbers):
+    if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > LARGEST_LENGTH for value in numbers):
         raise ValueError("a length, an angle or a force is not a finite number")
     return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+
+
+def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
+    """The carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole does not give."""
+    if "role" not in peg:
+        return peg["jaw"], peg["column"], peg["row"]
+    if peg["role"] == "locator":
+        return "plate", peg["column"], peg["row"]
+    if peg["role"] != "clamp":
+        raise ValueError("the role of a peg is neither locator nor clamp")
+    line = ("column", "row")["x" in str(direction)]
+    if peg["hole"] is None:
+        places = {"column": 0, "row": 0} | {line: peg[line]}
+    else:
+        column, row = peg["hole"]
+        places = {"column": column, "row": row}
+        if places[line] != peg[line]:
+            raise ValueError(f"the {line} of its clamp is not that of its hole")
+    return f"clamp {direction}", places["column"], places["row"]
 
 
 def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
@@ -284,7 +163,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         Naming the first fixture that contradicts the vise, the workpiece or itself.
     """
     toolkit = query.toolkit
-    arrangements, carriers = ([one.name for one in several] for several in (toolkit.arrangements, toolkit.carriers))
+    arrangements, carriers = [one.title for one in toolkit.arrangements], [one.name for one in toolkit.carriers]
     arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
     order = np.argsort(jaw, axis=1, kind="stable")
     jaw = np.take_along_axis(jaw, order, axis=1)
@@ -292,29 +171,9 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation = columns.placing.T
-    force = np.ascontiguousarray(contact[:, :, 2])
-
-    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
-        where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
-        if where.size:
-            raise InputError(f"{path}: fixture {int(where[0]) + 1} {reason}.")
-
-    refuse(arrangement < 0, f"cannot be used: its type is not {' or '.join(arrangements)}")
-    refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
-    refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
-    for number, carrier in enumerate(toolkit.carriers):
-        beyond = (jaw == number) & (column >= carrier.columns)
-        refuse(beyond, f"has a peg in a column beyond the {carrier.columns} of the {carrier.name} jaw")
-        if carrier.rows is not None:
-            beyond = (jaw == number) & (row >= carrier.rows)
-            refuse(beyond, f"has a peg in a row beyond the {carrier.rows} of the {carrier.name} jaw")
-    faces = [face.number for face in query.workpiece.faces]
-    refuse(~np.isin(face, faces), "has a peg on a segment that does not name a face of the workpiece")
-    hole_x, hole_y = toolkit.places(arrangement, column, row, separation)
-    apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
-    refuse(apart, "has a peg whose x, y are not those of its hole")
-    refuse(force <= 0, "has a peg whose force is not positive")
-    return FixtureTable(
+    if toolkit.moving.on is not None:
+        separation = clamp_travel(toolkit, arrangement, hole[:, -1], contact[:, -1])
+    table = FixtureTable(
         arrangement=arrangement,
         column=column,
         row=row,
@@ -322,39 +181,47 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         theta=np.radians(theta_deg) % (2 * np.pi),
         position=np.stack([x, y], axis=1),
         jaw_separation=separation.copy(),
-        null_vector=null_vectors(force, columns.quality[:, CLOSURE_MARGIN]),
-        force=force,
+        force=np.ascontiguousarray(contact[:, :, 2]),
         quality=columns.quality,
     )
+
+    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
+        where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
+        if where.size:
+            raise InputError(f"{path}: fixture {int(where[0]) + 1} {reason}.")
+
+    refuse_unknown_types(arrangement, toolkit, path)
+    refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
+    refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
+    refuse_faulty(table, query, path, range(len(table)))
+    hole_x, hole_y = toolkit.places(arrangement, column, row, separation)
+    apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
+    refuse(apart, "has a peg whose x, y are not those of its hole")
+    return table
+
+
+def clamp_travel(
+    toolkit: Toolkit, arrangement: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """How far (N,) clamps have travelled from their holes (N, 2 or more) to their tips (N, 2 or more), in mm."""
+    out = np.zeros(len(tip))
+    for number, carrier in enumerate(toolkit.carriers[1:]):
+        assert carrier.travel is not None
+        x, y = carrier.place(hole[:, 0], hole[:, 1])
+        along, across = carrier.travel.unit
+        out = np.where(arrangement == number, (tip[:, 0] - x) * along + (tip[:, 1] - y) * across, out)
+    return out
 
 
 def measured(table: FixtureTable, query: Query) -> FixtureTable:
     """The table with the figures of quality that the file does not give."""
     wanted = np.isnan(table.quality)
     if not query.loads:
-        wanted[:, LOAD_REACTION] = False
+        wanted[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = False
     if not wanted.any():
         return table
-    from workhold.model.vise import Vise
     from workhold.statics.quality import quality_of
 
-    vise = query.toolkit
-    assert isinstance(vise, Vise)
-
-    figures = quality_of(table, query.workpiece, vise, query.tolerance, query.loads)
+    asked = query.tolerance, query.loads
+    figures = quality_of(table, query.workpiece, query.toolkit, *asked, jaw_force=query.jaw_force)
     return evolve(table, quality=np.where(wanted, figures, table.quality))
-
-
-def null_vectors(force: NDArray[np.float64], margin: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Null vectors (N, 4) of sum 1 from forces (N, 4), which are proportional to them.
-
-    Forces are written with twelve digits; the smallest entry is taken from the closure margin as written, so that
-    reading and writing again gives the same file.
-    """
-    null_vector: NDArray[np.float64] = force / force.sum(axis=1, keepdims=True)
-    smallest = null_vector.argmin(axis=1)
-    rows = np.arange(len(force))
-    margin = np.where(np.isnan(margin), null_vector[rows, smallest], margin)
-    null_vector = np.maximum(null_vector, margin[:, None])
-    null_vector[rows, smallest] = margin
-    return null_vector

@@ -27,15 +27,20 @@ from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
 from workhold.model.result import FixtureTable, Result
-from workhold.model.toolkit import Toolkit
+from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 
 __all__ = [
+    "ANGLE_STEPS",
     "FORMAT",
+    "LENGTH_STEPS",
     "fixture_rows",
+    "head",
     "known_figures",
     "load_entry",
     "proof_entry",
     "result_text",
+    "rounded",
     "toolkit_fields",
     "write_result",
     "write_result_to",
@@ -46,15 +51,30 @@ BLOCK = 4096
 LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10
 
-PEG = '{{"jaw": "{}", "column": %d, "row": %d, "x": %r, "y": %r, "segment": %d, "force": %.12g}}'
-POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, "jaw_separation": %r'
+CONTACT = '"x": %r, "y": %r, "segment": %d, "force": %.12g'
+POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
+# A number that is not written.
+LEFT_OUT = "%.0s"
 
 
-def fixture_template(name: str, jaws: Sequence[str], figures: Sequence[Figure]) -> str:
+def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure]) -> str:
     """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
-    pegs = ", ".join(PEG.format(jaw) for jaw in jaws)
+    pegs = ", ".join(f"{{{peg_template(toolkit.carriers[number], toolkit)}}}" for number in arrangement.carriers)
     quality = ", ".join(f'"{figure.key}": %.12g' for figure in figures)
-    return f'{{"type": "{name}", "pegs": [{pegs}], {POSE}, "quality": {{{quality}}}}}'
+    direction = "" if arrangement.direction is None else f'"direction": "{arrangement.direction}", '
+    travel = f"{LEFT_OUT}" if toolkit.moving.on else '"jaw_separation": %r, '
+    return f'{{"type": "{arrangement.name}", {direction}"pegs": [{pegs}], {POSE}{travel}"quality": {{{quality}}}}}'
+
+
+def peg_template(carrier: Carrier, toolkit: Toolkit) -> str:
+    """What is written of a peg of a carrier, with its numbers left open; those of the place of a clamp come twice."""
+    if toolkit.moving.on is None:
+        return f'"jaw": "{carrier.name}", "column": %d, "row": %d, {CONTACT}'
+    if carrier.on is None:
+        return f'"role": "locator", "column": %d, "row": %d, {CONTACT}'
+    hole = "[%d, %d]" if carrier.has_a_hole else f"null{LEFT_OUT}{LEFT_OUT}"
+    line = f'{LEFT_OUT}"row": %d' if carrier.is_along_x else f'"column": %d{LEFT_OUT}'
+    return f'"role": "clamp", "hole": {hole}, {line}, {CONTACT}'
 
 
 def write_result(result: Result, path: str | Path) -> None:
@@ -76,8 +96,8 @@ def write_result_to(result: Result, stream: IO[str]) -> None:
 
 
 def result_text(result: Result) -> Iterator[str]:
-    """The text of a result file, piece by piece."""
-    lines = [f"{json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n" for key, value in head(result).items()]
+    """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
+    lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head(result).items()]
     yield "{" + "".join(lines) + '"fixtures": ['
     yield from fixture_lines(result.table, result.toolkit)
     yield "\n]}\n"
@@ -87,10 +107,17 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     figures = known_figures(table)
-    templates = [fixture_template(one.name, toolkit.carrier_names(one), figures) for one in toolkit.arrangements]
+    templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
     for kind, numbers in fixture_rows(table, toolkit):
+        if toolkit.moving.on is not None:
+            numbers = map(with_place_again, numbers)
         yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
+
+
+def with_place_again(numbers: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The numbers of a fixture with the column and row of the last peg, a clamp, given a second time."""
+    return numbers[:20] + numbers[18:20] + numbers[20:]
 
 
 def head(result: Result) -> dict[str, Any]:
@@ -104,6 +131,7 @@ def head(result: Result) -> dict[str, Any]:
             "loops": [(loop + 0.0).tolist() for loop in query.workpiece.loops],
         },
         **toolkit_entry(query.toolkit),
+        "types": list(query.arrangements),
         "contact_margin": float(query.contact_margin),
         "restrictions": {
             "avoid": [int(face) for face in query.restrictions.avoid],
@@ -111,8 +139,10 @@ def head(result: Result) -> dict[str, Any]:
             "angles": [[float(low), float(high)] for low, high in query.restrictions.angles],
         },
         "ranking": list(query.ranking),
-        "tolerance": {"peg": query.tolerance.peg, "face": query.tolerance.face},
+        "tolerance": tolerance_entry(query.tolerance),
         "loads": [load_entry(load) for load in query.loads],
+        "best": query.best,
+        "jaw_force": query.jaw_force,
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
@@ -120,6 +150,12 @@ def head(result: Result) -> dict[str, Any]:
         "notes": list(result.notes),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:
+    """How far pegs and faces may be off, and the fit of the dowels where it is known."""
+    fit = None if tolerance.fit is None else asdict(tolerance.fit)
+    return {"peg": tolerance.peg, "face": tolerance.face, "fit": fit}
 
 
 def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
@@ -168,6 +204,7 @@ def proof_entry(proof: Proof) -> dict[str, Any]:
                 "columns": [int(column) for column in item.columns],
                 "rows": [int(row) for row in item.rows],
                 "theta_deg": rounded_degrees(item.theta_deg),
+                "reach_deg": item.reach_deg,
                 "reason": item.reason,
             }
             for item in proof.undecided

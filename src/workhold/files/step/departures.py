@@ -16,11 +16,13 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import DEPARTS, FREE_AREA, OVERHANG, SAME_AREA, SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.outline.chain import listed
 from workhold.files.outline.joining import closed_loop
 from workhold.files.outline.nesting import Part, nest
-from workhold.files.step.faces import SAME_HEIGHT, Layer, SolidFace, lie_of, surface_points
+from workhold.files.questions import AXIS, SECTION
+from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
 from workhold.files.step.regions import Borders, area_of, section
 from workhold.files.step.solids import AXES, sub_shapes
 from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
@@ -28,15 +30,6 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["Outline", "departure_remarks", "refuse_overhang"]
-
-# Departures below this, in mm, are rounding of the CAD program.
-DEPARTS = 1e-4
-# A face may reach this far out of the silhouette, in mm: the rounding of files that give few digits.
-OVERHANG = 1e-3
-# Areas that differ by less than this share are the same.
-SAME_AREA = 1e-7
-# The library integrates regions with free-form borders only so well, as a share.
-FREE_AREA = 1e-3
 
 
 @frozen
@@ -69,7 +62,7 @@ class Outline:
         tolerance = FREE_AREA if edges.recognised else 1e-6
         if len(parts) != 1 or abs(parts[0].area - area) > tolerance * area:
             raise InputError(
-                "the sections of the solid do not make one outline: repair it in the CAD program, or give --section."
+                f"the sections of the solid do not make one outline: repair it in the CAD program, or give {SECTION}."
             )
         rows = oriented_rows(parts[0])
         insets, overhangs = [], []
@@ -106,10 +99,11 @@ def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, ax
     if outline.overhangs[worst] <= OVERHANG:
         return
     face = faces[worst]
+    another = other_axis(solid, axis, f", or {AXIS} ")
     raise InputError(
         f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at {heights(outline, face)} reaches "
-        f"{outline.overhangs[worst]:.3g} mm out of what is; give --section HEIGHT, the height above the part's lowest "
-        f"point (0 to {outline.high - outline.low:.6g} mm) at which the pegs touch{other_axis(solid, axis, ', or --axis ')}."
+        f"{outline.overhangs[worst]:.3g} mm out of what is; give {SECTION}, the height above the part's lowest "
+        f"point (0 to {outline.high - outline.low:.6g} mm) at which the pegs touch{another}."
     )
 
 
@@ -136,7 +130,7 @@ def departure_remarks(
         remarks.append(silhouette_remark(outline, layers, shape))
     hint = other_axis(solid, axis, "")
     if hint and any(face.lie == "leaning" for face in faces):
-        remarks.append(f"Along {hint} no face leans: give --axis {hint} if the pegs are parallel to that.")
+        remarks.append(f"Along {hint} no face leans: give {AXIS} {hint} if the pegs are parallel to that.")
     return remarks
 
 

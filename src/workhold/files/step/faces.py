@@ -20,14 +20,11 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import ALIGNED, SAME_HEIGHT
 from workhold.files.step.solids import bounding_box, sub_shapes
 
 __all__ = ["Layer", "SolidFace", "layers_of", "lie_of", "solid_faces", "surface_points"]
 
-# A face whose normal is off by less than this, in radians, lies as it was meant to: 0.01 µm over 100 mm.
-ALIGNED = 1e-7
-# Heights closer than this, in mm, are the same.
-SAME_HEIGHT = 1e-5
 # Points along an edge, and along each direction of a curved face, by which a departure is measured.
 EDGE_POINTS, GRID_POINTS = 17, 15
 

@@ -14,21 +14,19 @@ from typing import Any
 
 import numpy as np
 
+from workhold.conventions import EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
-from workhold.files.step.faces import SAME_HEIGHT, Layer, SolidFace, layers_of, solid_faces
+from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
 from workhold.files.step.library import load_step_library
-from workhold.files.step.regions import GAP, Borders, area_of, borders, level_region, section, union
+from workhold.files.step.regions import Borders, area_of, borders, level_region, section, union
 from workhold.files.step.solids import AXES, along, chosen_solid, lost_remarks, read_solids, solid_remarks, sub_shapes
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["read_step", "read_step_apart"]
-
-# Shares by which the volume of a solid and that of its layers may differ; the library integrates free-form faces roughly.
-SAME_VOLUME, FREE_VOLUME = 1e-5, 1e-2
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -215,6 +213,6 @@ def border_remarks(edges: Borders) -> list[str]:
             else (f"{edges.recognised} free-form edges are lines or circles")
         )
         remarks.append(f"{count} to within 1e-6 mm and taken as such.")
-    if edges.gap > GAP:
+    if edges.gap > EDGE_GAP:
         remarks.append(f"Closed gaps of up to {edges.gap:.2g} mm between edges of the outline.")
     return remarks

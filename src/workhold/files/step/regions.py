@@ -13,20 +13,17 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import SHORTEST
+from workhold.conventions import SAME_CURVE, SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, arc_bulges, at, rebulged
+from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.geometry.segment import Point
 
 __all__ = ["Borders", "area_of", "borders", "level_region", "section", "union"]
 
-# A free-form edge nearer than this to a line or a circle, in mm, is one that was saved as a spline.
-SAME_CURVE = 1e-6
 # Points by which a free-form edge is compared with a line and a circle.
 CURVE_POINTS = 33
-# Gaps between the edges of a border, in mm, that are rounding and not worth a word.
-GAP = 1e-6
 
 
 @frozen
@@ -119,7 +116,7 @@ def union(regions: Sequence[Any]) -> Any:
         whole = fuse.Shape()
         if abs(area_of(whole) - size - more) > 1e-6 * size:
             raise InputError(
-                "the sections of the solid cannot be united: repair it in the CAD program, or give --section."
+                f"the sections of the solid cannot be united: repair it in the CAD program, or give {SECTION}."
             )
     return whole
 
@@ -226,7 +223,7 @@ def recognised_piece(points: list[Point], name: str) -> Piece | None:
     what = "an ellipse" if name.endswith("Ellipse") else "a free-form curve"
     raise InputError(
         f"the outline has {what} from {at(points[0])} over {at(points[len(points) // 2])} to {at(points[-1])}, which is "
-        "neither a line nor a circle: replace it by lines and arcs in the CAD program, or look along another --axis."
+        f"neither a line nor a circle: replace it by lines and arcs in the CAD program, or look along another {AXIS}."
     )
 
 

@@ -1,7 +1,8 @@
-"""A set-up as a STEP assembly: the part in its pose, the pegs and the plates with their holes.
+"""A set-up as a STEP assembly: the part in its pose, the pegs, the clamps with their bolts, and the plates with their holes.
 
-The frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1. z is 0 on top of the plates;
-the part lies there, and the pegs stand through the plates up to the part's upper side.
+The frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1, or at hole A1 of a plate.
+z is 0 on top of the plates; the part lies there, and the pegs stand through the plates up to the part's upper side, where
+nothing else is asked for.
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.step.library import load_step_library
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.holes import hole_name
+from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
@@ -27,6 +30,8 @@ __all__ = ["setup_step", "write_setup_step"]
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
 LONGEST_NAME = 120
+# Of the part and of the plates, in mm, where nobody says.
+THICKNESS = 10.0
 
 
 def write_setup_step(
@@ -35,8 +40,11 @@ def write_setup_step(
     toolkit: Toolkit,
     path: str | Path,
     *,
-    thickness: float = 10.0,
-    plate_thickness: float = 10.0,
+    thickness: float | None = None,
+    plate_thickness: float | None = None,
+    peg_length: float | None = None,
+    peg_height: float | None = None,
+    zero: PartZero | None = None,
 ) -> None:
     """Write a set-up as a STEP assembly; the same set-up gives the same bytes.
 
@@ -44,20 +52,37 @@ def write_setup_step(
     ----------
     fixture, workpiece, toolkit : the set-up.
     path : the file.
-    thickness : height of the part in mm.
+    thickness : height of the part in mm; 10 if None, as of the plates.
     plate_thickness : of all plates, in mm; their holes go through.
+    peg_height : how far the pegs stand out of the plates, in mm; as far as the part if None.
+    peg_length : in mm; down to the plates' lower sides if None.
+    zero : part zero; that of :func:`part_zero` without a wish if None.
 
     Raises
     ------
     InputError
-        For pegs without a radius, a thickness that is not positive, a file that cannot be written, and when the extra
+        For pegs without a radius, a length that is not positive, a file that cannot be written, and when the extra
         ``step`` is not installed.
     """
-    write_bytes(path, setup_step(fixture, workpiece, toolkit, thickness=thickness, plate_thickness=plate_thickness))
+    sizes = {
+        "thickness": thickness,
+        "plate_thickness": plate_thickness,
+        "peg_length": peg_length,
+        "peg_height": peg_height,
+    }
+    write_bytes(path, setup_step(fixture, workpiece, toolkit, zero=zero, **sizes))
 
 
 def setup_step(
-    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, *, thickness: float = 10.0, plate_thickness: float = 10.0
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    *,
+    thickness: float | None = None,
+    plate_thickness: float | None = None,
+    peg_length: float | None = None,
+    peg_height: float | None = None,
+    zero: PartZero | None = None,
 ) -> bytes:
     """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
 
@@ -67,20 +92,53 @@ def setup_step(
         As :func:`write_setup_step`.
     """
     if min(carrier.peg_radius for carrier in toolkit.carriers) <= 0:
-        raise InputError("pegs of radius 0 have no body to write to a STEP file: give the vise a peg radius.")
-    for name, value in (("thickness", thickness), ("plate thickness", plate_thickness)):
+        raise InputError(
+            f"pegs of radius 0 have no body to write to a STEP file: give the {toolkit.noun} a peg radius."
+        )
+    thickness = THICKNESS if thickness is None else thickness
+    plate_thickness = THICKNESS if plate_thickness is None else plate_thickness
+    top = thickness if peg_height is None else peg_height
+    length = top + plate_thickness if peg_length is None else peg_length
+    for name, value in (
+        ("thickness", thickness),
+        ("plate thickness", plate_thickness),
+        ("peg height", top),
+        ("peg length", length),
+    ):
         if not (isfinite(value) and value > 0):
             raise InputError(f"{name} {value} is not a positive length: give it in mm.")
     load_step_library()
     name = plain(shortened(workpiece.name, LONGEST_NAME))
     named = [(name, part_body(workpiece.placed(fixture.pose), thickness))]
-    seen = shown(fixture, toolkit, workpiece).carriers
-    for each in seen:
+    seen = shown(fixture, toolkit, workpiece)
+    for each in seen.carriers:
         for peg in each.pegs:
-            body = peg_body((peg.x, peg.y), each.carrier.peg_radius, -plate_thickness, thickness)
-            named.append((f"peg {peg.hole}", body))
-    named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen]
+            body = peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, top)
+            named.append((f"{each.carrier.peg} {peg.hole}", body))
+    for clamp in seen.clamps:
+        named.append((clamp.tip.hole, extruded(wire(clamp.outline()), [], 0.0, thickness)))
+        if clamp.hole is not None:
+            bolt = peg_body(clamp.hole, seen.carriers[0].carrier.peg_radius, -plate_thickness, 0.0)
+            named.append((f"bolt {hole_name(clamp.carrier.on or '', clamp.tip.column, clamp.tip.row)}", bolt))
+    named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen.carriers]
+    named.append(("part zero X0 Y0", axes_at((zero or part_zero(workpiece)).point, fixture.pose, seen.pitch)))
     return assembly(f"{name} set-up", named)
+
+
+def axes_at(point: Point, pose: Pose, length: float) -> Any:
+    """The axes of the part at a point of it, at z = 0: x as long as told, y half as long."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    axes, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(axes)
+    x, y = point
+    start, *ends = (
+        (float(u), float(v)) for u, v in (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
+    )
+    for end in ends:
+        builder.Add(axes, edge(Line(start, end)))
+    return axes
 
 
 def part_body(part: Workpiece, thickness: float) -> Any:

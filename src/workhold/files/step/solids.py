@@ -9,6 +9,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.questions import PART_NUMBER
 from workhold.limits import MOST_LENGTH
 
 __all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "read_solids", "solid_remarks"]
@@ -192,7 +193,7 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | None) -
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
-    because = "" if asked is not None else ", the largest (choose another with --part)"
+    because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
     listing = "; ".join(str(solid) for solid in solids[:SOLID_LIST])
     return [f"The file holds {len(solids)} solids: {listing}{more}. Solid {chosen.number} is used{because}."]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import asin, cos, hypot, isfinite, pi, sin
 from typing import Any
 
-from workhold.conventions import CIRCULAR
+from workhold.conventions import CIRCULAR, HALF_CIRCLE
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
@@ -17,8 +17,6 @@ from workhold.geometry.segment import Point
 
 __all__ = ["path"]
 
-# A chord this near the diameter, relatively, is a half circle: its sweep cannot be told from the chord.
-HALF = 1e-14
 COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 SEPARATOR = r"\s*(?:,\s*(?=[-+.\d]))?"
 COMMAND = re.compile(r"\s*([MmZzLlHhVvCcSsQqTtAa])\s*")
@@ -150,7 +148,7 @@ def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
     """Signed sweep of an arc by chord and radius, more accurate than the rough one, which tells side and direction."""
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
-    half = pi / 2 if ratio > 1 - HALF else asin(ratio)
+    half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)
     sweep = 2 * half if abs(rough) <= pi else 2 * (pi - half)
     # Near half a turn the rough sweep may fall on the wrong side; the nearer one is meant.
     if abs(abs(rough) - pi) < 1e-6 and ratio > 1 - 1e-12:

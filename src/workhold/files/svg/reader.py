@@ -15,6 +15,7 @@ from __future__ import annotations
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing
 from workhold.files.outline.placement import Placement
+from workhold.files.questions import UNIT
 from workhold.files.svg.cascade import Styles
 from workhold.files.svg.document import read_document
 from workhold.files.svg.lengths import Figure, absolute, millimetres, physical
@@ -77,7 +78,7 @@ def page(root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | 
     if scale is None:
         raise InputError(
             "the drawing has no physical size (width and height in mm, cm or in): give the size of its user unit with "
-            "--unit mm (or inch, cm, m)."
+            f"{UNIT} mm (or inch, cm, m)."
         )
     left, low = 0.0, 0.0
     if box is not None:

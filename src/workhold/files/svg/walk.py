@@ -61,6 +61,7 @@ class SvgWalk:
         self.styles = styles
         self.chains: list[Chain] = []
         self.hidden = 0
+        self.painted_over = 0
         self.ignored: Counter[str] = Counter()
         self.count = 0
 
@@ -141,6 +142,12 @@ class SvgWalk:
         if nest.placement.flat:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
         found = list(self.placed(figure, nest.placement))
+        if figure.closed and not style.even_odd and len(found) > 1:
+            from workhold.files.svg.painting import boundaries
+
+            bounding = boundaries(found)
+            self.painted_over += len(found) - len(bounding)
+            found = bounding
         self.hidden += not found
         for window in nest.windows:
             shown = {window.shows(chain) for chain in found}
@@ -312,6 +319,11 @@ class SvgWalk:
         if +self.ignored:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted((+self.ignored).items()))
             remarks.append(f"Ignored elements that are no outline: {kinds}.")
+        if self.painted_over:
+            remarks.append(
+                f"Left out {counted(self.painted_over, 'loop that is', 'loops that are')} painted over by the rest of the "
+                "shape (fill-rule nonzero); for a hole, use the even-odd rule or turn the loop round."
+            )
         if self.hidden:
             remarks.append(
                 f"Left out {counted(self.hidden, 'hidden element', 'hidden elements')} (switched off, transparent, empty, "

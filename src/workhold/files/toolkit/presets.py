@@ -1,6 +1,6 @@
-"""Vises that people own, by name; each file in ``data/vises`` says where its figures are from.
+"""Toolkits that people own, by name; each file in ``data/vises`` says where its figures are from.
 
-A preset is a plate on each jaw of a vise, as in the paper: no vise that comes with a lattice of dowel holes on both jaws
+A preset of a vise is a plate on each jaw, as in the paper: no vise that comes with a lattice of dowel holes on both jaws
 is known to us. How many columns a jaw has is for its owner to say; a preset's number is only a usual one.
 """
 
@@ -15,24 +15,34 @@ from pathlib import Path
 from workhold.errors import InputError
 from workhold.files.toolkit.reader import LoadedVise, described_vise, read_vise_file
 
-__all__ = ["LoadedVise", "load_vise", "preset", "preset_names"]
+__all__ = ["LoadedVise", "is_sold", "load_vise", "preset", "preset_names"]
 
 ENDING = ".toml"
 
 
 @cache
 def preset_names() -> tuple[str, ...]:
-    """The names of the presets, by kind and then by pitch.
+    """The names of the presets, what is sold first, then by kind and by pitch.
 
     Examples
     --------
     >>> preset_names()[0]
-    'gripper-one-column'
+    'clamp-plate-20mm'
     """
     found = [entry.name for entry in (files("workhold") / "data" / "vises").iterdir() if entry.name.endswith(ENDING)]
     presets = [preset(name.removesuffix(ENDING)) for name in found]
-    presets.sort(key=lambda vise: (vise.name.split("-")[0], vise.fields["pitch"], vise.fields["columns"]))
+    presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
+    presets.sort(key=lambda vise: not is_sold(vise.name))
     return tuple(vise.name for vise in presets)
+
+
+def is_sold(name: str) -> bool:
+    """Whether what a preset is named after can be bought or drilled; the paper's grippers cannot.
+
+    >>> is_sold("table-50mm"), is_sold("gripper-one-column, radius 2")
+    (True, False)
+    """
+    return not name.startswith("gripper-")
 
 
 def preset(name: str) -> LoadedVise:
@@ -42,7 +52,7 @@ def preset(name: str) -> LoadedVise:
 
 
 def load_vise(name: str | Path) -> LoadedVise:
-    """Load a vise by the name of a preset or from a TOML file; a file wins.
+    """Load a toolkit by the name of a preset or from a TOML file; a file wins.
 
     Parameters
     ----------
@@ -51,7 +61,7 @@ def load_vise(name: str | Path) -> LoadedVise:
     Raises
     ------
     InputError
-        For a vise that cannot be found, with the names that are close, and for a file that cannot be used.
+        For a toolkit that cannot be found, with the names that are close, and for a file that cannot be used.
 
     Examples
     --------
@@ -72,4 +82,4 @@ def load_vise(name: str | Path) -> LoadedVise:
     if asked in names:
         return preset(asked)
     close = get_close_matches(asked, names, n=3, cutoff=0.5) or names
-    raise InputError(f"{str(name)[:200]!r}: file not found, and no vise has that name (try {', '.join(close)}).")
+    raise InputError(f"{str(name)[:200]!r}: file not found, and no toolkit has that name (try {', '.join(close)}).")

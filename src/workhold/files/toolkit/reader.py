@@ -1,9 +1,9 @@
-"""A vise described in TOML: a preset of the program's own, or a file of the user's. All lengths come out in mm.
+"""A toolkit described in TOML: a preset of the program's own, or a file of the user's. All lengths come out in mm.
 
 Glossary
 --------
 entry : a key of the file and its value.
-fields : the keyword arguments of :class:`workhold.model.vise.Vise` that the file gives.
+fields : the keyword arguments of the toolkit's class that the file gives.
 fit : limits of pin and hole and the position of the hole, from which the peg's tolerance follows.
 """
 
@@ -18,37 +18,21 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
-from workhold.model.dowel import Limits, peg_error, refuse_limits
-from workhold.model.holes import holes_named
-from workhold.model.kinds import USUAL, toolkit_of
+from workhold.model.dowel import Fit, Limits, peg_error, refuse_limits
+from workhold.model.kinds import USUAL, kind_of, toolkit_of
 from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Toolkit
 from workhold.model.units import Unit, unit_named
-from workhold.model.vise import Vise
 
-__all__ = ["Fit", "LoadedVise", "described_vise", "read_vise_file"]
+__all__ = ["LoadedVise", "described_vise", "read_vise_file"]
 
 # Bytes; a vise takes a few hundred.
 LARGEST_FILE = 1_000_000
-LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius")
+LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius")
+# Entries that are handed on as they are.
+PLAIN = ("columns", "rows", "directions")
 # Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
 ASSUMED_POSITION = Tolerance().peg
-
-
-@frozen
-class Fit:
-    """A pin in its hole.
-
-    Parameters
-    ----------
-    pin, hole : smallest and largest diameters in mm.
-    position : how far the centre of a hole may be from its place, in mm.
-    position_assumed : whether nobody said so, and it was assumed.
-    """
-
-    pin: Limits
-    hole: Limits
-    position: float
-    position_assumed: bool
 
 
 @frozen
@@ -65,6 +49,7 @@ class LoadedVise:
     fields : keyword arguments of its class, in mm; those not in the file are left out.
     tolerance : of its pegs and of the faces they touch.
     fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.
+    assumed : entries for which there is no source, as the file says.
     """
 
     name: str
@@ -75,11 +60,17 @@ class LoadedVise:
     fields: dict[str, Any]
     tolerance: Tolerance
     fit: Fit | None
+    assumed: tuple[str, ...] = ()
 
     @property
-    def vise(self) -> Vise:
-        """The vise with nothing changed."""
+    def toolkit(self) -> Toolkit:
+        """The toolkit with nothing changed."""
         return toolkit_of(self.kind, self.fields)
+
+    @property
+    def is_on_the_page(self) -> bool:
+        """Whether the page can draw it: it has fields for the jaws of a vise only."""
+        return self.toolkit.moving.on is None
 
 
 def read_vise_file(path: Path) -> LoadedVise:
@@ -93,7 +84,7 @@ def read_vise_file(path: Path) -> LoadedVise:
     from workhold.files.toolkit.form import checked
 
     try:
-        return described_vise(path.stem, checked(toml_table(read_text(path, LARGEST_FILE, "a vise"))))
+        return described_vise(path.stem, checked(toml_table(read_text(path, LARGEST_FILE, "a toolkit"))))
     except InputError as error:
         raise InputError(f"{path.name or path}: {error}") from error
 
@@ -108,19 +99,18 @@ def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
     """
     unit = unit_named(entries["unit"])
     if unit.name not in ("mm", "inch"):
-        raise InputError('the unit of a vise is "mm" or "inch".')
+        raise InputError('the unit of a toolkit is "mm" or "inch".')
     pitch = entries["pitch"]
     pair = (pitch[0], pitch[1]) if isinstance(pitch, list) else (pitch, pitch)
-    fields: dict[str, Any] = {
-        "pitch": (unit.length(pair[0]), unit.length(pair[1])),
-        "columns": entries["columns"],
-    }
+    kind, said = kind_of(entries.get("kind", USUAL))
+    fields: dict[str, Any] = {**said, "pitch": (unit.length(pair[0]), unit.length(pair[1]))}
+    fields |= {key: entries[key] for key in PLAIN if key in entries}
     fields |= {key: unit.length(entries[key]) for key in LENGTHS if key in entries}
-    if "rows" in entries:
-        fields["rows"] = entries["rows"]
+    if "travel" in entries:
+        least, most = entries["travel"]
+        fields["travel"] = (unit.length(least), unit.length(most))
     if "blocked" in entries:
-        fields["blocked"] = tuple(holes_named(hole) for hole in entries["blocked"])
-    kind = entries.get("kind", USUAL)
+        fields["blocked"] = tuple(entries["blocked"])
     toolkit_of(kind, fields)
     fit = fit_of(entries, unit, fields["peg_radius"])
     return LoadedVise(
@@ -132,6 +122,7 @@ def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
         fields=fields,
         tolerance=tolerance_of(entries, unit, fit, fields["peg_radius"]),
         fit=fit,
+        assumed=tuple(entries.get("assumed", ())),
     )
 
 
@@ -169,7 +160,7 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
     if position is not None and position < 0:
         raise InputError(f"hole_position {position:g} is negative: give 0 or more.")
     length = ASSUMED_POSITION if position is None else unit.length(position)
-    return Fit(pin, hole, length, position is None)
+    return Fit(pin, hole, length, position is None, entries.get("dowel", ""))
 
 
 def tolerance_of(entries: Mapping[str, Any], unit: Unit, fit: Fit | None, peg_radius: float) -> Tolerance:
@@ -184,4 +175,4 @@ def tolerance_of(entries: Mapping[str, Any], unit: Unit, fit: Fit | None, peg_ra
     # Rounded to where a difference of decimal figures is exact again.
     peg = usual.peg if fit is None else round(peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
     given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
-    return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face))
+    return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face), fit)

@@ -1,5 +1,8 @@
 """How kernels are compiled, and where the compiled code is kept.
 
+Where the package was built with a library of all kernels, of exactly these sources, they come from there (``built``) and
+numba is not needed. Elsewhere numba compiles them on first use.
+
 Numba's disk cache looks only at the file of the function it keeps, so a kernel that calls a changed kernel of another
 file would be served stale. The cache therefore lives in a folder named by a hash of all the package's sources: any
 change of any source starts a new folder. Where no folder can be written, kernels are compiled anew in every process.
@@ -8,44 +11,83 @@ change of any source starts a new folder. Where no folder can be written, kernel
 from __future__ import annotations
 
 import os
-import pickle
 import shutil
 import sys
 import tempfile
 from collections.abc import Callable
-from contextlib import suppress
-from functools import cache, cached_property
+from functools import cache
 from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
-from threading import Lock
 from typing import Any, TypeVar, cast
 
-import numba
-from numba.core import config as numba_config
-from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
-from numba.core.runtime.nrt import rtsys
+from workhold.errors import InputError
+from workhold.kernels.base.built import Library
+from workhold.kernels.base.sources import KERNELS, library_name, source_hash
+from workhold.limits import refuse_little_space
 
-__all__ = ["cache_folder", "compiled", "inner", "is_first_run"]
+__all__ = [
+    "cache_folder",
+    "compiled",
+    "compiled_making_arrays",
+    "inner",
+    "inner_making_arrays",
+    "is_first_run",
+]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FOLDERS_KEPT = 3
-# Bytes of the hash in front of machine code.
-SEAL = 32
-# Whether kernels that only kernels call are made callable from Python too, for tests; it takes longer to compile.
-ALL_CALLABLE = os.environ.get("WORKHOLD_KERNELS") == "callable"
+# Bytes of address space: with less, numba and its compiler end the process by a signal or with an error of their own.
+COMPILER_SPACE = 1_000_000_000
+# "numba" compiles on first use whatever was built; "building" besides neither reads nor keeps machine code; "callable" makes
+# kernels that only kernels call callable from Python as well, for tests, and takes longer to compile.
+MODE = os.environ.get("WORKHOLD_KERNELS", "")
+ALL_CALLABLE = MODE == "callable"
+# Options of numba for kernels that make arrays, for those that make none, and besides for those that only kernels call.
+MAKING_ARRAYS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+WITHOUT_COUNTS: dict[str, Any] = {**MAKING_ARRAYS, "_nrt": False}
+ONLY_INNER: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 # The module and the kernel that every search compiles, and that takes longest.
 LONGEST_KERNEL = ("two_and_two", "two_and_two_cells")
 
 
-def source_hash() -> str:
-    """Hash of the sources of all rooms of the package, of where they are, and of the versions that compile them."""
-    package = Path(__file__).resolve().parents[1]
-    digest = sha256(f"{sys.version} numba {numba.__version__} {package} {ALL_CALLABLE}".encode())
-    for path in (package.parent / "conventions.py", *sorted(package.rglob("*.py"))):
-        digest.update(path.relative_to(package.parent).as_posix().encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:20]
+def built_library() -> Library | None:
+    """The library of kernels built from exactly these sources for this kind of machine, if there is one.
+
+    Raises
+    ------
+    InputError
+        When there is none, nor numba to compile them with, nor memory for it.
+    """
+    if MODE not in ("numba", "building", "callable"):
+        try:
+            library = Library(KERNELS / library_name())
+        except OSError:
+            pass
+        else:
+            if library.source_hash == source_hash():
+                return library
+    if find_spec("numba") is None:
+        raise InputError(
+            "This installation has no compiled kernels for this kind of machine, and no numba to compile them with; "
+            "install workhold[numba]."
+        )
+    refuse_little_space(
+        COMPILER_SPACE, "compiling the kernels", "raise the limit, or install a wheel with compiled kernels"
+    )
+    return None
+
+
+LIBRARY = built_library()
+
+
+def cache_key() -> str:
+    """Hash of the sources, of where they are, and of the versions that compile them: the same code has the same key."""
+    import numba
+
+    known = f"{sys.version} numba {numba.__version__} {KERNELS} {ALL_CALLABLE} {source_hash()}"
+    return sha256(known.encode()).hexdigest()[:20]
 
 
 def user_cache() -> Path:
@@ -59,9 +101,11 @@ def user_cache() -> Path:
 
 @cache
 def cache_folder() -> Path | None:
-    """The folder for the compiled code of exactly these sources, or None where nothing can be written."""
+    """The folder for the compiled code of exactly these sources, or None where nothing can be written or is to be."""
+    if MODE == "building":
+        return None
     try:
-        folder = user_cache() / f"kernels-{source_hash()}"
+        folder = user_cache() / f"kernels-{cache_key()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -83,113 +127,67 @@ def drop_old_folders(current: Path) -> None:
 
 
 def is_first_run() -> bool:
-    """Whether the search's kernels of these sources still have to be compiled (a matter of twenty seconds or so).
+    """Whether the search's kernels of these sources still have to be compiled (a matter of half a minute or so).
 
     Reading a part compiles a few small ones, which do not count.
     """
+    if LIBRARY is not None:
+        return False
     folder = cache_folder()
     return folder is None or next(folder.rglob(f"{'.'.join(LONGEST_KERNEL)}-*.nbi"), None) is None
 
 
-class SealedFile(IndexDataCacheFile):
-    """Numba's files of one function's cache, where a damaged one (a loss of power leaves empty and halved files) is as none.
-
-    Machine code stands behind its hash, because running damaged code would end the process.
-    """
-
-    def _load_index(self) -> Any:
-        """The index; empty where it is missing or damaged, so that it is made anew."""
-        try:
-            return super()._load_index()  # type: ignore[no-untyped-call]
-        except Exception:
-            return {}
-
-    def _save_data(self, name: str, data: Any) -> None:
-        """Write machine code behind its hash."""
-        content = self._dump(data)  # type: ignore[no-untyped-call]
-        with self._open_for_write(self._data_path(name)) as stream:  # type: ignore[no-untyped-call]
-            stream.write(sha256(content).digest() + content)
-
-    def _load_data(self, name: str) -> Any:
-        """Machine code; what numba takes for a missing file where it is not what was written."""
-        content = Path(self._data_path(name)).read_bytes()  # type: ignore[no-untyped-call]
-        seal, content = content[:SEAL], content[SEAL:]
-        if sha256(content).digest() != seal:
-            raise FileNotFoundError(name)
-        return pickle.loads(content)
-
-
-class StoredCode(FunctionCache):
-    """Numba's cache of one function, whose files are sealed, without the wait before machine code is read.
-
-    Numba would first set up all it needs to compile, a fifth of a second. Code that is there needs only the allocator of
-    arrays; where it is not there, the compiler sets up the rest itself.
-    """
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
-        self._cache_file.__class__ = SealedFile
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Store machine code, unless the disk is full or does not let it."""
-        with suppress(OSError):
-            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The machine code stored for a signature, or None."""
-        rtsys.initialize(target_context)
-        with self._guard_against_spurious_io_errors():
-            return self._load_overload(sig, target_context)  # type: ignore[no-untyped-call]
-
-
-class LateCache:
-    """The cache of a kernel, opened when the kernel is first called or compiled into another.
-
-    Most kernels are never looked up once those that call them are stored, and opening a cache touches the disk.
-    """
-
-    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
-        self.function = function
-        self.folder = folder
-
-    @cached_property
-    def opened(self) -> Any:
-        """Numba's cache; it reads the folder from a setting of the whole process, which is put back."""
-        config: Any = numba_config
-        with OPENING:
-            before = config.CACHE_DIR
-            config.CACHE_DIR = str(self.folder)
-            try:
-                return StoredCode(self.function)
-            except RuntimeError:
-                return NullCache()
-            finally:
-                config.CACHE_DIR = before
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.opened, name)
-
-
-OPENING = Lock()
-
-
 def compiled(function: Function) -> Function:
     """Compile a kernel that Python calls on first use, without the interpreter lock, and keep the machine code on disk if
-    possible.
+    possible; it makes and returns no array.
 
     Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments of slices,
     and long kernels that call other long kernels (every caller is optimized together with all it calls).
+
+    A kernel counts no references to arrays, for its caller holds all it looks at. A count is an atomic addition and every
+    view of a row would take two: they were half of a search's time.
     """
-    kernel: Any = numba.njit(nogil=True, error_model="numpy")(function)
+    return called_by_python(function, WITHOUT_COUNTS)
+
+
+def compiled_making_arrays(function: Function) -> Function:
+    """Compile a kernel like :func:`compiled`, but one that makes or returns arrays, and so counts references to arrays: it
+    makes room, and leaves loops to kernels that do not."""
+    return called_by_python(function, MAKING_ARRAYS)
+
+
+def inner(function: Function) -> Function:
+    """Compile a kernel like :func:`compiled` that only kernels call: its code becomes part of theirs, and is not kept or
+    made callable itself."""
+    return called_by_kernels(function, WITHOUT_COUNTS)
+
+
+def inner_making_arrays(function: Function) -> Function:
+    """Compile a kernel like :func:`compiled_making_arrays` that only kernels call."""
+    return called_by_kernels(function, MAKING_ARRAYS)
+
+
+def called_by_python(function: Function, options: dict[str, Any]) -> Function:
+    """The kernel of the library, or one of numba whose machine code is kept on disk if possible."""
+    if LIBRARY is not None:
+        return cast(Function, LIBRARY.door(function))
+    import numba
+
+    kernel: Any = numba.njit(**options)(function)
     folder = cache_folder()
     if folder is not None:
+        from workhold.kernels.base.storing import LateCache
+
         kernel._cache = LateCache(function, folder)
     return cast(Function, kernel)
 
 
-def inner(function: Function) -> Function:
-    """Compile a kernel that only kernels call: its code becomes part of theirs, and is not kept or made callable itself."""
+def called_by_kernels(function: Function, options: dict[str, Any]) -> Function:
+    """A kernel of numba that only kernels call; the function itself where they are in the library."""
+    if LIBRARY is not None:
+        return function
     if ALL_CALLABLE:
-        return compiled(function)
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return cast(Function, numba.njit(nogil=True, error_model="numpy", **options)(function))
+        return called_by_python(function, options)
+    import numba
+
+    return cast(Function, numba.njit(**options, **ONLY_INNER)(function))

@@ -7,27 +7,26 @@ from math import atan2, cos, hypot, inf, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.shallow import angle_on, is_shallow, off_shallow, point_at
 
 Array = NDArray[np.float64]
 
 
 @inner
 def segment_distance(x: float, y: float, row: Array) -> float:
-    """Distance in mm from a point to one segment (row layout of ``segment_rows``)."""
-    dx, dy = x - row[1], y - row[2]
-    if row[0] == 0.0:
-        along = dx * row[3] + dy * row[4]
-        beyond = max(abs(along) - row[5], 0.0)
-        return hypot(beyond, dx * row[4] - dy * row[3])
-    angle = atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy)
-    if abs(angle) <= row[5]:
-        return abs(hypot(dx, dy) - row[6])
-    mid = atan2(row[4], row[3])
-    low, high = mid - row[5], mid + row[5]
-    to_low = hypot(dx - row[6] * cos(low), dy - row[6] * sin(low))
-    to_high = hypot(dx - row[6] * cos(high), dy - row[6] * sin(high))
-    return min(to_low, to_high)
+    """Distance in mm from a point to one segment (see ``base.feature``)."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        along = dx * row[AXIS_X] + dy * row[AXIS_Y]
+        beyond = max(abs(along) - row[HALF_EXTENT], 0.0)
+        return hypot(beyond, dx * row[AXIS_Y] - dy * row[AXIS_X])
+    if abs(angle_on(row, x, y)) <= row[HALF_EXTENT]:
+        return abs(off_shallow(row, x, y)[0] if is_shallow(row) else hypot(dx, dy) - row[RADIUS])
+    low_x, low_y = point_at(row, -row[HALF_EXTENT])
+    high_x, high_y = point_at(row, row[HALF_EXTENT])
+    return min(hypot(x - low_x, y - low_y), hypot(x - high_x, y - high_y))
 
 
 @inner
@@ -39,7 +38,7 @@ def outline_distance(x: float, y: float, rows: Array) -> float:
     return best
 
 
-@compiled
+@compiled_making_arrays
 def outline_distances(points: Array, rows: Array) -> Array:
     """Distances in mm from (M, 2) points to the nearest of (N, 8) segments, shape (M,)."""
     out = np.empty(points.shape[0])
@@ -51,25 +50,25 @@ def outline_distances(points: Array, rows: Array) -> Array:
 @inner
 def winding_angle(x: float, y: float, row: Array) -> float:
     """Angle in radians that one segment, run along its direction, turns around a point not on it."""
-    dx, dy = x - row[1], y - row[2]
-    if row[0] == 0.0:
-        ax, ay = -row[5] * row[3] - dx, -row[5] * row[4] - dy
-        bx, by = row[5] * row[3] - dx, row[5] * row[4] - dy
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        ax, ay = -row[HALF_EXTENT] * row[AXIS_X] - dx, -row[HALF_EXTENT] * row[AXIS_Y] - dy
+        bx, by = row[HALF_EXTENT] * row[AXIS_X] - dx, row[HALF_EXTENT] * row[AXIS_Y] - dy
         return atan2(ax * by - ay * bx, ax * bx + ay * by)
-    mid = atan2(row[4], row[3])
-    ax, ay = row[6] * cos(mid - row[5]) - dx, row[6] * sin(mid - row[5]) - dy
-    bx, by = row[6] * cos(mid + row[5]) - dx, row[6] * sin(mid + row[5]) - dy
+    mid = atan2(row[AXIS_Y], row[AXIS_X])
+    ax, ay = row[RADIUS] * cos(mid - row[HALF_EXTENT]) - dx, row[RADIUS] * sin(mid - row[HALF_EXTENT]) - dy
+    bx, by = row[RADIUS] * cos(mid + row[HALF_EXTENT]) - dx, row[RADIUS] * sin(mid + row[HALF_EXTENT]) - dy
     turned = atan2(ax * by - ay * bx, ax * bx + ay * by)
     # Seen from inside its circle a counter-clockwise arc turns forward, by up to a whole turn; from outside it turns as
     # its chord does.
-    if hypot(dx, dy) < row[6]:
-        if row[5] >= pi:
+    if hypot(dx, dy) < row[RADIUS]:
+        if row[HALF_EXTENT] >= pi:
             turned = 2.0 * pi
         elif turned < 0.0:
             turned += 2.0 * pi
-    elif row[5] >= pi:
+    elif row[HALF_EXTENT] >= pi:
         turned = 0.0
-    return row[7] * turned
+    return row[SIGN] * turned
 
 
 @compiled

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.interval import (
     Interval,
     iadd,
@@ -44,8 +45,10 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
+from workhold.kernels.base.shallow import is_shallow
 from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
 from workhold.kernels.chord.evaluation import curvature
+from workhold.kernels.chord.shallow import shallow_turn_size
 from workhold.kernels.curves.columns import BRANCH, COINCIDENCE, LENGTH
 
 Array = NDArray[np.float64]
@@ -60,21 +63,21 @@ ANYTHING = (-inf, inf)
 @inner
 def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
     """Enclosure of ``line_to_arc``."""
-    nx, ny = a[4], -a[3]
-    moved_x, moved_y = ishift(a[1] - b[1], wx), ishift(a[2] - b[2], wy)
+    nx, ny = a[AXIS_Y], -a[AXIS_X]
+    moved_x, moved_y = ishift(a[X] - b[X], wx), ishift(a[Y] - b[Y], wy)
     across = iadd(iscale(nx, moved_x), iscale(ny, moved_y))
-    inside = imul(isub((b[6], b[6]), across), ishift(b[6], across))
+    inside = imul(isub((b[RADIUS], b[RADIUS]), across), ishift(b[RADIUS], across))
     half = iscale(branch, isqrt(inside))
-    rx = iadd(iscale(nx, across), iscale(a[3], half))
-    ry = iadd(iscale(ny, across), iscale(a[4], half))
-    ux, uy = isub(ishift(b[1], rx), wx), isub(ishift(b[2], ry), wy)
-    return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[6], rx), iscale(1.0 / b[6], ry))
+    rx = iadd(iscale(nx, across), iscale(a[AXIS_X], half))
+    ry = iadd(iscale(ny, across), iscale(a[AXIS_Y], half))
+    ux, uy = isub(ishift(b[X], rx), wx), isub(ishift(b[Y], ry), wy)
+    return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[RADIUS], rx), iscale(1.0 / b[RADIUS], ry))
 
 
 @inner
 def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool) -> ChordBox:
     """Enclosure of ``arc_to_arc``."""
-    cx, cy = b[1] - a[1], b[2] - a[2]
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
     gap = isqrt(iadd(isquare(gx), isquare(gy)))
     if one_chord_apart and cx * wx[0] + cy * wy[0] > 0.0 and cx * wx[1] + cy * wy[1] > 0.0:
@@ -86,37 +89,38 @@ def arc_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float
         along = iscale(0.5, gap)
     else:
         dx, dy = idivide(gx, gap), idivide(gy, gap)
-        difference = (a[6] - b[6]) * (a[6] + b[6])
+        difference = (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS])
         along = iscale(0.5, iadd(gap, idivide((difference, difference), gap)))
-    inside = imul(isub((a[6], a[6]), along), ishift(a[6], along))
+    inside = imul(isub((a[RADIUS], a[RADIUS]), along), ishift(a[RADIUS], along))
     half = iscale(branch, isqrt(inside))
     rx, ry = isub(imul(along, dx), imul(half, dy)), iadd(imul(along, dy), imul(half, dx))
-    qx, qy = iscale(1.0 / b[6], isub(rx, gx)), iscale(1.0 / b[6], isub(ry, gy))
-    return (ishift(a[1], rx), ishift(a[2], ry), iscale(1.0 / a[6], rx), iscale(1.0 / a[6], ry), qx, qy)
+    one, other = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
+    qx, qy = iscale(other, isub(rx, gx)), iscale(other, isub(ry, gy))
+    return (ishift(a[X], rx), ishift(a[Y], ry), iscale(one, rx), iscale(one, ry), qx, qy)
 
 
 @inner
 def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
     """Enclosure of the chord between two lines."""
-    nx, ny = b[4], -b[3]
-    reach = iadd(iscale(nx, isub((b[1] - a[1], b[1] - a[1]), wx)), iscale(ny, isub((b[2] - a[2], b[2] - a[2]), wy)))
-    s = iscale(1.0 / (nx * a[3] + ny * a[4]), reach)
-    ux, uy = ishift(a[1], iscale(a[3], s)), ishift(a[2], iscale(a[4], s))
-    return (ux, uy, (a[4], a[4]), (-a[3], -a[3]), (nx, nx), (ny, ny))
+    nx, ny = b[AXIS_Y], -b[AXIS_X]
+    reach = iadd(iscale(nx, isub((b[X] - a[X], b[X] - a[X]), wx)), iscale(ny, isub((b[Y] - a[Y], b[Y] - a[Y]), wy)))
+    s = iscale(1.0 / (nx * a[AXIS_X] + ny * a[AXIS_Y]), reach)
+    ux, uy = ishift(a[X], iscale(a[AXIS_X], s)), ishift(a[Y], iscale(a[AXIS_Y], s))
+    return (ux, uy, (a[AXIS_Y], a[AXIS_Y]), (-a[AXIS_X], -a[AXIS_X]), (nx, nx), (ny, ny))
 
 
 @inner
 def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
     """Enclosure of ``chord_along`` for all w in a box."""
     branch = curve[BRANCH]
-    if a[0] == 0.0:
-        if b[0] == 0.0:
+    if a[IS_ARC] == 0.0:
+        if b[IS_ARC] == 0.0:
             return line_to_line_box(a, b, wx, wy)
         return line_to_arc_box(a, b, wx, wy, branch)
-    if b[0] == 0.0:
+    if b[IS_ARC] == 0.0:
         vx, vy, rbx, rby, rax, ray = line_to_arc_box(b, a, ineg(wx), ineg(wy), branch)
         return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
-    if a[6] <= b[6]:
+    if a[RADIUS] <= b[RADIUS]:
         return arc_to_arc_box(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
     # Seen from the smaller circle, the contact on the larger one is known better.
     vx, vy, rbx, rby, rax, ray = arc_to_arc_box(b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS)
@@ -139,43 +143,47 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
     X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
     g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
     """
+    if is_shallow(a) or is_shallow(b):
+        return shallow_turn_size(a, b, d, low, high)
     # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of their rounding.
-    cx, cy = outward(b[1] - a[1], b[1] - a[1]), outward(b[2] - a[2], b[2] - a[2])
-    if a[0] == 0.0 and b[0] == 0.0:
-        turn = icross((a[3], a[3]), (a[4], a[4]), (b[3], b[3]), (b[4], b[4]))
+    cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
+        turn = icross((a[AXIS_X], a[AXIS_X]), (a[AXIS_Y], a[AXIS_Y]), (b[AXIS_X], b[AXIS_X]), (b[AXIS_Y], b[AXIS_Y]))
         return isqrt(isquare(turn))
-    if a[0] == 0.0 or b[0] == 0.0:
-        line, arc = (a, b) if a[0] == 0.0 else (b, a)
+    if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0:
+        line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
         # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same direction.
-        fixed = isub(iscale(line[4], cx), iscale(line[3], cy))
-        normal = atan2(-line[3], line[4])
+        fixed = isub(iscale(line[AXIS_Y], cx), iscale(line[AXIS_X], cy))
+        normal = atan2(-line[AXIS_X], line[AXIS_Y])
         across = isub(fixed, iscale(d, icos((low - normal, high - normal))))
-        inside = imul(isub((arc[6], arc[6]), across), ishift(arc[6], across))
-        return iscale(1.0 / arc[6], isqrt(inside))
-    apart, middle = isqrt(iadd(isquare(cx), isquare(cy))), atan2(b[2] - a[2], b[1] - a[1])
+        inside = imul(isub((arc[RADIUS], arc[RADIUS]), across), ishift(arc[RADIUS], across))
+        return iscale(1.0 / arc[RADIUS], isqrt(inside))
+    apart, middle = isqrt(iadd(isquare(cx), isquare(cy))), atan2(b[Y] - a[Y], b[X] - a[X])
     half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
     square = iadd(isquare(ishift(-d, apart)), iscale(4.0 * d, imul(apart, isquare(half))))
-    less, more = outward(a[6] - b[6], a[6] - b[6]), outward(a[6] + b[6], a[6] + b[6])
+    difference, total = a[RADIUS] - b[RADIUS], a[RADIUS] + b[RADIUS]
+    less, more = outward(difference, difference), outward(total, total)
     inside = imul(isub(square, isquare(less)), isub(isquare(more), square))
-    return iscale(0.5 / (a[6] * b[6]), isqrt(inside))
+    return iscale(0.5 / (a[RADIUS] * b[RADIUS]), isqrt(inside))
 
 
 @inner
 def arcs_motion(a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float) -> CenterMotion:
     """``center_motion`` between arcs of which each contact direction is nearly the other."""
     _, _, rx, ry, _, _ = chord
-    cx, cy = b[1] - a[1], b[2] - a[2]
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
-    rho, inverse = a[6] / b[6], 1.0 / b[6]
+    rho, inverse, own = a[RADIUS] / b[RADIUS], 1.0 / b[RADIUS], 1.0 / a[RADIUS]
     swing = icross(rx, ry, gx, gy)
     turn = one_sided(iscale(-inverse, swing), turn_sign)
     cross_a = icross(wx, wy, rx, ry)
     across = icross(wx, wy, (cx, cx), (cy, cy))
     rest = isub(cross_a, swing)
-    unequal = -(a[6] - b[6]) * (a[6] + b[6]) * inverse * inverse
+    unequal = -(a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) * inverse * inverse
     product = imul(cross_a, rest)
     last = iadd(
-        iscale(rho / a[6], imul(cross_a, across)), iscale(inverse, imul(across, isub(rest, iscale(1.0 / a[6], across))))
+        iscale(rho / a[RADIUS], imul(cross_a, across)),
+        iscale(inverse, imul(across, isub(rest, iscale(own, across)))),
     )
     hx, hy = isub(iscale(rho, rx), iscale(inverse, gx)), isub(iscale(rho, ry), iscale(inverse, gy))
     # R_b X^3 P' is along * r_a + product * rho g / R_b + last * h.
@@ -211,9 +219,9 @@ def center_motion(a: Array, b: Array, curve: Array, low: float, high: float, tur
     d = curve[LENGTH]
     wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
     box = chord_box(a, b, curve, wx, wy)
-    if a[0] != 0.0 and b[0] != 0.0:
-        gap = hypot(b[1] - a[1] - (wx[0] + wx[1]) / 2.0, b[2] - a[2] - (wy[0] + wy[1]) / 2.0)
-        if gap < NEAR * min(a[6], b[6]):
+    if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
+        gap = hypot(b[X] - a[X] - (wx[0] + wx[1]) / 2.0, b[Y] - a[Y] - (wy[0] + wy[1]) / 2.0)
+        if gap < NEAR * min(a[RADIUS], b[RADIUS]):
             return arcs_motion(a, b, wx, wy, box, turn_sign)
     _, _, rax, ray, rbx, rby = box
     turn = turn_size(a, b, d, low, high)

@@ -26,7 +26,9 @@ from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, SAME_CENTER
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.interval import (
+    TURN,
     Interval,
     iadd,
     icos,
@@ -40,6 +42,7 @@ from workhold.kernels.base.interval import (
     isquare,
     isub,
 )
+from workhold.kernels.base.shallow import is_shallow
 from workhold.kernels.curves.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
 Array = NDArray[np.float64]
@@ -50,16 +53,20 @@ MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 SHARED = 1e-10
 # Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing shape.
 NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
-TURN = 2.0 * pi
 
 
 @inner
 def beyond_line(line: Array, arc: Array, d: float) -> float:
-    """+1 or -1 when a line and an arc coincide along or against the line's normal, 0 when they do not."""
-    apart = line[4] * (arc[1] - line[1]) - line[3] * (arc[2] - line[2])
-    if abs(d - apart - arc[6]) <= EXACT:
+    """+1 or -1 when a line and an arc coincide along or against the line's normal, 0 when they do not.
+
+    The formulas for shallow arcs divide nothing by zero there.
+    """
+    if is_shallow(arc):
+        return 0.0
+    apart = line[AXIS_Y] * (arc[X] - line[X]) - line[AXIS_X] * (arc[Y] - line[Y])
+    if abs(d - apart - arc[RADIUS]) <= EXACT:
         return 1.0
-    if abs(d + apart - arc[6]) <= EXACT:
+    if abs(d + apart - arc[RADIUS]) <= EXACT:
         return -1.0
     return 0.0
 
@@ -67,30 +74,30 @@ def beyond_line(line: Array, arc: Array, d: float) -> float:
 @inner
 def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
     """Whether two features are arcs of equal radius with centres one chord length apart."""
-    if a[0] == 0.0 or b[0] == 0.0 or abs(a[6] - b[6]) > EXACT:
+    if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0 or abs(a[RADIUS] - b[RADIUS]) > EXACT:
         return False
-    return abs(hypot(b[1] - a[1], b[2] - a[2]) - d) <= EXACT
+    return abs(hypot(b[X] - a[X], b[Y] - a[Y]) - d) <= EXACT
 
 
 @compiled
 def are_concentric(a: Array, b: Array) -> bool:
     """Whether two features are arcs of one centre."""
-    return a[0] != 0.0 and b[0] != 0.0 and hypot(a[1] - b[1], a[2] - b[2]) <= SAME_CENTER
+    return a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0 and hypot(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER
 
 
 @inner
 def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
     """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see ``beyond_line``)."""
     if are_one_chord_apart(a, b, d):
-        return (ARCS, atan2(b[2] - a[2], b[1] - a[1]), 0.0)
-    if a[0] == 0.0 and b[0] != 0.0:
+        return (ARCS, atan2(b[Y] - a[Y], b[X] - a[X]), 0.0)
+    if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
         side = beyond_line(a, b, d)
         if side != 0.0:
-            return (LINE_FIRST, atan2(-side * a[3], side * a[4]), side)
-    elif a[0] != 0.0 and b[0] == 0.0:
+            return (LINE_FIRST, atan2(-side * a[AXIS_X], side * a[AXIS_Y]), side)
+    elif a[IS_ARC] != 0.0 and b[IS_ARC] == 0.0:
         side = beyond_line(b, a, d)
         if side != 0.0:
-            return (ARC_FIRST, atan2(side * b[3], -side * b[4]), side)
+            return (ARC_FIRST, atan2(side * b[AXIS_X], -side * b[AXIS_Y]), side)
     return (NONE, 0.0, 0.0)
 
 
@@ -134,7 +141,7 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     alpha = psi + curve[SHIFT]
     gamma = from_coincidence(alpha, middle)
-    radius = a[6] if a[0] != 0.0 else b[6]
+    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
     if not is_regular(kind, radius, d, gamma):
         return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
@@ -147,12 +154,12 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
         y = way * sqrt(radius * radius - sine * sine)
         # y y' = -d^2 sin(gamma) / 4
         dy = -d * d * sin(gamma) / (4.0 * y)
-        rx, ry = (b[1] - a[1] - wx) / 2.0 + y * mx, (b[2] - a[2] - wy) / 2.0 + y * my
+        rx, ry = (b[X] - a[X] - wx) / 2.0 + y * mx, (b[Y] - a[Y] - wy) / 2.0 + y * my
         vx = wy / 2.0 + dy * mx - y * my / 2.0
         vy = -wx / 2.0 + dy * my + y * mx / 2.0
-        return (True, (a[1] + rx, a[2] + ry, vx, vy, rx, ry))
+        return (True, (a[X] + rx, a[Y] + ry, vx, vy, rx, ry))
     line, arc = (a, b) if kind == LINE_FIRST else (b, a)
-    nx, ny, tx, ty = line[4], -line[3], line[3], line[4]
+    nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
     q, dq = d * (1.0 - cos(gamma)), d * sin(gamma)
     g = sqrt(2.0 * d * (2.0 * radius - q))
     across, dacross = side * (radius - q), -side * dq
@@ -161,14 +168,14 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     rx, ry = across * nx + along * tx, across * ny + along * ty
     vx, vy = dacross * nx + dalong * tx, dacross * ny + dalong * ty
     if kind == LINE_FIRST:
-        return (True, (arc[1] + rx - wx, arc[2] + ry - wy, vx + wy, vy - wx, rx, ry))
-    return (True, (arc[1] + rx, arc[2] + ry, vx, vy, rx, ry))
+        return (True, (arc[X] + rx - wx, arc[Y] + ry - wy, vx + wy, vy - wx, rx, ry))
+    return (True, (arc[X] + rx, arc[Y] + ry, vx, vy, rx, ry))
 
 
 @inner
 def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: float) -> MotionBox:
     """Enclosure of u - c_a, u' and u'' between two arcs."""
-    radius = a[6]
+    radius = a[RADIUS]
     half = iscale(0.5, gamma)
     direction = ishift(middle, half)
     mx, my = icos(direction), isin(direction)
@@ -178,7 +185,7 @@ def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: 
     y = iscale(way, isqrt(isub((radius * radius, radius * radius), isquare(sine))))
     dy = idivide(iscale(-0.25 * d * d, isin(gamma)), y)
     ddy = idivide(isub(iscale(-0.25 * d * d, icos(gamma)), isquare(dy)), y)
-    cx, cy = b[1] - a[1], b[2] - a[2]
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
     rx = iadd(iscale(0.5, isub((cx, cx), wx)), imul(y, mx))
     ry = iadd(iscale(0.5, isub((cy, cy), wy)), imul(y, my))
     vx = iadd(iscale(0.5, wy), isub(imul(dy, mx), iscale(0.5, imul(y, my))))
@@ -192,7 +199,7 @@ def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: 
 @inner
 def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval, way: float) -> MotionBox:
     """Enclosure of the contact on the arc from its centre, and its two derivatives, for a line and an arc."""
-    nx, ny, tx, ty = line[4], -line[3], line[3], line[4]
+    nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
     half = iscale(0.5, gamma)
     sine, cosine = isin(half), icos(half)
     q = iscale(2.0 * d, isquare(sine))
@@ -215,6 +222,16 @@ def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval,
 
 
 @inner
+def angle_box(low: float, high: float, middle: float) -> tuple[float, Interval]:
+    """Angle from the coincidence of the middle of [low, high], and an enclosure of the angles between.
+
+    Directions are below 16 radians, so three sums are off by half a unit in the last place of that each.
+    """
+    center, reach = from_coincidence((low + high) / 2.0, middle), (high - low) / 2.0 * (1.0 + 1e-15) + 3e-15
+    return (center, (center - reach, center + reach))
+
+
+@inner
 def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple[bool, MotionBox]:
     """Enclosures over alpha in [low, high] near a coincidence.
 
@@ -223,10 +240,8 @@ def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tup
     (whether the regular formulas apply, (u, u', u''))
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
-    center = from_coincidence((low + high) / 2.0, middle)
-    reach = (high - low) / 2.0 * (1.0 + 1e-15) + 1e-16
-    gamma = (center - reach, center + reach)
-    radius = a[6] if a[0] != 0.0 else b[6]
+    center, gamma = angle_box(low, high, middle)
+    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
     zero = (0.0, 0.0)
     nothing = (zero, zero, zero, zero, zero, zero)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
@@ -234,16 +249,16 @@ def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tup
     way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
     if kind == ARCS:
         r = arcs_box(a, b, d, middle, gamma, way)
-        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]))
+        return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
     if kind == ARC_FIRST:
         r = line_box(b, radius, d, side, gamma, way)
-        return (True, (ishift(a[1], r[0]), ishift(a[2], r[1]), r[2], r[3], r[4], r[5]))
+        return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
     r = line_box(a, radius, d, side, gamma, way)
     alpha = ishift(middle, gamma)
     wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
     u = (
-        isub(ishift(b[1], r[0]), wx),
-        isub(ishift(b[2], r[1]), wy),
+        isub(ishift(b[X], r[0]), wx),
+        isub(ishift(b[Y], r[1]), wy),
         iadd(r[2], wy),
         iadd(r[3], ineg(wx)),
         iadd(r[4], wx),

@@ -21,8 +21,12 @@ from numpy.typing import NDArray
 
 from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.chord.coincidences import CONCENTRIC, NONE, TURN, from_coincidence, is_regular
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.shallow import is_shallow
+from workhold.kernels.chord.coincidences import CONCENTRIC, NONE, from_coincidence, is_regular
 from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error
+from workhold.kernels.chord.shallow import shallow_half
 from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, LENGTH, MIDDLE, SHIFT
 
 Array = NDArray[np.float64]
@@ -56,14 +60,16 @@ def root_error(square: float, doubt: float) -> float:
 @inner
 def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float:
     """How far in mm a tail on an arc may be from a computed one when the chord, to another arc, is known to ``e``."""
-    gap = hypot(a[6] * state[2] - b[6] * state[4], a[6] * state[3] - b[6] * state[5])
+    gap = hypot(a[RADIUS] * state[2] - b[RADIUS] * state[4], a[RADIUS] * state[3] - b[RADIUS] * state[5])
     if gap <= 2.0 * e:
-        return 2.2 * a[6]
-    difference = abs(a[6] - b[6]) * (a[6] + b[6])
+        return 2.2 * a[RADIUS]
+    difference = abs(a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS])
     shift = e / 2.0 * (1.0 + difference / (gap * (gap - e)))
-    along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
-    square = (a[6] - along) * (a[6] + along)
-    return shift + eta + 1.01 * root_error(square, shift * (2.0 * a[6] + shift)) + 1.6 * a[6] * e / gap
+    along = (gap + (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) / gap) / 2.0
+    square = (a[RADIUS] - along) * (a[RADIUS] + along)
+    if is_shallow(a) or is_shallow(b):
+        square = shallow_half(a, b, state[2] * state[5] - state[3] * state[4], gap) ** 2
+    return shift + eta + 1.01 * root_error(square, shift * (2.0 * a[RADIUS] + shift)) + 1.6 * a[RADIUS] * e / gap
 
 
 @inner
@@ -72,8 +78,8 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     d, eta, kind = curve[LENGTH], curve[BACKWARD_ERROR], curve[COINCIDENCE]
     if kind == CONCENTRIC:
         # The chord turns about the centre as it is; nearly along a diameter its place is known less well than its length.
-        return a[6] * reach + arcs_radius(a, b, state, eta, eta)
-    radius = a[6] if a[0] != 0.0 else b[6]
+        return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
+    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
     gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
     if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
         return regular_error(curve) + 2.6 * (d + radius) * reach
@@ -82,14 +88,18 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
         # The computed chord is that of a part with exactly the lengths of the coincidence, others within reach are not.
         e += EXACT
         eta += regular_error(curve)
-    if a[0] == 0.0 and b[0] == 0.0:
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         return 1.1 * e / abs(state[2] * state[5] - state[3] * state[4])
-    if a[0] == 0.0:
-        half = b[6] * (a[3] * state[4] + a[4] * state[5])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * b[6] + e))
-    if b[0] == 0.0:
-        half = a[6] * (b[3] * state[2] + b[4] * state[3])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * a[6] + e))
+    if a[IS_ARC] == 0.0:
+        half = b[RADIUS] * (a[AXIS_X] * state[4] + a[AXIS_Y] * state[5])
+        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * b[RADIUS] + e))
+    if b[IS_ARC] == 0.0:
+        half = a[RADIUS] * (b[AXIS_X] * state[2] + b[AXIS_Y] * state[3])
+        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * a[RADIUS] + e))
+    if is_shallow(a) and a[RADIUS] > b[RADIUS]:
+        # Seen from the smaller circle, the contact on the larger one is known better.
+        seen = (0.0, 0.0, state[4], state[5], state[2], state[3], 0.0, 0.0, 0.0, 0.0)
+        return e + arcs_radius(b, a, seen, e, eta)
     return arcs_radius(a, b, state, e, eta)
 
 
@@ -111,11 +121,11 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
     if coincides or not isfinite(radius):
         radius = min(radius, disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.
-    if a[0] != 0.0:
-        return (state[0], state[1], min(radius, 2.2 * a[6]))
-    if radius <= 2.2 * a[5]:
+    if a[IS_ARC] != 0.0:
+        return (state[0], state[1], min(radius, 2.2 * a[RADIUS]))
+    if radius <= 2.2 * a[HALF_EXTENT]:
         return (state[0], state[1], radius)
-    return (a[1], a[2], 1.1 * a[5])
+    return (a[X], a[Y], 1.1 * a[HALF_EXTENT])
 
 
 @inner
@@ -124,7 +134,7 @@ def value_disc(a: Array, b: Array, curve: Array, psi: float, reach: float, mode:
     x, y, radius = tail_disc(a, b, curve, psi, reach)
     if mode == HEIGHT:
         return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
-    if a[0] == 0.0:
+    if a[IS_ARC] == 0.0:
         return (parameter_on(a, x, y), radius)
     # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either side.
-    return (parameter_on(a, x, y), 1.1 * radius / a[6] if radius <= 0.5 * a[6] else TURN)
+    return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)

@@ -29,13 +29,15 @@ Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, pi, sin, sqrt
+from math import cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, X, Y
+from workhold.kernels.base.shallow import angle_on, is_shallow, local_size
 from workhold.kernels.chord.coincidences import (
     ARCS,
     CONCENTRIC,
@@ -45,6 +47,7 @@ from workhold.kernels.chord.coincidences import (
     coincidence,
     motion,
 )
+from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 from workhold.kernels.curves.columns import (
     BACKWARD_ERROR,
     BRANCH,
@@ -74,17 +77,21 @@ ROUNDINGS = 32.0 * 1.2e-16
 @inner
 def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
     """Tail on line a, head on arc b: the head lies on the line moved by w, cut with the circle of b."""
-    nx, ny = a[4], -a[3]
-    across = nx * (a[1] + wx - b[1]) + ny * (a[2] + wy - b[2])
-    half = sqrt(max((b[6] - across) * (b[6] + across), 0.0)) * branch
-    rx, ry = across * nx + half * a[3], across * ny + half * a[4]
-    return (b[1] + rx - wx, b[2] + ry - wy, nx, ny, rx / b[6], ry / b[6])
+    if is_shallow(b):
+        return line_to_shallow(a, b, wx, wy, branch)
+    nx, ny = a[AXIS_Y], -a[AXIS_X]
+    across = nx * (a[X] + wx - b[X]) + ny * (a[Y] + wy - b[Y])
+    half = sqrt(max((b[RADIUS] - across) * (b[RADIUS] + across), 0.0)) * branch
+    rx, ry = across * nx + half * a[AXIS_X], across * ny + half * a[AXIS_Y]
+    return (b[X] + rx - wx, b[Y] + ry - wy, nx, ny, rx / b[RADIUS], ry / b[RADIUS])
 
 
 @inner
 def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
     """Tail on arc a, head on arc b: the tail lies on the circle of a and on that of b moved by -w."""
-    cx, cy = b[1] - a[1], b[2] - a[2]
+    if (is_shallow(a) or is_shallow(b)) and not one_chord_apart:
+        return shallow_to_arc(a, b, wx, wy, branch)
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = cx - wx, cy - wy
     gap = sqrt(gx * gx + gy * gy)
     if one_chord_apart and cx * wx + cy * wy > 0.0:
@@ -96,11 +103,11 @@ def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chor
         along = gap / 2.0
     else:
         dx, dy = gx / gap, gy / gap
-        along = (gap + (a[6] - b[6]) * (a[6] + b[6]) / gap) / 2.0
-    half = sqrt(max((a[6] - along) * (a[6] + along), 0.0)) * branch
+        along = (gap + (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) / gap) / 2.0
+    half = sqrt(max((a[RADIUS] - along) * (a[RADIUS] + along), 0.0)) * branch
     rx, ry = along * dx - half * dy, along * dy + half * dx
     qx, qy = rx - gx, ry - gy
-    return (a[1] + rx, a[2] + ry, rx / a[6], ry / a[6], qx / b[6], qy / b[6])
+    return (a[X] + rx, a[Y] + ry, rx / a[RADIUS], ry / a[RADIUS], qx / b[RADIUS], qy / b[RADIUS])
 
 
 @inner
@@ -118,13 +125,13 @@ def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_cho
     -------
     (ux, uy, r_ax, r_ay, r_bx, r_by)
     """
-    if a[0] == 0.0:
-        if b[0] != 0.0:
+    if a[IS_ARC] == 0.0:
+        if b[IS_ARC] != 0.0:
             return line_to_arc(a, b, wx, wy, branch)
-        nx, ny = b[4], -b[3]
-        s = (nx * (b[1] - a[1] - wx) + ny * (b[2] - a[2] - wy)) / (nx * a[3] + ny * a[4])
-        return (a[1] + s * a[3], a[2] + s * a[4], a[4], -a[3], nx, ny)
-    if b[0] == 0.0:
+        nx, ny = b[AXIS_Y], -b[AXIS_X]
+        s = (nx * (b[X] - a[X] - wx) + ny * (b[Y] - a[Y] - wy)) / (nx * a[AXIS_X] + ny * a[AXIS_Y])
+        return (a[X] + s * a[AXIS_X], a[Y] + s * a[AXIS_Y], a[AXIS_Y], -a[AXIS_X], nx, ny)
+    if b[IS_ARC] == 0.0:
         vx, vy, rbx, rby, rax, ray = line_to_arc(b, a, -wx, -wy, branch)
         return (vx - wx, vy - wy, rax, ray, rbx, rby)
     return arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
@@ -137,12 +144,19 @@ def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
 
 
 @inner
+def direction_at(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Direction of a contact at a point on a feature: the normal of a line, the unit vector from an arc's centre."""
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y], -row[AXIS_X])
+    return ((x - row[X]) / row[RADIUS], (y - row[Y]) / row[RADIUS])
+
+
+@inner
 def parameter_on(row: Array, x: float, y: float) -> float:
     """Parameter of a point on a feature: mm on a line, radians in (-pi, pi] on an arc."""
-    dx, dy = x - row[1], y - row[2]
-    if row[0] == 0.0:
-        return dx * row[3] + dy * row[4]
-    return atan2(row[3] * dy - row[4] * dx, row[3] * dx + row[4] * dy)
+    if row[IS_ARC] == 0.0:
+        return (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
+    return angle_on(row, x, y)
 
 
 @inner
@@ -151,37 +165,52 @@ def distance_to_end(row: Array, s: float) -> float:
 
     A whole circle has no end: half its circumference is told, the farthest that a contact could be from any point.
     """
-    if row[0] == 0.0:
-        return row[5] - abs(s)
-    return pi * row[6] if row[5] >= pi else (row[5] - abs(s)) * row[6]
+    if row[IS_ARC] == 0.0:
+        return row[HALF_EXTENT] - abs(s)
+    return pi * row[RADIUS] if row[HALF_EXTENT] >= pi else (row[HALF_EXTENT] - abs(s)) * row[RADIUS]
+
+
+@inner
+def end_slack(row: Array, x: float, y: float) -> float:
+    """How far in mm a contact on a feature is from breaking the rule of ends; infinite on a whole circle, which has none.
+
+    ``row`` has ten entries.
+    """
+    if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
+        return inf
+    s = parameter_on(row, x, y)
+    return distance_to_end(row, s) + (row[HIGH_SLACK] if s > 0.0 else row[LOW_SLACK])
 
 
 @inner
 def backward_error(a: Array, b: Array, d: float) -> float:
     """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
-    size = abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d
-    if a[0] == 0.0 and b[0] == 0.0:
+    if (is_shallow(a) or is_shallow(b)) and not are_one_chord_apart(a, b, d):
+        apart = hypot(a[X] - b[X], a[Y] - b[Y]) if are_concentric(a, b) else 0.0
+        return ROUNDINGS * (local_size(a) + local_size(b) + d) + apart
+    size = abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         # Nearly parallel lines are touched far from their middles.
-        size = min(size / abs(a[3] * b[4] - a[4] * b[3]), size + a[5] + b[5])
+        size = min(size / abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]), size + a[HALF_EXTENT] + b[HALF_EXTENT])
     spread = 1.0
-    if a[0] != 0.0 and b[0] != 0.0:
+    if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.
-        spread = max(a[6] / b[6], b[6] / a[6])
+        spread = max(a[RADIUS] / b[RADIUS], b[RADIUS] / a[RADIUS])
         if are_concentric(a, b):
-            return ROUNDINGS * size * spread + hypot(a[1] - b[1], a[2] - b[2])
+            return ROUNDINGS * size * spread + hypot(a[X] - b[X], a[Y] - b[Y])
     return ROUNDINGS * size * spread
 
 
 @inner
 def curvature(row: Array) -> float:
     """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its feature."""
-    return 0.0 if row[0] == 0.0 else 1.0 / row[6]
+    return 0.0 if row[IS_ARC] == 0.0 else 1.0 / row[RADIUS]
 
 
 @inner
 def regular_error(curve: Array) -> float:
     """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
-    return 8.0 * curve[BACKWARD_ERROR] + 4.0 * EXACT
+    return 2.0 * curve[BACKWARD_ERROR] + 4.0 * EXACT
 
 
 @inner
@@ -230,14 +259,14 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
         regular, u = motion(a, b, curve, psi)
         if regular:
             error = regular_error(curve)
-            rax, ray = (a[4], -a[3]) if a[0] == 0.0 else ((u[0] - a[1]) / a[6], (u[1] - a[2]) / a[6])
-            rbx, rby = (b[4], -b[3]) if b[0] == 0.0 else ((u[0] + wx - b[1]) / b[6], (u[1] + wy - b[2]) / b[6])
+            rax, ray = direction_at(a, u[0], u[1])
+            rbx, rby = direction_at(b, u[0] + wx, u[1] + wy)
             slope_error = error * (1.0 + d * kappa)
             return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
     c = chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
     turn = c[2] * c[5] - c[3] * c[4]
     if kind == CONCENTRIC:
-        p = -a[6]
+        p = -a[RADIUS]
     elif turn != 0.0:
         p = (wx * c[5] - wy * c[4]) / turn
     else:
@@ -259,18 +288,18 @@ def valued(
     ux, uy, px, py = state[0], state[1], state[6], state[7]
     if mode == HEIGHT:
         doubt = state[9]
-        if a[0] + b[0] == 1.0:
+        if a[IS_ARC] + b[IS_ARC] == 1.0:
             # P lies on the line of action through the straight feature, which turns with nothing: of its error along that
             # line only the part along x counts.
-            nx, ny = (state[2], state[3]) if a[0] == 0.0 else (state[4], state[5])
+            nx, ny = (state[2], state[3]) if a[IS_ARC] == 0.0 else (state[4], state[5])
             share = abs(cosine * nx + sine * ny)
             doubt = min(doubt, state[8] + share * (doubt + state[8]))
         return (cosine * uy - sine * ux, -(cosine * px + sine * py), state[8], doubt)
     s = parameter_on(a, ux, uy)
     p = (px - ux) * state[2] + (py - uy) * state[3]
-    if a[0] == 0.0:
+    if a[IS_ARC] == 0.0:
         return (s, -p, state[8], state[9])
-    return (s, -p / a[6], state[8] / a[6] + 1e-15, state[9] / a[6])
+    return (s, -p / a[RADIUS], state[8] / a[RADIUS] + 1e-15, state[9] / a[RADIUS])
 
 
 @inner

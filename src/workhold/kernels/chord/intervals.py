@@ -17,13 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, PARALLEL
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.shallow import is_shallow, local_size, middle_of, point_at
 from workhold.kernels.chord.coincidences import are_concentric, are_one_chord_apart, beyond_line
 from workhold.kernels.chord.evaluation import chord, parameter_on
+from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
 
 Array = NDArray[np.float64]
 
-TURN = 2.0 * pi
 MOST_EVENTS = 16
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both sides), the chord
 # is a tangency, or ranges are cut for another reason.
@@ -64,33 +67,32 @@ def add_pair(events: Array, count: int, middle: float, cosine: float, kind: floa
 
 
 @inner
-def point_on(row: Array, parameter: float) -> tuple[float, float]:
-    """Point of a feature at a parameter."""
-    if row[0] == 0.0:
-        return (row[1] + parameter * row[3], row[2] + parameter * row[4])
-    c, s = cos(parameter), sin(parameter)
-    return (row[1] + row[6] * (c * row[3] - s * row[4]), row[2] + row[6] * (s * row[3] + c * row[4]))
-
-
-@inner
 def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: float, turned: float) -> int:
     """Directions at which the chord runs from an end of ``moving`` to the carrier of ``fixed``.
 
     ``turned`` is 0 when ``moving`` carries the tail, pi when it carries the head. A tail on a whole circle reaches its
     seam, where its position jumps by a turn; ranges are cut there.
     """
-    ends = 1 if moving[0] != 0.0 and moving[5] >= pi else 2
+    ends = 1 if moving[IS_ARC] != 0.0 and moving[HALF_EXTENT] >= pi else 2
     kind = CUT if ends == 1 and turned == 0.0 else END
     for k in range(ends):
-        x, y = point_on(moving, moving[5] if k == 0 else -moving[5])
-        dx, dy = fixed[1] - x, fixed[2] - y
-        if fixed[0] == 0.0:
-            nx, ny = fixed[4], -fixed[3]
+        x, y = point_at(moving, moving[HALF_EXTENT] if k == 0 else -moving[HALF_EXTENT])
+        dx, dy = fixed[X] - x, fixed[Y] - y
+        if fixed[IS_ARC] == 0.0:
+            nx, ny = fixed[AXIS_Y], -fixed[AXIS_X]
             count = add_pair(events, count, atan2(ny, nx) + turned, (nx * dx + ny * dy) / d, kind, 0.0)
+        elif is_shallow(fixed):
+            # With y from the arc's middle to the end: w . (t + k y) = -k (|y|^2 + d^2) / 2 - y . t.
+            mx, my = middle_of(fixed)
+            dx, dy, k = x - mx, y - my, 1.0 / fixed[RADIUS]
+            rx, ry = fixed[AXIS_X] + k * dx, fixed[AXIS_Y] + k * dy
+            size = hypot(rx, ry)
+            cosine = -(k * (dx * dx + dy * dy + d * d) / 2.0 + dx * fixed[AXIS_X] + dy * fixed[AXIS_Y]) / (d * size)
+            count = add_pair(events, count, atan2(ry, rx) + turned, cosine, kind, 0.0)
         else:
             apart = hypot(dx, dy)
             if apart > 0.0:
-                cosine = (d * d + (apart - fixed[6]) * (apart + fixed[6])) / (2.0 * d * apart)
+                cosine = (d * d + (apart - fixed[RADIUS]) * (apart + fixed[RADIUS])) / (2.0 * d * apart)
                 count = add_pair(events, count, atan2(dy, dx) + turned, cosine, kind, 0.0)
     return count
 
@@ -98,24 +100,29 @@ def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: fl
 @inner
 def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: float, turned: float) -> int:
     """Directions at which a chord between a line and an arc has parallel normals."""
-    nx, ny = line[4], -line[3]
-    apart = nx * (arc[1] - line[1]) + ny * (arc[2] - line[2])
+    nx, ny = line[AXIS_Y], -line[AXIS_X]
     middle = atan2(ny, nx) + turned
-    rounding = ROUNDINGS * (abs(arc[1]) + abs(arc[2]) + abs(line[1]) + abs(line[2]) + arc[6] + d) / d
+    if is_shallow(arc):
+        mx, my = middle_of(arc)
+        apart = nx * (mx - line[X]) + ny * (my - line[Y]) + tangent_off(line, arc)
+        rounding = ROUNDINGS * (local_size(arc) + abs(line[X]) + abs(line[Y]) + abs(apart) + d) / d
+        return add_pair(events, count, middle, apart / d, TANGENCY, rounding)
+    apart = nx * (arc[X] - line[X]) + ny * (arc[Y] - line[Y])
+    rounding = ROUNDINGS * (abs(arc[X]) + abs(arc[Y]) + abs(line[X]) + abs(line[Y]) + arc[RADIUS] + d) / d
     if beyond_line(line, arc, d) != 0.0:
         straight = middle if beyond_line(line, arc, d) > 0.0 else middle + pi
         count = add_event(events, count, straight - SLIVER, CUT, 0.0)
         count = add_event(events, count, straight + SLIVER, CUT, 0.0)
-        other = (apart - arc[6]) / d if beyond_line(line, arc, d) > 0.0 else (apart + arc[6]) / d
+        other = (apart - arc[RADIUS]) / d if beyond_line(line, arc, d) > 0.0 else (apart + arc[RADIUS]) / d
         return add_pair(events, count, middle, other, TANGENCY, rounding)
-    count = add_pair(events, count, middle, (apart + arc[6]) / d, TANGENCY, rounding)
-    return add_pair(events, count, middle, (apart - arc[6]) / d, TANGENCY, rounding)
+    count = add_pair(events, count, middle, (apart + arc[RADIUS]) / d, TANGENCY, rounding)
+    return add_pair(events, count, middle, (apart - arc[RADIUS]) / d, TANGENCY, rounding)
 
 
 @inner
 def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) -> int:
     """Directions at which a chord between two arcs has parallel normals."""
-    dx, dy = b[1] - a[1], b[2] - a[2]
+    dx, dy = b[X] - a[X], b[Y] - a[Y]
     apart = hypot(dx, dy)
     if apart == 0.0:
         return count
@@ -123,9 +130,14 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
     if are_one_chord_apart(a, b, d):
         count = add_event(events, count, middle - SLIVER, CUT, 0.0)
         count = add_event(events, count, middle + SLIVER, CUT, 0.0)
+    elif is_shallow(a) or is_shallow(b):
+        near, far, swing, beta = arcs_cosine(a, b, d)
+        rounding = (near[1] - near[0] + far[1] - far[0]) / (2.0 * swing) + ROUNDINGS
+        count = add_pair(events, count, beta, (near[0] + near[1]) / (2.0 * swing), TANGENCY, rounding)
+        return add_pair(events, count, beta, -(far[0] + far[1]) / (2.0 * swing), TANGENCY, rounding)
     else:
-        count = add_gap(events, count, middle, apart, d, a, b, a[6] - b[6])
-    return add_gap(events, count, middle, apart, d, a, b, a[6] + b[6])
+        count = add_gap(events, count, middle, apart, d, a, b, a[RADIUS] - b[RADIUS])
+    return add_gap(events, count, middle, apart, d, a, b, a[RADIUS] + b[RADIUS])
 
 
 @inner
@@ -135,7 +147,7 @@ def add_gap(events: Array, count: int, middle: float, apart: float, d: float, a:
     That distance is g with g^2 = (apart - d)^2 + 4 apart d sin(gamma / 2)^2, gamma the angle between chord and centres.
     """
     difference = apart - d
-    rounding = ROUNDINGS * (abs(a[1]) + abs(a[2]) + abs(b[1]) + abs(b[2]) + a[6] + b[6] + d)
+    rounding = ROUNDINGS * (abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d)
     square = (gap - difference) * (gap + difference) / (4.0 * apart * d)
     error = 2.0 * rounding * (abs(gap) + abs(difference) + rounding) / (4.0 * apart * d) + ROUNDINGS * abs(square)
     if not 0.0 <= square <= 1.0:
@@ -153,11 +165,11 @@ def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
     """All directions at which a chord may begin or cease to exist, sorted; return their number."""
     count = add_end_events(events, int(np.int64(0)), a, b, d, 0.0)
     count = add_end_events(events, count, b, a, d, pi)
-    if a[0] == 0.0 and b[0] != 0.0:
+    if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
         count = add_line_tangencies(events, count, a, b, d, 0.0)
-    elif a[0] != 0.0 and b[0] == 0.0:
+    elif a[IS_ARC] != 0.0 and b[IS_ARC] == 0.0:
         count = add_line_tangencies(events, count, b, a, d, pi)
-    elif a[0] != 0.0:
+    elif a[IS_ARC] != 0.0:
         count = add_arc_tangencies(events, count, a, b, d)
     for i in range(1, count):
         alpha, kind, error = events[i, 0], events[i, 1], events[i, 2]
@@ -173,13 +185,15 @@ def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
 def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
     """Whether a chord of a direction fits between the lines and circles that carry two features."""
     wx, wy = d * cos(alpha), d * sin(alpha)
-    if a[0] == 0.0 and b[0] != 0.0:
-        return abs(a[4] * (a[1] + wx - b[1]) - a[3] * (a[2] + wy - b[2])) < b[6]
-    if a[0] != 0.0 and b[0] == 0.0:
-        return abs(b[4] * (b[1] - wx - a[1]) - b[3] * (b[2] - wy - a[2])) < a[6]
-    if a[0] != 0.0:
-        gap = hypot(b[1] - a[1] - wx, b[2] - a[2] - wy)
-        return abs(a[6] - b[6]) < gap < a[6] + b[6]
+    if is_shallow(a) or is_shallow(b):
+        return is_turned(a, b, wx, wy)
+    if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
+        return abs(a[AXIS_Y] * (a[X] + wx - b[X]) - a[AXIS_X] * (a[Y] + wy - b[Y])) < b[RADIUS]
+    if a[IS_ARC] != 0.0 and b[IS_ARC] == 0.0:
+        return abs(b[AXIS_Y] * (b[X] - wx - a[X]) - b[AXIS_X] * (b[Y] - wy - a[Y])) < a[RADIUS]
+    if a[IS_ARC] != 0.0:
+        gap = hypot(b[X] - a[X] - wx, b[Y] - a[Y] - wy)
+        return abs(a[RADIUS] - b[RADIUS]) < gap < a[RADIUS] + b[RADIUS]
     return True
 
 
@@ -187,21 +201,24 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
 def only_touch(a: Array, b: Array, d: float) -> bool:
     """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or at none.
 
-    Its contacts then share one line of action, and nothing closes.
+    Its contacts then share one line of action, and nothing closes. It is not asked of shallow arcs, whose ranges are short
+    in any case.
     """
-    if a[0] != 0.0 and b[0] != 0.0:
-        apart = hypot(b[1] - a[1], b[2] - a[2])
-        return abs(apart - d) >= a[6] + b[6] - EXACT or apart + d <= abs(a[6] - b[6]) + EXACT
-    line, arc = (a, b) if a[0] == 0.0 else (b, a)
-    apart = line[4] * (arc[1] - line[1]) - line[3] * (arc[2] - line[2])
-    return arc[0] != 0.0 and abs(apart) - d >= arc[6] - EXACT
+    if is_shallow(a) or is_shallow(b):
+        return False
+    if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
+        apart = hypot(b[X] - a[X], b[Y] - a[Y])
+        return abs(apart - d) >= a[RADIUS] + b[RADIUS] - EXACT or apart + d <= abs(a[RADIUS] - b[RADIUS]) + EXACT
+    line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
+    apart = line[AXIS_Y] * (arc[X] - line[X]) - line[AXIS_X] * (arc[Y] - line[Y])
+    return arc[IS_ARC] != 0.0 and abs(apart) - d >= arc[RADIUS] - EXACT
 
 
 @inner
 def reaches(row: Array, x: float, y: float) -> bool:
     """Whether a point of a feature's carrier is on the feature, or past its end by no more than ``SPARE``."""
-    spare = SPARE if row[0] == 0.0 else SPARE / row[6]
-    return abs(parameter_on(row, x, y)) <= row[5] + spare
+    spare = SPARE if row[IS_ARC] == 0.0 else SPARE / row[RADIUS]
+    return abs(parameter_on(row, x, y)) <= row[HALF_EXTENT] + spare
 
 
 @inner
@@ -234,7 +251,7 @@ def is_alive(
     return high > low and abs(c[2] * c[5] - c[3] * c[4]) < STEADY
 
 
-@inner
+@inner_making_arrays
 def chord_intervals(a: Array, b: Array, d: float) -> Array:
     """All ranges of direction of a chord of length d from feature a to feature b.
 
@@ -251,15 +268,15 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
         none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line through the centre: their
         contacts share one line of action.
     """
-    if are_concentric(a, b) and min(abs(d - a[6] - b[6]), abs(d - abs(a[6] - b[6]))) <= EXACT:
+    if are_concentric(a, b) and min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT:
         return np.empty((0, 5))
-    if a[0] == 0.0 and b[0] == 0.0 and abs(a[3] * b[4] - a[4] * b[3]) <= PARALLEL:
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0 and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL:
         return np.empty((0, 5))
     if only_touch(a, b, d):
         return np.empty((0, 5))
     events = np.empty((MOST_EVENTS, 3))
     count = collect_events(events, a, b, d)
-    branches = 1 if a[0] == 0.0 and b[0] == 0.0 else 2
+    branches = 1 if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0 else 2
     out = np.empty((2 * (count + 1), 5))
     found = int(np.int64(0))
     for k in range(branches):
@@ -274,7 +291,7 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
     return out[:found]
 
 
-@inner
+@inner_making_arrays
 def branch_intervals(
     events: Array, count: int, a: Array, b: Array, d: float, branch: float, out: Array, found: int
 ) -> int:

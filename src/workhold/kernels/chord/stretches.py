@@ -18,7 +18,8 @@ from math import hypot, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.center_speeds import center_motion
 from workhold.kernels.chord.evaluation import chord
@@ -69,7 +70,7 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
     return row[SPEED] <= max(4.0 * typical + 4.0 * curve[LENGTH], MOST_MOTION * curve[LENGTH] / (high - low))
 
 
-@inner
+@inner_making_arrays
 def add_parts(
     out: Array,
     count: int,
@@ -84,7 +85,7 @@ def add_parts(
 ) -> tuple[Array, int]:
     """Append the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known to ``error``."""
     width, number = right - left, 1
-    last = max(LAST_OF_LINE if a[0] + b[0] == 1.0 else LAST_OF_ARCS, 8.0 * error)
+    last = max(LAST_OF_LINE if a[IS_ARC] + b[IS_ARC] == 1.0 else LAST_OF_ARCS, 8.0 * error)
     while width > last:
         width /= SHORTER
         number += 1
@@ -106,7 +107,7 @@ def add_parts(
     return out, count
 
 
-@inner
+@inner_making_arrays
 def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> tuple[Array, int]:
     """Append the stretches of a curve, in order, to ``out`` (grown as needed)."""
     low, high = curve[FROM], curve[TO]

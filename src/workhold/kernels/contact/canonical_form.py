@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from workhold.conventions import LEAST_SPAN
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.given import Setting
-from workhold.kernels.contact.equations import WORK_LENGTH, take_pegs, touch
+from workhold.kernels.contact.equations import NULL, take_pegs, touch
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
 
 Array = NDArray[np.float64]
@@ -19,7 +19,15 @@ IntArray = NDArray[np.int64]
 
 @compiled
 def contacts_of(
-    records: Array, rows: Array, setting: Setting, points: Array, gaps: Array, nulls: Array, forces: Array
+    records: Array,
+    rows: Array,
+    setting: Setting,
+    points: Array,
+    gaps: Array,
+    nulls: Array,
+    forces: Array,
+    w: Array,
+    pairs: Array,
 ) -> None:
     """Where the contacts of records are, and with what forces they hold.
 
@@ -32,9 +40,9 @@ def contacts_of(
     nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where the wrenches do
         not span the space.
     forces : (N, 4) receives the forces per unit of clamping force.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.
     """
-    length = setting.limits.wrench_length
-    w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
+    length, null = setting.limits.wrench_length, w[NULL]
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
         touch(records[n], rows, length, w, pairs[0])

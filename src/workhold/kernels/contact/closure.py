@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 
 Array = NDArray[np.float64]
 
@@ -72,7 +73,7 @@ def minor_band(swing: float, away: float, length: float) -> float:
 @inner
 def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
     """Outward unit normal of a feature at a point on it."""
-    if row[0] == 0.0:
-        return (row[4], -row[3])
-    scale = row[7] / row[6]
-    return (scale * (x - row[1]), scale * (y - row[2]))
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y], -row[AXIS_X])
+    scale = row[SIGN] / row[RADIUS]
+    return (scale * (x - row[X]), scale * (y - row[Y]))

@@ -5,7 +5,7 @@ first peg, and the x distance from the first standing to the first moving peg (s
 that every centre lies on its feature's line or circle; their Jacobian is taken over (L psi, tail x, tail y, separation), all
 in mm.
 
-Work space: ``w`` (18, 4), a row of four numbers, one for each peg where nothing else is said, at
+Work space: ``w`` (19, 4), a row of four numbers, one for each peg where nothing else is said, at
 
 - UNKNOWNS: z;
 - MOVING: 1 for a peg of the moving carrier, else 0;
@@ -13,7 +13,8 @@ Work space: ``w`` (18, 4), a row of four numbers, one for each peg where nothing
 - OFF: distances in mm of the centres from their lines and circles, outward positive;
 - NEWTON: the Newton step in mm, over (L psi, tail x, tail y, separation);
 - SLOPES (4): the Jacobian, a row for each peg;
-- REST (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse.
+- REST (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse;
+- NULL: a null vector.
 
 ``points`` (4, 2) holds the centres in mm.
 """
@@ -26,13 +27,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.elimination import eliminate
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.given import Lattice
+from workhold.kernels.base.shallow import is_shallow, off_shallow
 from workhold.kernels.contact.record import COLUMNS, FEATURES, PSI, ROWS, SEPARATION, STANDING, TAIL_X, TAIL_Y
 
 Array = NDArray[np.float64]
 
-UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, REST, INVERSE = 0, 1, 2, 3, 4, 5, 6, 10, 14
-WORK_LENGTH = 18
+UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, REST, INVERSE, NULL = 0, 1, 2, 3, 4, 5, 6, 10, 14, 18
+WORK_LENGTH = 19
 
 
 @inner
@@ -56,14 +60,16 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
         turned_x, turned_y = cosine * across - sine * along, sine * across + cosine * along
         x, y = w[UNKNOWNS, 1] + turned_x, w[UNKNOWNS, 2] + turned_y
         points[k, 0], points[k, 1] = x, y
-        gx, gy = row[4], -row[3]
-        dx, dy = x - row[1], y - row[2]
-        if row[0] == 0.0:
+        gx, gy = row[AXIS_Y], -row[AXIS_X]
+        dx, dy = x - row[X], y - row[Y]
+        if row[IS_ARC] == 0.0:
             w[OFF, k] = dx * gx + dy * gy
+        elif is_shallow(row):
+            w[OFF, k], gx, gy = off_shallow(row, x, y)
         else:
             size = hypot(dx, dy)
             gx, gy = dx / size, dy / size
-            w[OFF, k] = size - row[6]
+            w[OFF, k] = size - row[RADIUS]
         w[SLOPES + k, 0] = (gy * turned_x - gx * turned_y) / length
         w[SLOPES + k, 1], w[SLOPES + k, 2] = gx, gy
         w[SLOPES + k, 3] = w[MOVING, k] * (gx * cosine + gy * sine)
@@ -71,7 +77,7 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
 
 @inner
 def invert(w: Array) -> float:
-    """Invert the Jacobian by Gauss and Jordan's elimination with pivots by rows, and make the Newton step.
+    """Invert the Jacobian and make the Newton step.
 
     Returns
     -------
@@ -81,26 +87,7 @@ def invert(w: Array) -> float:
     for i in range(4):
         for j in range(4):
             w[REST + i, j] = w[SLOPES + i, j]
-            w[INVERSE + i, j] = 1.0 if i == j else 0.0
-    determinant = 1.0
-    for k in range(4):
-        best = k
-        for i in range(k + 1, 4):
-            if abs(w[REST + i, k]) > abs(w[REST + best, k]):
-                best = i
-        pivot = w[REST + best, k]
-        determinant *= abs(pivot)
-        if not determinant > 0.0:
-            return determinant
-        for j in range(4):
-            one, other = w[REST + best, j] / pivot, w[INVERSE + best, j] / pivot
-            w[REST + best, j], w[INVERSE + best, j] = w[REST + k, j], w[INVERSE + k, j]
-            w[REST + k, j], w[INVERSE + k, j] = one, other
-        for i in range(4):
-            factor = w[REST + i, k] if i != k else 0.0
-            for j in range(4):
-                w[REST + i, j] -= factor * w[REST + k, j]
-                w[INVERSE + i, j] -= factor * w[INVERSE + k, j]
+    determinant = eliminate(w[REST : REST + 4], w[INVERSE : INVERSE + 4])
     for i in range(4):
         w[NEWTON, i] = 0.0
         for j in range(4):

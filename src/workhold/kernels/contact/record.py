@@ -5,8 +5,8 @@ error).
 Columns of a record: STANDING (how many pegs, the first ones, are on the carrier that stands still; the others are on the one
 that moves), FEATURES (4), COLUMNS (4) and ROWS (4) of the pegs on their carriers' lattices counted from the first standing
 peg (rows) and from each carrier's first peg (columns), PSI, TAIL_X and TAIL_Y (centre of the first peg in the workpiece's
-frame), SEPARATION (x distance from the first standing to the first moving peg), REACH (radius of psi in radians), RADIUS
-(largest of the pegs' radii in mm). A negative STANDING tells of a pair of chords that was given up: its features and steps,
+frame), SEPARATION (x distance from the first standing to the first moving peg), REACH (radius of psi in radians),
+LARGEST_RADIUS (of the pegs, in mm). A negative STANDING tells of a pair of chords that was given up: its features and steps,
 with the orientation in PSI.
 """
 
@@ -29,7 +29,7 @@ STANDING = 0
 FEATURES = 1
 COLUMNS = 5
 ROWS = 9
-PSI, TAIL_X, TAIL_Y, SEPARATION, REACH, RADIUS = range(13, 19)
+PSI, TAIL_X, TAIL_Y, SEPARATION, REACH, LARGEST_RADIUS = range(13, 19)
 RECORD_LENGTH = 19
 
 
@@ -45,7 +45,7 @@ def write_record(row: Array, standing: float, pegs: Array, psi: float, separatio
     """Write four pegs in place to a (19,) row of the records."""
     row[STANDING], row[PSI], row[SEPARATION], row[REACH] = standing, psi, separation, reach
     row[TAIL_X], row[TAIL_Y] = pegs[0, PEG_X], pegs[0, PEG_Y]
-    row[RADIUS] = max(pegs[0, PEG_RADIUS], pegs[1, PEG_RADIUS], pegs[2, PEG_RADIUS], pegs[3, PEG_RADIUS])
+    row[LARGEST_RADIUS] = max(pegs[0, PEG_RADIUS], pegs[1, PEG_RADIUS], pegs[2, PEG_RADIUS], pegs[3, PEG_RADIUS])
     for k in range(4):
         row[FEATURES + k] = pegs[k, PEG_FEATURE]
         row[COLUMNS + k] = pegs[k, PEG_COLUMN]
@@ -58,7 +58,7 @@ def write_given_up(row: Array, standing: float, first: Array, second: Array, int
     for k in range(RECORD_LENGTH):
         row[k] = 0.0
     psi = (max(first[LOW], second[LOW]) + min(first[HIGH], second[HIGH])) / 2.0
-    row[STANDING], row[PSI], row[REACH], row[RADIUS] = -standing, psi, np.inf, np.inf
+    row[STANDING], row[PSI], row[REACH], row[LARGEST_RADIUS] = -standing, psi, np.inf, np.inf
     for k in range(2):
         step = integers[int(first[CURVE])] if k == 0 else integers[int(second[CURVE])]
         row[FEATURES + 2 * k], row[FEATURES + 2 * k + 1] = step[TAIL], step[HEAD]

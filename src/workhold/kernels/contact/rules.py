@@ -10,15 +10,16 @@ everywhere within that radius is discarded.
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
+from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y
 from workhold.kernels.curves.columns import COLUMN_STEP, ROW_STEP
@@ -29,15 +30,8 @@ IntArray = NDArray[np.int64]
 
 @inner
 def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> bool:
-    """Whether a contact may lie on its feature, at least ``margin`` mm from its ends (a whole circle has none).
-
-    ``row`` has ten entries, the last two how far in mm a contact may lie past the low and the high end.
-    """
-    if row[0] != 0.0 and row[5] >= pi:
-        return True
-    s = parameter_on(row, x, y)
-    slack = row[9] if s > 0.0 else row[8]
-    return distance_to_end(row, s) >= margin - slack - 1.2 * radius
+    """Whether a contact, known to ``radius``, may lie on its feature, at least ``margin`` mm from its ends."""
+    return end_slack(row, x, y) >= margin - 1.2 * radius
 
 
 @inner
@@ -72,8 +66,8 @@ def is_fixture(
         radius = max(radius, pegs[k, PEG_RADIUS])
         points[k, 0], points[k, 1] = x, y
         normals[k, 0], normals[k, 1] = outward_normal(row, x, y)
-        if row[0] != 0.0:
-            swing = max(swing, pegs[k, PEG_RADIUS] / row[6])
+        if row[IS_ARC] != 0.0:
+            swing = max(swing, pegs[k, PEG_RADIUS] / row[RADIUS])
         along = cx * x + cy * y
         if k < standing:
             rightmost_standing = max(rightmost_standing, along)

@@ -58,8 +58,9 @@ NARROWEST_DISC = 1e-13
 # Columns of a root: ROOT_PSI and ROOT_RADIUS in radians, MULTIPLE (k of the target offset + k period).
 ROOT_PSI, ROOT_RADIUS, MULTIPLE = range(3)
 STACK_LENGTH = 18
-# Rounding of sums and differences of values, relative to them.
-ROUNDINGS = 8.0 * 1.2e-16
+# Rounding of a difference of values from a target, relative to them, in half units in the last place: of the difference,
+# of the target's product and sum, and of the difference from it.
+ROUNDINGS = 4.0 * 1.2e-16
 
 
 @inner
@@ -265,7 +266,8 @@ def crossings(
                 if psi in (low, high):
                     rest += error
                 roots[found, ROOT_PSI], roots[found, MULTIPLE] = psi, k
-                roots[found, ROOT_RADIUS] = min(rest / steepness, width) + SAME
+                # The target itself is rounded.
+                roots[found, ROOT_RADIUS] = min((rest + ROUNDINGS * abs(offset)) / steepness, width) + SAME
                 found += 1
                 k += 1
             done = True
@@ -282,6 +284,9 @@ def crossings(
             if width <= WIDEST_DISC and not (isfinite(bottom2) and isfinite(top2)):
                 bottom2, top2 = disc_bounds(low, high, two, features, curves, mode)
                 smallest = NARROWEST_DISC
+            # Where the errors are the larger part of what is known, splitting tells no more.
+            doubt = 2.0 * (max(g1, q1) + max(g2, q2))
+            vague = 2.0 * doubt >= highest - lowest and max(-lowest, highest) * width <= error
             bottom, top = bottom2 - top1 - error, top2 - bottom1 + error
             if isfinite(lowest) or isfinite(highest):
                 below, above = value_bounds(f_low, f_high, lowest, highest, width)
@@ -289,7 +294,7 @@ def crossings(
             if isfinite(bottom) and isfinite(top):
                 k, last = targets(bottom, top, offset, period)
                 done = last < k
-                if not done and (width <= smallest or splits >= MOST_SPLITS or depth >= stack.shape[0]):
+                if not done and (width <= smallest or vague or splits >= MOST_SPLITS or depth >= stack.shape[0]):
                     if last - k >= roots.shape[0] - found:
                         return -1
                     while k <= last:

@@ -16,23 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import compiled_making_arrays, inner
 from workhold.kernels.base.given import Features, Lattice, Limits
-from workhold.kernels.base.growing import with_room
+from workhold.kernels.base.growing import grown
 from workhold.kernels.chord.discs import chord_tail
 from workhold.kernels.chord.evaluation import HEIGHT
-from workhold.kernels.contact.record import PEG_LENGTH, RECORD_LENGTH, place_peg, write_given_up, write_record
+from workhold.kernels.contact.record import RECORD_LENGTH, place_peg, write_given_up, write_record
 from workhold.kernels.contact.rules import is_fixture, is_listed
-from workhold.kernels.crossing.roots import (
-    MOST_ROOTS,
-    MULTIPLE,
-    ROOT_PSI,
-    ROOT_RADIUS,
-    STACK_DEPTH,
-    STACK_LENGTH,
-    crossings,
-    may_meet,
-)
+from workhold.kernels.crossing.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
+from workhold.kernels.crossing.work_space import WorkSpace, work_space
 from workhold.kernels.curves.columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
 from workhold.kernels.curves.piece_columns import (
     ACROSS_LEAST,
@@ -55,7 +47,9 @@ IntArray = NDArray[np.int64]
 # Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought, four contacts
 # examined, and those that may be inside their features.
 PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
-STATISTICS = 4
+# Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
+STOPPED = 4
+STATISTICS = 5
 # Rounding of places along x in mm, generously counted.
 HAIR = 1e-6
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
@@ -114,8 +108,12 @@ def write_roles(
 
 
 @inner
-def sort_roles(roles: Array, count: int, keys: Array, order: IntArray) -> None:
-    """Write the order of roles by their places along x, the rightmost first (Shell's sort)."""
+def sort_from_right(roles: Array, keys: Array, order: IntArray, out: Array) -> None:
+    """Write (N, 8) roles to ``out`` in the order of their places along x, the rightmost first (Shell's sort).
+
+    ``keys`` and ``order`` are (N,) work space.
+    """
+    count = roles.shape[0]
     for k in range(count):
         keys[k], order[k] = roles[k, ROLE_X], k
     step = 1
@@ -129,6 +127,9 @@ def sort_roles(roles: Array, count: int, keys: Array, order: IntArray) -> None:
                 at -= step
             keys[at], order[at] = key, item
         step //= 3
+    for j in range(count):
+        for k in range(ROLE_LENGTH):
+            out[j, k] = roles[order[j], k]
 
 
 @inner
@@ -144,7 +145,7 @@ def flat_slope(first: Array, second: Array) -> float:
 
 @inner
 def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) -> bool:
-    """Whether two roles far enough apart may make a fixture: their pushes and their heights allow it.
+    """Whether two roles far enough apart may make a fixture: their force directions and their heights allow it.
 
     For ``counting`` it is asked only whether the four contacts may be simultaneous.
     """
@@ -167,7 +168,114 @@ def counts_once(features: Features, lattice: Lattice) -> bool:
     return features.standing[0] == features.moving[0] and abs(floor(offsets + 0.5) - offsets) <= 1e-12
 
 
-@compiled
+@inner
+def add_crossings(
+    out: Array,
+    count: int,
+    number: int,
+    one: int,
+    two: int,
+    features: Features,
+    curves: Curves,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Examine the four contacts at each of a ``number`` of crossings of two curves; append those that are listed to ``out``,
+    which has room for all."""
+    pegs, roots = space.pegs, space.roots
+    for root in range(number):
+        psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
+        # The height of the moving chord over the standing one is the row offset and so many pitches.
+        place_chord(pegs[:2], one, psi, reach, 0.0, features.rows, curves)
+        place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], features.rows, curves)
+        verdict, separation = is_fixture(pegs, 2.0, psi, reach, features, limits, space.contacts, space.null)
+        stats[CANDIDATES] += 1
+        if verdict > 0:
+            stats[CONTACTS] += 1
+        if is_listed(verdict, counting, count, limits):
+            write_record(out[count], 2.0, pegs, psi, separation, reach)
+            count += 1
+    return count
+
+
+@inner
+def add_pairs(
+    out: Array,
+    count: int,
+    standing: Array,
+    moving: Array,
+    pieces: Array,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Append what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see ``work_space``).
+
+    Parameters
+    ----------
+    standing, moving : (N, 8) and (M, 8) roles, the moving ones from right to left.
+    """
+    at, loose, integers = space.at, features.loose, curves.integers
+    gap = limits.gap - GAP_SLACK - HAIR
+    once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
+    for i in range(at[0], standing.shape[0]):
+        if stats[STOPPED] != 0:
+            break
+        role = standing[i]
+        first = pieces[int(role[ROLE_PIECE])]
+        one = int(first[CURVE])
+        for j in range(at[1], moving.shape[0]):
+            other = moving[j]
+            if not counting and other[ROLE_X] - role[ROLE_X] < gap:
+                break
+            stats[PAIRS] += 1
+            if not may_cross(role, other, lattice, counting):
+                continue
+            second = pieces[int(other[ROLE_PIECE])]
+            two = int(second[CURVE])
+            if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
+                continue
+            if once and one > two:
+                continue
+            steady = first[STEADY] * second[STEADY] == 1.0
+            if steady and not may_meet(first, second, lattice.row_offset, lattice.pitch_y):
+                continue
+            if stats[STOPPED] != 0:
+                break
+            flat = 0.0 if counting else flat_slope(first, second)
+            number = crossings(
+                first,
+                second,
+                loose,
+                curves,
+                HEIGHT,
+                lattice.row_offset,
+                lattice.pitch_y,
+                flat,
+                space.stack,
+                space.roots,
+            )
+            if count + max(number, 1) > out.shape[0]:
+                at[0], at[1] = i, j
+                stats[PAIRS] -= 1
+                return count
+            stats[CROSSED] += 1
+            if number < 0:
+                write_given_up(out[count], 2.0, first, second, integers)
+                count += 1
+            count = add_crossings(out, count, number, one, two, features, curves, limits, counting, space, stats)
+        at[1] = 0
+    at[0] = standing.shape[0]
+    return count
+
+
+@compiled_making_arrays
 def two_and_two_cells(
     edges: Array,
     members: IntArray,
@@ -186,7 +294,7 @@ def two_and_two_cells(
     members : (M,) indices of the curves that exist in some of them, ascending.
     counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that are listed,
         if any, are listed with either chord on the carrier that stands still.
-    stats : (4,) counts to add to.
+    stats : (5,) counts to add to; once its entry ``STOPPED`` is not 0, what was found so far is returned.
 
     Returns
     -------
@@ -194,16 +302,15 @@ def two_and_two_cells(
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    pegs, work, null = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4)
-    loose, rows, integers = features.loose, features.rows, curves.integers
-    gap = limits.gap - GAP_SLACK - HAIR
-    once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
+    space = work_space()
+    loose, integers = features.loose, curves.integers
     # Where closing clamps, standing pegs push to the right; where opening does, to the left.
     standing_force, moving_force = RIGHTWARD_LOW, LEFTWARD_LOW
     if limits.clamping < 0.0:
         standing_force, moving_force = LEFTWARD_LOW, RIGHTWARD_LOW
     for cell in range(edges.shape[0] - 1):
+        if stats[STOPPED] != 0:
+            break
         pieces = cell_pieces(
             edges[cell], edges[cell + 1], members, loose, curves, lattice.pitch_x, limits.least_margin, HEIGHT
         )
@@ -212,53 +319,14 @@ def two_and_two_cells(
             touched = features.standing if side == 0 else features.moving
             force = standing_force if side == 0 else moving_force
             counts[side] = write_roles(pieces, integers, touched, X_STANDING + side, force, counting, roles[side])
-        standing, moving, standing_count, moving_count = roles[0], roles[1], counts[0], counts[1]
-        keys, order = np.empty(moving_count), np.empty(moving_count, np.int64)
-        sort_roles(moving, moving_count, keys, order)
-        sorted_moving = np.empty((moving_count, ROLE_LENGTH))
-        for j in range(moving_count):
-            for k in range(ROLE_LENGTH):
-                sorted_moving[j, k] = moving[order[j], k]
-        for i in range(standing_count):
-            role = standing[i]
-            first = pieces[int(role[ROLE_PIECE])]
-            one = int(first[CURVE])
-            for j in range(moving_count):
-                other = sorted_moving[j]
-                if not counting and other[ROLE_X] - role[ROLE_X] < gap:
-                    break
-                stats[PAIRS] += 1
-                if not may_cross(role, other, lattice, counting):
-                    continue
-                second = pieces[int(other[ROLE_PIECE])]
-                two = int(second[CURVE])
-                if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
-                    continue
-                if once and one > two:
-                    continue
-                steady = first[STEADY] * second[STEADY] == 1.0
-                if steady and not may_meet(first, second, lattice.row_offset, lattice.pitch_y):
-                    continue
-                stats[CROSSED] += 1
-                flat = 0.0 if counting else flat_slope(first, second)
-                number = crossings(
-                    first, second, loose, curves, HEIGHT, lattice.row_offset, lattice.pitch_y, flat, stack, roots
-                )
-                if number < 0:
-                    out = with_room(out, count)
-                    write_given_up(out[count], 2.0, first, second, integers)
-                    count += 1
-                for root in range(number):
-                    psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
-                    # The height of the moving chord over the standing one is the row offset and so many pitches.
-                    place_chord(pegs[:2], one, psi, reach, 0.0, rows, curves)
-                    place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], rows, curves)
-                    verdict, separation = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
-                    stats[CANDIDATES] += 1
-                    if verdict > 0:
-                        stats[CONTACTS] += 1
-                    if is_listed(verdict, counting, count, limits):
-                        out = with_room(out, count)
-                        write_record(out[count], 2.0, pegs, psi, separation, reach)
-                        count += 1
+        moving = np.empty((counts[1], ROLE_LENGTH))
+        sort_from_right(roles[1, : counts[1]], np.empty(counts[1]), np.empty(counts[1], np.int64), moving)
+        standing, space.at[0] = roles[0, : counts[0]], 0
+        while True:
+            count = add_pairs(
+                out, count, standing, moving, pieces, features, curves, lattice, limits, counting, space, stats
+            )
+            if space.at[0] == standing.shape[0]:
+                break
+            out = grown(out)
     return out[:count]

@@ -11,8 +11,6 @@ COSINE and SINE, BACKWARD_ERROR (see ``chord.evaluation``), COINCIDENCE (its kin
 
 Reals of a sliding pair (P, 5): SLIDE_FROM and SLIDE_TO (parameter of the tail on its feature), DIRECTION (alpha),
 STEP_LENGTH, ORIENTATION (psi in radians).
-
-Feature rows are those of ``geometry.segment``.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ piece : a chord curve over a range inside one cell and inside one stretch, with 
     enclosure of its second derivative and, made of these, enclosures of its value, of the place
     of its pegs along x, and of the directions in which its pegs can push together.
 
-Bends: with P the instant centre and K >= |P'| (see ``stretches``)
+Second derivatives: with P the instant centre and K >= |P'| (see ``stretches``)
 
     |h''| = |y . P + x . P'| <= |P| + K        and        |s''| = |P' . r_a| <= K      (divided by R_a on an arc);
 
@@ -16,7 +16,7 @@ direction turns at the rate p / R, which changes by at most K / R. A function of
 w^2 / 8 of its linear interpolation over a range w. Beside a tangency the second derivative is bounded on one side only,
 by X^3 P'.
 
-Directions of pushes are told in ``force_directions``, and columns in ``piece_columns``.
+Directions of forces are told in ``force_directions``, and columns in ``piece_columns``.
 """
 
 from __future__ import annotations
@@ -26,8 +26,11 @@ from math import cos, floor, hypot, inf, isfinite, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.growing import with_room
+from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SIGN
+from workhold.kernels.base.growing import grown
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.shallow import local_size
 from workhold.kernels.chord.discs import tail_disc, value_disc
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value, valued
 from workhold.kernels.chord.stretches import (
@@ -103,7 +106,6 @@ from workhold.kernels.curves.piece_columns import (
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-FULL_TURN = 2.0 * pi
 # Rounding of an orientation in radians.
 SAME = 2e-15
 # The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
@@ -113,7 +115,7 @@ MOST_TURN = 1.0
 @inner
 def unwrapped(value: float, near: float) -> float:
     """An angle moved by whole turns to be nearest to another."""
-    return value + FULL_TURN * floor((near - value) / FULL_TURN + 0.5)
+    return value + TURN * floor((near - value) / TURN + 0.5)
 
 
 @inner
@@ -131,8 +133,8 @@ def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: 
     edge[EDGE_ERROR] = state[8]
     edge[EDGE_ACROSS] = cosine * py - sine * px
     edge[EDGE_CENTER_ERROR] = state[9]
-    side_a = 1.0 if a[0] == 0.0 else a[7]
-    side_b = 1.0 if b[0] == 0.0 else b[7]
+    side_a = 1.0 if a[IS_ARC] == 0.0 else a[SIGN]
+    side_b = 1.0 if b[IS_ARC] == 0.0 else b[SIGN]
     edge[TAIL_NORMAL_X] = side_a * (cosine * state[2] + sine * state[3])
     edge[TAIL_NORMAL_Y] = side_a * (cosine * state[3] - sine * state[2])
     edge[HEAD_NORMAL_X] = side_b * (cosine * state[4] + sine * state[5])
@@ -157,7 +159,7 @@ def second_derivative_beside(
         doubt = size * (half + HAIR) + stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * d
         swing_low, swing_high, fixed = -last - doubt, -first + doubt, reach
     else:
-        scale = 1.0 if a[0] == 0.0 else 1.0 / a[6]
+        scale = 1.0 if a[IS_ARC] == 0.0 else 1.0 / a[RADIUS]
         swing_low, swing_high, fixed = -scale * stretch[ALONG_HIGH], -scale * stretch[ALONG_LOW], 0.0
         swing_low -= HAIR * abs(swing_low)
         swing_high += HAIR * abs(swing_high)
@@ -210,7 +212,7 @@ def write_steady(
         swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
         second_derivative = (center + min(speed, swing)) * (1.0 + HAIR)
     else:
-        second_derivative = (speed if a[0] == 0.0 else speed / a[6]) * (1.0 + HAIR)
+        second_derivative = (speed if a[IS_ARC] == 0.0 else speed / a[RADIUS]) * (1.0 + HAIR)
     row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH] = -second_derivative, second_derivative
     doubt = second_derivative * sag + max(row[VALUE_ERROR_LOW], row[VALUE_ERROR_HIGH])
     row[VALUE_LEAST] = min(row[VALUE_LOW], row[VALUE_HIGH]) - doubt
@@ -287,8 +289,8 @@ def add_pieces(
     base: float,
     mode: float,
     edges: Array,
-) -> tuple[Array, int]:
-    """Append the pieces of one curve over [low, high] to ``out`` (grown as needed).
+) -> int:
+    """Append the pieces of one curve over [low, high] to ``out``, which has room for one for each stretch; their new number.
 
     Parameters
     ----------
@@ -299,11 +301,11 @@ def add_pieces(
     """
     integers, stretches, curve = curves.integers, curves.stretches, curves.reals[index]
     a, b = features[integers[index, TAIL]], features[integers[index, HEAD]]
-    circles = mode == POSITION and a[0] != 0.0 and a[5] >= pi
+    circles = mode == POSITION and a[IS_ARC] != 0.0 and a[HALF_EXTENT] >= pi
     step = integers[index, COLUMN_STEP] * pitch_x
     span = curve[TO] - curve[FROM]
     # No tail is farther from the centre of the part than this.
-    size = sqrt(a[1] * a[1] + a[2] * a[2]) + a[5] + a[6]
+    size = local_size(a) + a[HALF_EXTENT]
     at_low, at_high = edges[0], edges[1]
     left, known = low, False
     for k in range(integers[index, FIRST_STRETCH], integers[index, END_STRETCH]):
@@ -323,7 +325,6 @@ def add_pieces(
         if not known:
             write_edge(at_low, a, b, curve, left, mode)
         write_edge(at_high, a, b, curve, right, mode)
-        out = with_room(out, count)
         row = out[count]
         count += 1
         row[LOW], row[HIGH], row[CURVE] = left, right, index
@@ -350,7 +351,7 @@ def add_pieces(
         left, known = right, True
         if right >= high:
             break
-    return out, count
+    return count
 
 
 @inner
@@ -365,6 +366,44 @@ def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
 
 
 @inner
+def add_members(
+    out: Array,
+    count: int,
+    first: int,
+    members: IntArray,
+    cell_low: float,
+    cell_high: float,
+    features: Array,
+    curves: Curves,
+    pitch_x: float,
+    share: float,
+    mode: float,
+    edges: Array,
+) -> tuple[int, int]:
+    """Append the pieces of curves, from the ``first`` of the members on, as long as ``out`` has room for all of a curve.
+
+    Returns
+    -------
+    (which of the members comes next, number of pieces)
+    """
+    integers, reals = curves.integers, curves.reals
+    for n in range(first, members.shape[0]):
+        index = members[n]
+        # A curve of nearly a turn may enter the cell at both of its ends.
+        if count + 2 * (integers[index, END_STRETCH] - integers[index, FIRST_STRETCH]) > out.shape[0]:
+            return n, count
+        base = reals[index, FROM] - reals[index, SHIFT]
+        span = reals[index, TO] - reals[index, FROM]
+        start = base + TURN * floor((cell_low - base) / TURN)
+        for lap in range(2):
+            low = start + lap * TURN
+            left, right = max(low, cell_low), min(low + span, cell_high)
+            if right - left > 0.0:
+                count = add_pieces(out, count, features, curves, pitch_x, share, index, left, right, low, mode, edges)
+    return members.shape[0], count
+
+
+@inner_making_arrays
 def cell_pieces(
     cell_low: float,
     cell_high: float,
@@ -394,17 +433,11 @@ def cell_pieces(
     share = least_margin / (1.0 - 3.0 * least_margin)
     out = np.empty((64, PIECE_LENGTH))
     edges = np.empty((2, EDGE_LENGTH))
-    reals = curves.reals
-    count = int(np.int64(0))
-    for index in members:
-        base = reals[index, FROM] - reals[index, SHIFT]
-        span = reals[index, TO] - reals[index, FROM]
-        start = base + FULL_TURN * floor((cell_low - base) / FULL_TURN)
-        for lap in range(2):
-            low = start + lap * FULL_TURN
-            left, right = max(low, cell_low), min(low + span, cell_high)
-            if right - left > 0.0:
-                out, count = add_pieces(
-                    out, count, features, curves, pitch_x, share, index, left, right, low, mode, edges
-                )
-    return out[:count]
+    done, count = 0, int(np.int64(0))
+    while True:
+        done, count = add_members(
+            out, count, done, members, cell_low, cell_high, features, curves, pitch_x, share, mode, edges
+        )
+        if done == members.shape[0]:
+            return out[:count]
+        out = grown(out)

@@ -7,8 +7,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.growing import grown, grown_whole
+from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.growing import with_room
 from workhold.kernels.chord.evaluation import write_curve, write_shift
 from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
@@ -43,10 +44,10 @@ ROUNDING = 1e-9
 @inner
 def reach(row: Array) -> float:
     """Largest distance of a feature's points from its middle (line) or centre (arc)."""
-    return row[5] if row[0] == 0.0 else row[6]
+    return row[HALF_EXTENT] if row[IS_ARC] == 0.0 else row[RADIUS]
 
 
-@compiled
+@compiled_making_arrays
 def tail_curves(
     tail: int, features: Array, centers: IntArray, lengths: Array, starts: IntArray, steps: IntArray, angles: Array
 ) -> tuple[IntArray, Array, IntArray, Array, Array]:
@@ -76,7 +77,7 @@ def tail_curves(
     a = features[tail]
     for head in range(tail, features.shape[0]):
         b = features[head]
-        apart, play = hypot(b[1] - a[1], b[2] - a[2]), reach(a) + reach(b)
+        apart, play = hypot(b[X] - a[X], b[Y] - a[Y]), reach(a) + reach(b)
         center = centers[tail] if centers[tail] == centers[head] else -1
         for length in range(lengths.shape[0]):
             d = lengths[length]
@@ -94,8 +95,7 @@ def tail_curves(
                     column, row = steps[step, 0], steps[step, 1]
                     if head == tail and (column < 0 or (column == 0 and row < 0)):
                         continue
-                    if count == integers.shape[0]:
-                        integers, reals = grown_whole(integers), grown(reals)
+                    integers, reals = with_room(integers, count), with_room(reals, count)
                     write_step(integers[count], tail, head, column, row, center)
                     integers[count, FIRST_STRETCH], integers[count, END_STRETCH] = first, stretch_count
                     for k_of in range(CURVE_REALS):
@@ -107,8 +107,8 @@ def tail_curves(
                 if head == tail and (column < 0 or (column == 0 and row < 0)):
                     continue
                 for k in range(sliding.shape[0]):
-                    if sliding_pair_count == whole.shape[0]:
-                        whole, sliding_pairs = grown_whole(whole), grown(sliding_pairs)
+                    whole = with_room(whole, sliding_pair_count)
+                    sliding_pairs = with_room(sliding_pairs, sliding_pair_count)
                     write_step(whole[sliding_pair_count], tail, head, column, row, center)
                     for column_of in range(3):
                         sliding_pairs[sliding_pair_count, column_of] = sliding[k, column_of]

@@ -1,4 +1,4 @@
-r"""Boxes about nearly double solutions, narrowed by the interval Newton method in double precision.
+r"""Boxes about nearly double solutions, contracted by the interval Newton method in double precision.
 
 A box is z0 + V s with \|s_j\| <= w_j: V has the right singular vectors of the Jacobian J at the first middle as columns, U
 the left ones, for there is a direction that is badly determined. With m the middle of a part of the box and F the distances
@@ -9,7 +9,7 @@ of the pegs from their lines and circles, every solution there has, for each k,
 by the mean value theorem. A part in which this or a rule (``contact.rules``) cannot hold is dropped; one that the step of
 Hansen and Sengupta maps into its own inside holds exactly one solution; others are made smaller, or halved.
 
-How much contacts vary over a part, ``variations`` bounds.
+How much contacts vary over a part, ``variation`` bounds.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
 203-211; A. Neumaier, *Interval Methods for Systems of Equations*, Cambridge 1990, sections 1.6 and 5.2.
@@ -17,15 +17,18 @@ References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.closure import ROUNDING
 from workhold.kernels.contact.equations import (
     MOVING,
     NEWTON,
+    NULL,
     OFF,
     SLOPES,
     UNKNOWNS,
@@ -33,7 +36,7 @@ from workhold.kernels.contact.equations import (
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.record import PSI, RADIUS, REACH, SEPARATION, TAIL_X, TAIL_Y
+from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, REACH, SEPARATION, TAIL_X, TAIL_Y
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, sizes
 from workhold.kernels.proof.variation import ERROR, FORCE_BAND, MOMENT_BAND, NUMBERS, TILT, is_broken, move_to, spread
 
@@ -41,7 +44,7 @@ Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]
 
 # A box is given up after so many parts; the sides of what remains of one are made larger by this part, for rounding.
-MOST_PARTS = 20000
+MOST_PARTS = 200_000
 WIDER = 1e-12
 DEPTH = 256
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
@@ -53,6 +56,44 @@ HALF = 0.5001
 ROOTS = 4
 # Steps taken once it is known that a part has exactly one solution.
 SHARPENINGS = 4
+
+
+class WorkSpace(NamedTuple):
+    """What parts of a box are worked with; made once, so that no part makes an array.
+
+    Parameters
+    ----------
+    w, pairs : (19, 4) and (3, 4, 2), see ``contact.equations`` and ``variation``.
+    stack : (DEPTH, 2, 4) parts that wait, as middles and half widths.
+    numbers : (10, 4), see ``variation``.
+    slopes : (4, 4, 4), see :func:`combine`.
+    place, bounds : (2, 4) the part that is looked at, and what remains of it.
+    start : (4,) the middle of the box.
+    """
+
+    w: Array
+    pairs: Array
+    stack: Array
+    numbers: Array
+    slopes: Array
+    place: Array
+    bounds: Array
+    start: Array
+
+
+@inner_making_arrays
+def work_space() -> WorkSpace:
+    """A work space."""
+    return WorkSpace(
+        np.empty((WORK_LENGTH, 4)),
+        np.empty((3, 4, 2)),
+        np.empty((DEPTH, 2, 4)),
+        np.empty((NUMBERS, 4)),
+        np.empty((4, 4, 4)),
+        np.empty((2, 4)),
+        np.empty((2, 4)),
+        np.empty(4),
+    )
 
 
 @inner
@@ -135,7 +176,7 @@ def step(place: Array, slopes: Array, bounds: Array) -> int:
 def begin(record: Array, frame: Array, length: float, place: Array) -> None:
     """The whole box of a record in its frame, a little larger."""
     turn = length * record[REACH] + LEAST_REACH
-    radius = record[RADIUS] + LEAST_REACH
+    radius = record[LARGEST_RADIUS] + LEAST_REACH
     for j in range(4):
         place[0, j] = 0.0
         tail = abs(frame[1, 1, j]) + abs(frame[1, 2, j]) + 2.0 * abs(frame[1, 3, j])
@@ -149,11 +190,11 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
         root[k] = record[k]
     root[PSI], root[TAIL_X] = w[UNKNOWNS, 0], w[UNKNOWNS, 1]
     root[TAIL_Y], root[SEPARATION] = w[UNKNOWNS, 2], w[UNKNOWNS, 3]
-    root[REACH] = root[RADIUS] = 0.0
+    root[REACH] = root[LARGEST_RADIUS] = 0.0
     for j in range(4):
         width = max(-bounds[0, j], bounds[1, j])
         root[REACH] += abs(frame[1, 0, j]) * width / length
-        root[RADIUS] += max(max(abs(frame[1, 1, j]), abs(frame[1, 2, j])), abs(frame[1, 3, j]) / 2.0) * width
+        root[LARGEST_RADIUS] += max(max(abs(frame[1, 1, j]), abs(frame[1, 2, j])), abs(frame[1, 3, j]) / 2.0) * width
 
 
 @inner
@@ -181,15 +222,12 @@ def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: f
 
 
 @inner
-def narrow(
+def solutions_in(
     record: Array,
     features: Array,
     setting: Setting,
     frame: Array,
-    stack: Array,
-    w: Array,
-    pairs: Array,
-    null: Array,
+    space: WorkSpace,
     roots: Array,
 ) -> int:
     """Find every solution of a box that may be a fixture.
@@ -205,11 +243,11 @@ def narrow(
     How many there are; -1 when the box is given up
     """
     length = setting.limits.wrench_length
-    b, slopes = np.empty((NUMBERS, 4)), np.empty((4, 4, 4))
-    place, bounds, z = np.empty((2, 4)), np.empty((2, 4)), np.empty(4)
+    w, pairs, b, slopes, stack = space.w, space.pairs, space.numbers, space.slopes, space.stack
+    place, bounds = space.place, space.bounds
     take_pegs(record, setting.lattice, w)
     for j in range(4):
-        z[j] = w[UNKNOWNS, j]
+        space.start[j] = w[UNKNOWNS, j]
     begin(record, frame, length, stack[0])
     waiting, found, steps = 1, 0, 0
     for _ in range(MOST_PARTS):
@@ -218,12 +256,12 @@ def narrow(
         waiting -= 1
         for j in range(4):
             place[0, j], place[1, j] = stack[waiting, 0, j], stack[waiting, 1, j]
-        move_to(z, place, frame, length, w)
+        move_to(space.start, place, frame, length, w)
         touch(record, features, length, w, pairs[0])
         size, _ = sizes(record, features, pairs[0])
         least = ROUNDINGS * (size + length)
         spread(record, features, size, setting, place, frame, w, pairs, b)
-        if is_broken(record, features, setting, w, pairs, null, b):
+        if is_broken(record, features, setting, w, pairs, w[NULL], b):
             steps = 0
             continue
         combine(frame, size, length, w, b, slopes)
@@ -247,9 +285,28 @@ def narrow(
     return -1
 
 
-@compiled
+@inner
+def solutions_in_all(
+    records: Array,
+    features: Array,
+    setting: Setting,
+    frames: Array,
+    space: WorkSpace,
+    verdicts: Verdicts,
+    roots: Array,
+) -> int:
+    """Write the verdict on each box and the roots of all, see :func:`interval_newton`; return how many there are."""
+    count = int(np.int64(0))
+    for n in range(records.shape[0]):
+        found = solutions_in(records[n], features, setting, frames[n], space, roots[count : count + ROOTS])
+        verdicts[n] = OPEN if found < 0 else DISCARDED
+        count += max(found, 0)
+    return count
+
+
+@compiled_making_arrays
 def interval_newton(records: Array, features: Array, setting: Setting, frames: Array) -> tuple[Verdicts, Array]:
-    """Narrow boxes one by one.
+    """Contract boxes one by one.
 
     Parameters
     ----------
@@ -263,25 +320,24 @@ def interval_newton(records: Array, features: Array, setting: Setting, frames: A
     """
     verdicts = np.empty(records.shape[0], np.int8)
     roots = np.empty((ROOTS * records.shape[0], records.shape[1]))
-    stack, w = np.empty((DEPTH, 2, 4)), np.empty((WORK_LENGTH, 4))
-    pairs, null = np.empty((3, 4, 2)), np.empty(4)
-    count = 0
-    for n in range(records.shape[0]):
-        found = narrow(records[n], features, setting, frames[n], stack, w, pairs, null, roots[count : count + ROOTS])
-        verdicts[n] = OPEN if found < 0 else DISCARDED
-        count += max(found, 0)
+    count = solutions_in_all(records, features, setting, frames, work_space(), verdicts, roots)
     return verdicts, roots[:count].copy()
 
 
-@compiled
-def jacobians(records: Array, features: Array, setting: Setting) -> Array:
-    """Jacobians (N, 4, 4) of the contact equations at the middles of records."""
-    out = np.empty((records.shape[0], 4, 4))
-    w, points = np.empty((WORK_LENGTH, 4)), np.empty((4, 2))
+@inner
+def write_jacobians(records: Array, features: Array, setting: Setting, w: Array, points: Array, out: Array) -> None:
+    """Write the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
         touch(records[n], features, setting.limits.wrench_length, w, points)
         for i in range(4):
             for j in range(4):
                 out[n, i, j] = w[SLOPES + i, j]
+
+
+@compiled_making_arrays
+def jacobians(records: Array, features: Array, setting: Setting) -> Array:
+    """Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+    out = np.empty((records.shape[0], 4, 4))
+    write_jacobians(records, features, setting, np.empty((WORK_LENGTH, 4)), np.empty((4, 2)), out)
     return out

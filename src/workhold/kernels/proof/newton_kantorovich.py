@@ -15,35 +15,38 @@ one the search isolated, and no other hides beside it.
 
 Glossary
 --------
-verdict : PROVEN, DISCARDED or OPEN (to be settled otherwise).
+verdict : PROVEN, DISCARDED or OPEN (left to other means).
 radius : how far in mm the exact unknowns may be from the computed ones; infinite without a certificate.
 unique : in mm, within which there is no other solution.
 """
 
 from __future__ import annotations
 
-from math import atan2, cos, inf, pi, sin, sqrt
+from math import cos, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, TOUCHING
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.given import Setting
+from workhold.kernels.base.shallow import largest_number
+from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.equations import (
     INVERSE,
     MOVING,
     NEWTON,
+    NULL,
     SLOPES,
     UNKNOWNS,
-    WORK_LENGTH,
     invert,
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.record import FEATURES, PSI, RADIUS, REACH
+from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, REACH
 
 Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]
@@ -55,8 +58,6 @@ SINGULAR = 1e-300
 FARTHEST = 1.0
 # Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its terms.
 ROUNDINGS = 16.0 * 1.2e-16
-# A peg may be inside the part by this much, in mm, in the check that follows the proof.
-TOUCH = 1e-7
 # Where an engine tells nothing better, the exact contact is this near, in mm.
 LEAST_REACH = 1e-9
 
@@ -90,9 +91,9 @@ def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         place = max(place, max(abs(points[k, 0]), abs(points[k, 1])))
-        carrier = max(carrier, max(row[6], max(abs(row[1]), abs(row[2]))))
-        if row[0] != 0.0:
-            smallest = min(smallest, row[6])
+        carrier = max(carrier, largest_number(row))
+        if row[IS_ARC] != 0.0:
+            smallest = min(smallest, row[RADIUS])
     return (place + carrier, smallest)
 
 
@@ -129,8 +130,9 @@ def certificate(w: Array, size: float, smallest: float, length: float, backward_
         norm, defect, step = max(norm, row), max(defect, rest), max(step, abs(w[NEWTON, i]))
     step += norm * error
     second_derivative = 2.0 * 4.42**2 / smallest + 4.0 / length
-    # The computed Jacobian is off by rounding, and by the backward error times the second derivatives.
-    defect += norm * 4.0 * (ROUNDINGS * (1.0 + size / length) + error * second_derivative)
+    # The computed Jacobian is off by the rounding of a row's four entries, by eight half units of an arm over L and six of a
+    # direction, and by that of the places times the second derivatives.
+    defect += norm * (ROUNDINGS * (1.0 + size / length) + error * second_derivative)
     rest, curve = 1.0 - defect, norm * second_derivative
     inside = rest * rest - 2.0 * curve * step
     if not (rest > 0.0 and inside > 0.0):
@@ -142,19 +144,11 @@ def certificate(w: Array, size: float, smallest: float, length: float, backward_
 
 
 @inner
-def end_slack(record: Array, features: Array, points: Array, margin: float) -> float:
+def nearest_end(record: Array, features: Array, points: Array) -> float:
     """How far in mm the contact nearest to an end of its feature is from breaking the rule of ends."""
     least = inf
     for k in range(4):
-        row = features[int(record[FEATURES + k])]
-        dx, dy = points[k, 0] - row[1], points[k, 1] - row[2]
-        position, scale = dx * row[3] + dy * row[4], 1.0
-        if row[0] != 0.0:
-            if row[5] >= pi:
-                continue
-            position, scale = atan2(row[3] * dy - row[4] * dx, position), row[6]
-        forgiven = row[9] if position > 0.0 else row[8]
-        least = min(least, (row[5] - abs(position)) * scale - margin + forgiven)
+        least = min(least, end_slack(features[int(record[FEATURES + k])], points[k, 0], points[k, 1]))
     return least
 
 
@@ -223,7 +217,7 @@ def judged(
     low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
-    verdict = sign_of(end_slack(record, features, pairs[0], setting.limits.contact_margin), 1.2 * reach + 1e-12)
+    verdict = sign_of(nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12)
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
     verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
@@ -235,22 +229,22 @@ def judged(
 
 def discs_around(outline: Array, margin: float) -> Array:
     """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
-    half, radius = outline[:, 5], outline[:, 6]
+    half, radius = outline[:, HALF_EXTENT], outline[:, RADIUS]
     # The disc on the chord, for an arc up to a half circle.
-    short = np.where(outline[:, 0] == 0.0, 0.0, np.minimum(half, pi / 2.0))
+    short = np.where(outline[:, IS_ARC] == 0.0, 0.0, np.minimum(half, pi / 2.0))
     wide = np.where(half < pi / 2.0, radius * np.cos(short), 0.0)
-    reach = np.where(outline[:, 0] == 0.0, half, radius * np.sin(short)) + margin
+    reach = np.where(outline[:, IS_ARC] == 0.0, half, radius * np.sin(short)) + margin
     return np.stack(
-        [outline[:, 1] + wide * outline[:, 3], outline[:, 2] + wide * outline[:, 4], 1.001 * reach**2], axis=1
+        [outline[:, X] + wide * outline[:, AXIS_X], outline[:, Y] + wide * outline[:, AXIS_Y], 1.001 * reach**2], axis=1
     )
 
 
 @inner
 def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
-    """Whether four pegs, of which some move (4,), are clear of all of (S, 8) segments, to within ``TOUCH``."""
+    """Whether four pegs, of which some move (4,), are clear of all of (S, 8) segments, to within ``TOUCHING``."""
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
-        least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCH
+        least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCHING
         for n in range(discs.shape[0]):
             dx, dy = x - discs[n, 0], y - discs[n, 1]
             if dx * dx + dy * dy < discs[n, 2] and segment_distance(x, y, outline[n]) < least:
@@ -260,8 +254,16 @@ def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting:
 
 @compiled
 def certified(
-    records: Array, features: Array, outline: Array, discs: Array, setting: Setting, solutions: Array
-) -> Verdicts:
+    records: Array,
+    features: Array,
+    outline: Array,
+    discs: Array,
+    setting: Setting,
+    solutions: Array,
+    verdicts: Verdicts,
+    w: Array,
+    pairs: Array,
+) -> None:
     """Decide records one by one.
 
     Parameters
@@ -270,30 +272,24 @@ def certified(
     features : (F, 10) rows with the slack of their ends.
     outline, discs : (S, 8) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     solutions : (N, 4) receives the unknowns.
-
-    Returns
-    -------
-    (N,) verdicts; open where another solution may be in the record's box
+    verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.
     """
-    verdicts = np.full(records.shape[0], OPEN, np.int8)
-    length = setting.limits.wrench_length
-    w, pairs, null = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)), np.empty(4)
-    points = pairs[0]
+    length, points, null = setting.limits.wrench_length, pairs[0], w[NULL]
     for n in range(records.shape[0]):
         record = records[n]
         take_pegs(record, setting.lattice, w)
         polish(record, features, length, w, points)
         size, smallest = sizes(record, features, points)
         radius, unique = certificate(w, size, smallest, length, setting.backward_error)
-        away = 0.0
+        away, verdicts[n] = 0.0, OPEN
         for k in range(4):
             solutions[n, k] = w[UNKNOWNS, k]
             away = max(away, abs(w[UNKNOWNS, k] - record[PSI + k]) * (length if k == 0 else 1.0))
         # The exact contact may be this far, where the separation is the worst known.
-        box = 2.0 * (record[RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
+        box = 2.0 * (record[LARGEST_RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
         if radius < inf and away + box <= unique:
             verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
             # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
             if verdicts[n] == PROVEN and not is_clear(points, w[MOVING], outline, discs, setting):
                 verdicts[n] = DISCARDED
-    return verdicts

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.given import Setting
+from workhold.kernels.base.shallow import is_shallow, local_size
 from workhold.kernels.contact.closure import ROUNDING, minors
 from workhold.kernels.contact.equations import (
     MOVING,
@@ -25,7 +27,7 @@ from workhold.kernels.contact.equations import (
     UNKNOWNS,
 )
 from workhold.kernels.contact.record import FEATURES
-from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, end_slack
+from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, nearest_end
 
 Array = NDArray[np.float64]
 
@@ -34,10 +36,10 @@ HALF_UNIT = 1.2e-16
 HAIR = 1e-12
 
 # Rows of the numbers (10, 4) of a part, one for each peg: how far its centre moves, how much its normal turns, how much its
-# arm from the first peg varies, its moment and how much that varies, its push along x and how much
+# arm from the first peg varies, its moment and how much that varies, the part of its normal along x and how much
 # that varies, the error of its contact equation, and how much the minor without it varies. How much the turn and the
 # separation vary comes last.
-VARIATION, TILT, ARM_BAND, MOMENT, MOMENT_BAND, PUSH, FORCE_BAND, ERROR, MINOR_BAND, OTHERS = range(10)
+VARIATION, TILT, ARM_BAND, MOMENT, MOMENT_BAND, ALONG_X, FORCE_BAND, ERROR, MINOR_BAND, OTHERS = range(10)
 NUMBERS = 10
 
 
@@ -72,17 +74,17 @@ def spread(
     themselves in ``pairs`` (3, 4, 2) behind the centres."""
     length, backward_error = setting.limits.wrench_length, setting.backward_error
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
-    turn = slide = 0.0
+    turn = separation = 0.0
     for j in range(4):
         turn += abs(frame[1, 0, j]) * place[1, j] / length
-        slide += abs(frame[1, 3, j]) * place[1, j]
-    b[OTHERS, 0], b[OTHERS, 1] = turn, slide
+        separation += abs(frame[1, 3, j]) * place[1, j]
+    b[OTHERS, 0], b[OTHERS, 1] = turn, separation
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         moves = w[MOVING, k]
         x, y = pairs[0, k, 0] - w[UNKNOWNS, 1], pairs[0, k, 1] - w[UNKNOWNS, 2]
         arm = sqrt(x * x + y * y)
-        variation = turn * (arm * turn + moves * slide) + ROUNDINGS * size
+        variation = turn * (arm * turn + moves * separation) + ROUNDINGS * size
         for j in range(4):
             about = frame[1, 0, j] / length
             along = moves * frame[1, 3, j]
@@ -90,21 +92,22 @@ def spread(
             away_y = frame[1, 2, j] + along * sine + about * x
             variation += place[1, j] * sqrt(away_x * away_x + away_y * away_y)
         tilt, sign = 0.0, 1.0
-        ray = abs(pairs[0, k, 0]) + abs(pairs[0, k, 1]) + abs(row[1]) + abs(row[2])
+        ray = abs(pairs[0, k, 0]) + abs(pairs[0, k, 1])
+        ray += local_size(row) if is_shallow(row) else abs(row[X]) + abs(row[Y])
         # Seven roundings of each coordinate of the arm, one of the sum with the tail's, one of the difference from the
         # feature's middle, and four of products and root.
         b[ERROR, k] = HALF_UNIT * (10.0 * arm + 6.0 * ray) + backward_error
-        if row[0] != 0.0:
-            ray = row[6] + w[OFF, k]
+        if row[IS_ARC] != 0.0:
+            ray = row[RADIUS] + w[OFF, k]
             tilt = variation / (ray - variation) + ROUNDING if 2.0 * variation < ray else 4.0
-            sign = row[7]
-        b[VARIATION, k], b[TILT, k], b[ARM_BAND, k] = variation, tilt, arm * turn + moves * slide
+            sign = row[SIGN]
+        b[VARIATION, k], b[TILT, k], b[ARM_BAND, k] = variation, tilt, arm * turn + moves * separation
         pairs[1, k, 0], pairs[1, k, 1] = x, y
         pairs[2, k, 0], pairs[2, k, 1] = sign * w[SLOPES + k, 1], sign * w[SLOPES + k, 2]
         moment = (x * pairs[2, k, 1] - y * pairs[2, k, 0]) / length
         b[MOMENT, k] = abs(moment)
         b[MOMENT_BAND, k] = ((arm + b[ARM_BAND, k]) * tilt + b[ARM_BAND, k] + ROUNDINGS * size) / length
-        b[PUSH, k] = pairs[2, k, 0] * cosine + pairs[2, k, 1] * sine
+        b[ALONG_X, k] = pairs[2, k, 0] * cosine + pairs[2, k, 1] * sine
         b[FORCE_BAND, k] = tilt + turn + ROUNDINGS
 
 
@@ -128,12 +131,12 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
     one carrier: parallel normals stay so wherever the part slides.
     """
     one, two = features[int(record[FEATURES + i])], features[int(record[FEATURES + j])]
-    if one[0] == 0.0 or two[0] == 0.0:
+    if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
         return inf
     x, y = pairs[1, j, 0] - pairs[1, i, 0], pairs[1, j, 1] - pairs[1, i, 1]
     varies = hypot(x, y) * b[OTHERS, 0] + abs(w[MOVING, i] - w[MOVING, j]) * b[OTHERS, 1]
-    apart = hypot(x - two[1] + one[1], y - two[2] + one[2])
-    return (b[TILT, i] * (apart + varies) + varies) / two[6] + ROUNDING
+    apart = hypot(x - two[X] + one[X], y - two[Y] + one[Y])
+    return (b[TILT, i] * (apart + varies) + varies) / two[RADIUS] + ROUNDING
 
 
 @inner
@@ -143,14 +146,14 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
     moving, standing = inf, -inf
     for k in range(4):
         row = features[int(record[FEATURES + k])]
-        reach = max(reach, b[VARIATION, k] if row[0] == 0.0 else row[6] * b[TILT, k])
+        reach = max(reach, b[VARIATION, k] if row[IS_ARC] == 0.0 else row[RADIUS] * b[TILT, k])
         if w[MOVING, k] == 0.0:
             standing = max(standing, w[STEP_X, k])
         else:
             moving = min(moving, w[STEP_X, k] + w[UNKNOWNS, 3])
     if moving - standing + b[OTHERS, 1] + HAIR < setting.limits.gap - GAP_SLACK:
         return True
-    if end_slack(record, features, pairs[0], setting.limits.contact_margin) + reach + HAIR < 0.0:
+    if nearest_end(record, features, pairs[0]) - setting.limits.contact_margin + reach + HAIR < 0.0:
         return True
     size = minors(pairs[1], pairs[2], setting.limits.wrench_length, null)
     for k in range(4):
@@ -179,8 +182,8 @@ def may_clamp(sign: float, clamping: float, size: float, w: Array, null: Array, 
         band = b[MINOR_BAND, k]
         if sign * null[k] + band < LEAST_CLOSURE * size:
             return False
-        push = sign * clamping * null[k] * b[PUSH, k]
-        doubt = abs(null[k]) * b[FORCE_BAND, k] + band * abs(b[PUSH, k]) + band * b[FORCE_BAND, k]
+        push = sign * clamping * null[k] * b[ALONG_X, k]
+        doubt = abs(null[k]) * b[FORCE_BAND, k] + band * abs(b[ALONG_X, k]) + band * b[FORCE_BAND, k]
         if w[MOVING, k] == 0.0:
             standing += doubt - push
         else:

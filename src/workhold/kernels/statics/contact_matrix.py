@@ -18,12 +18,14 @@ the null vector of the wrenches. The duality of motions and forces is that of vi
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, nan, sin
+from math import cos, hypot, inf, nan, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.elimination import eliminate
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, SIGN, X, Y
 from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
 
 Array = NDArray[np.float64]
@@ -31,36 +33,13 @@ IntArray = NDArray[np.int64]
 
 
 @inner
-def invert(matrix: Array, out: Array) -> bool:
-    """Invert a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
-
-    Returns
-    -------
-    bool
-        Whether there is an inverse.
-    """
-    for i in range(4):
-        for j in range(4):
-            out[i, j] = 1.0 if i == j else 0.0
-    for k in range(4):
-        best = k
-        for i in range(k + 1, 4):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        pivot = matrix[best, k]
-        if not abs(pivot) > 0.0:
-            return False
-        for j in range(4):
-            one, other = matrix[best, j] / pivot, out[best, j] / pivot
-            matrix[best, j], out[best, j] = matrix[k, j], out[k, j]
-            matrix[k, j], out[k, j] = one, other
-        for i in range(4):
-            if i != k:
-                factor = matrix[i, k]
-                for j in range(4):
-                    matrix[i, j] -= factor * matrix[k, j]
-                    out[i, j] -= factor * out[k, j]
-    return True
+def distance_to_edge(row: Array, s: float) -> float:
+    """Distance in mm along a feature from a parameter to the nearer end that is no tangent joint; infinite without one."""
+    if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
+        return inf
+    low = row[HALF_EXTENT] + s if row[LOW_SLACK] <= 0.0 else inf
+    high = row[HALF_EXTENT] - s if row[HIGH_SLACK] <= 0.0 else inf
+    return min(low, high) if row[IS_ARC] == 0.0 else min(low, high) * row[RADIUS]
 
 
 @compiled
@@ -77,7 +56,9 @@ def contact_matrices_of(
     points: Array,
     normals: Array,
     ends: Array,
+    edges: Array,
     inverses: Array,
+    matrix: Array,
 ) -> None:
     """Contacts of N fixtures and the inverses of their contact matrices.
 
@@ -88,16 +69,17 @@ def contact_matrices_of(
     moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
     axis : (2,) the unit vector x in the toolkit's frame.
     faces : (N, 4) number of the face each peg touches.
-    features : (F, 8) rows of contact features about c, ordered by face.
+    features : (F, 10) rows of contact features about c with the slacks of their ends, ordered by face.
     starts : where the features of each face number begin, one more than there are numbers.
     center : (2,) c.
     length : L in mm.
     points : (N, 4, 2) receives the peg centres in the part's frame about c, in mm.
     normals : (N, 4, 2) receives the outward unit normals in the part's frame.
     ends : (N, 4) receives the distances in mm along the features to their nearer ends.
+    edges : (N, 4) receives the distances in mm along them to their nearer edges, see :func:`distance_to_edge`.
     inverses : (N, 4, 4) receives the inverses; NaN where there is none, or a face has no feature.
+    matrix : (4, 4) work space.
     """
-    matrix = np.empty((4, 4))
     for k in range(len(pegs)):
         cosine, sine = cos(pose[k, 0]), sin(pose[k, 0])
         known = True
@@ -112,18 +94,18 @@ def contact_matrices_of(
                     nearest, chosen = distance, f
             known = known and chosen >= 0
             row = features[max(chosen, 0)]
-            nx, ny = row[4], -row[3]
-            if row[0] != 0.0:
-                nx, ny = row[7] * (x - row[1]), row[7] * (y - row[2])
+            nx, ny = row[AXIS_Y], -row[AXIS_X]
+            if row[IS_ARC] != 0.0:
+                nx, ny = row[SIGN] * (x - row[X]), row[SIGN] * (y - row[Y])
                 size = hypot(nx, ny)
                 nx, ny = nx / size, ny / size
             points[k, i, 0], points[k, i, 1] = x, y
             normals[k, i, 0], normals[k, i, 1] = nx, ny
-            ends[k, i] = nearest
+            ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter_on(row, x, y))
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
             matrix[i, 3] = moves[k, i] * ((nx * cosine - ny * sine) * axis[0] + (nx * sine + ny * cosine) * axis[1])
-        if not (invert(matrix, inverses[k]) and known):
+        if not (eliminate(matrix, inverses[k]) > 0.0 and known):
             for i in range(4):
-                ends[k, i] = nan
+                ends[k, i] = edges[k, i] = nan
                 for j in range(4):
                     inverses[k, i, j] = nan

@@ -142,6 +142,7 @@ def figures(
     points: Array,
     normals: Array,
     ends: Array,
+    edges: Array,
     inverses: Array,
     faces: IntArray,
     length: float,
@@ -150,29 +151,31 @@ def figures(
     arcs: Array,
     loads: Array,
     out: Array,
+    work: Array,
 ) -> None:
-    """Closure margin, clamp amplification, wrench radius, location error, end distance and load reaction of N fixtures.
+    """Closure margin, clamp amplification, wrench radius, location error, end distance, load reaction and edge distance of N
+    fixtures.
 
     Parameters
     ----------
-    points, normals, ends, inverses : see ``kernels.statics.contact_matrix.contact_matrices_of``.
+    points, normals, ends, edges, inverses : see ``kernels.statics.contact_matrix.contact_matrices_of``.
     faces : (N, 4) touched.
-    length, tolerances, corners, arcs : see :func:`location_error`.
+    length, tolerances, corners, arcs : see :func:`location_error`. No edge is told to be farther than the length.
     loads : (M, 11) rows, see ``kernels.statics.reactions``.
-    out : (N, 6) receives the figures; NaN for a load reaction without loads, and for all where the contact matrix has no
-        inverse.
+    out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the contact
+        matrix has no inverse.
+    work : (8, 3) work space.
     """
-    work = np.empty((8, 3))
     for k in range(len(points)):
         inverse = inverses[k]
         # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null vector.
         total, least, most = 0.0, inf, 0.0
-        nearest = inf
+        nearest, edge = inf, length
         for i in range(4):
             force = inverse[3, i]
             total += force
             least, most = min(least, force), max(most, force)
-            nearest = min(nearest, ends[k, i])
+            nearest, edge = min(nearest, ends[k, i]), min(edge, edges[k, i])
         known = total == total
         out[k, 0] = least / total if known else np.nan
         out[k, 1] = most if known else np.nan
@@ -180,3 +183,4 @@ def figures(
         out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, work) if known else np.nan
         out[k, 4] = nearest if known else np.nan
         out[k, 5] = largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan
+        out[k, 6] = edge if known else np.nan

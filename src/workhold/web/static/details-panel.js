@@ -33,7 +33,7 @@ function write() {
 /** The table of pegs. */
 function writePegs(row) {
   byId("force-title").textContent = loaded ? "Force N" : "Force";
-  byId("force-title").title = loaded ? "Under the load" : "For each newton of jaw force";
+  byId("force-title").title = loaded ? "Under the load" : `For each newton of ${row.mover} force`;
   byId("pegs").replaceChildren(
     ...row.holes.map((hole, k) =>
       make("tr", {},
@@ -44,8 +44,8 @@ function writePegs(row) {
     ),
   );
   byId("pose-words").textContent =
-    `Jaw separation ${length(row.jaw_separation)}. Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
-    `${bareLength(row.x)}, ${length(row.y)} from hole L-A1. ` + (loaded ? "" : "Forces are for each newton of jaw force.");
+    `${row.setting.name[0].toUpperCase()}${row.setting.name.slice(1)} ${length(row.setting.length)}. Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
+    `${bareLength(row.x)}, ${length(row.y)} from hole ${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${row.mover} force.`);
 }
 
 /** The figures of quality; beside those of the pinned fixture, the better one of each marked. */
@@ -67,8 +67,8 @@ function writeQuality(row, pinned) {
       return make("tr", { title: figure.meaning }, make("th", { scope: "row" }, figure.words), ...cells);
     });
   if (pinned) {
-    const cells = [pinned, row].map((each) => make("td.number", {}, length(each.jaw_separation, 2)));
-    lines.push(make("tr", {}, make("th", { scope: "row" }, "jaw separation"), ...cells));
+    const cells = [pinned, row].map((each) => make("td.number", {}, length(each.setting.length, 2)));
+    lines.push(make("tr", {}, make("th", { scope: "row" }, row.setting.name), ...cells));
   }
   byId("quality").replaceChildren(...lines);
 }

@@ -77,8 +77,8 @@ export class FixtureDrawing {
   /** What the drawing shows, for those who do not see it. */
   words() {
     const { row } = this;
-    return `Fixture ${row.rank || ""} of type ${row.type}: pegs in ${row.holes.join(", ")}, jaw separation ` +
-      `${row.jaw_separation.toFixed(3)} mm, part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
+    const set = row.setting ? `${row.setting.name} ${row.setting.length.toFixed(3)} mm, ` : "";
+    return `Fixture ${row.rank || ""} of type ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
   }
 
   /** Make everything that lies in mm. */
@@ -93,8 +93,8 @@ export class FixtureDrawing {
     shape.append(draw("path.outline", { d: outline }));
     this.underPegs = draw("g.under-pegs");
     const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
-    this.plates = groups((each) => this.plate(each));
-    this.pegs = groups((each) => each.pegs.map((k) => this.peg(row.pegs[k], k)));
+    this.plates = groups((each) => (each.clamp ? this.clamp(each) : this.plate(each)));
+    this.pegs = groups((each) => each.pegs.map((k) => this.peg(row.pegs[k], k, each.peg_radius)));
     this.view.world.replaceChildren(...this.plates, shape, ...this.pegs);
     this.slide(this.open);
   }
@@ -116,11 +116,32 @@ export class FixtureDrawing {
     return [plate, draw("path.holes", { d: holes })];
   }
 
+  /** A clamp: its body and bolt, or the line of holes that its tip is on, and an arrow behind it in the way it pushes. */
+  clamp({ clamp, clamping: [dx, dy], pitch, peg_radius: size }) {
+    const { hole, tip, bolt_radius: bolt } = clamp;
+    const [x0, y0, x1, y1] = clamp.line;
+    const pitchAlong = dx ? pitch[0] : pitch[1];
+    const radius = Math.max(size, pitchAlong / 12);
+    const [x, y] = hole ?? tip;
+    const at = (away, aside) => `${x - away * dx - aside * dy} ${y - away * dy + aside * dx}`;
+    const [near, far, neck, wing, shaft] = [radius * 1.1, pitchAlong * 0.95, radius * 1.1 + pitchAlong * 0.24, pitchAlong * 0.13, pitchAlong * 0.055];
+    const corners = [[near, 0], [neck, wing], [neck, shaft], [far, shaft], [far, -shaft], [neck, -shaft], [neck, -wing]];
+    const push = draw("path.clamp-push", { d: `M${corners.map(([away, aside]) => at(away, aside)).join("L")}Z` });
+    if (!hole) return [draw("path.clamp-line", { d: dx ? `M${x0} ${tip[1]}H${x1}` : `M${tip[0]} ${y0}V${y1}` }), push];
+    const ends = { x1: hole[0], y1: hole[1], x2: tip[0], y2: tip[1] };
+    return [
+      draw("line.clamp-edge.clamp-body", { ...ends, "stroke-width": 2 * radius }),
+      draw("line.clamp-fill.clamp-body", { ...ends, "stroke-width": 1.8 * radius }),
+      draw("circle.bolt", { cx: hole[0], cy: hole[1], r: Math.min(bolt, 0.8 * radius) }),
+      push,
+    ];
+  }
+
   /** A peg that can be pointed at and focused. */
-  peg([x, y], k) {
-    const radius = Math.max(this.vise.peg_radius, Math.min(...this.vise.pitch) / 12);
+  peg([x, y], k, size) {
+    const radius = Math.max(size, Math.min(...this.vise.pitch) / 12);
     const { row } = this;
-    const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of jaw force`;
+    const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${row.mover} force`;
     const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
     group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
     const cross = radius / 2;
@@ -169,7 +190,15 @@ export class FixtureDrawing {
     this.open = open;
     this.row.carriers.forEach((carrier, k) => {
       const [x, y] = this.shift(carrier);
-      for (const group of [this.plates[k], this.pegs[k]]) {
+      const { clamp } = carrier;
+      if (clamp) {
+        // The bolt stays where it is, and the body is as long as the tip is out.
+        for (const body of this.plates[k].querySelectorAll(".clamp-body")) {
+          body.setAttribute("x2", clamp.tip[0] + x);
+          body.setAttribute("y2", clamp.tip[1] + y);
+        }
+      }
+      for (const group of clamp?.hole ? [this.pegs[k]] : [this.plates[k], this.pegs[k]]) {
         if (x || y) group.setAttribute("transform", `translate(${x} ${y})`);
         else group.removeAttribute("transform");
       }

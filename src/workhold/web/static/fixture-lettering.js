@@ -58,7 +58,7 @@ function columnNames(drawing) {
     const [dx, dy] = drawing.shift(carrier);
     const step = Math.max(1, Math.ceil(22 / (carrier.pitch[0] * view.k)));
     for (let column = carrier.columns[0]; column <= carrier.columns[1]; column += 1) {
-      const peg = carrier.used.some((hole) => hole[0] === column);
+      const peg = carrier.used_columns.includes(column);
       if (!peg && column % step) continue;
       const [px, py] = view.page([place(carrier, column, 0)[0] + dx, carrier.plate[3] + dy]);
       names.push(word(columnLetters(column), [px, py - 11], peg ? "hole-axis used" : "hole-axis"));
@@ -76,7 +76,7 @@ function rowNames(drawing) {
     const right = carrier.names_at === "right";
     const step = Math.max(1, Math.ceil(17 / (carrier.pitch[1] * view.k)));
     for (let index = carrier.rows[0]; index <= carrier.rows[1]; index += 1) {
-      const peg = carrier.used.some((hole) => hole[1] === index);
+      const peg = carrier.used_rows.includes(index);
       if (!peg && (index + 1) % step) continue;
       const [px, py] = view.page([carrier.plate[right ? 2 : 0] + dx, place(carrier, 0, index)[1] + dy]);
       const kind = peg ? "hole-axis used" : "hole-axis";
@@ -86,28 +86,28 @@ function rowNames(drawing) {
   });
 }
 
-/** How far a carrier has slid, as a dimension above the plates, or at their left when it slides upward. */
+/** How far a carrier has slid, as a dimension above the plates, or at their right when it slides upward. */
 function travels(drawing) {
   const { view, row } = drawing;
   const plates = row.carriers.map(({ plate }) => plate);
-  const [left, top] = view.page([Math.min(...plates.map((plate) => plate[0])), Math.max(...plates.map((plate) => plate[3]))]);
+  const [right, top] = view.page([2, 3].map((side) => Math.max(...plates.map((plate) => plate[side]))));
   return row.carriers.flatMap((carrier) => {
     if (!carrier.measured || !carrier.clamping) return [];
     const upright = Math.abs(carrier.clamping[1]) > Math.abs(carrier.clamping[0]);
     const [dx, dy] = drawing.shift(carrier);
     const [start, end] = carrier.measured;
     const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
-    const rim = upright ? left - 30 : top - 30;
+    const rim = upright ? right + 16 : top - 30;
     const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
-    const text = `S = ${length((b - a) / view.k)}`;
+    const text = `${row.setting.sign} = ${length(drawing.open ? (b - a) / view.k : row.setting.length)}`;
     const wide = 8.2 * text.length + 10;
     const above = upright || b - a < wide + 24;
-    const [x, y] = upright ? [rim, (a + b) / 2 - 13] : [(a + b) / 2, rim - (above ? 13 : 0)];
+    const [x, y] = upright ? [rim + 8, (a + b) / 2] : [(a + b) / 2, rim - (above ? 13 : 0)];
     const heads = [[a, 1], [b, -1]].map(([at, way]) =>
       draw("path.dimension-head", { d: upright ? `M${rim} ${at}l-3.2 ${way * 9}h6.4Z` : `M${at} ${rim}l${way * 9} -3.2v6.4Z` }),
     );
     const back = above ? [] : [draw("rect.label-back", { x: x - wide / 2, y: y - 9, width: wide, height: 18 })];
-    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, word(text, [x, y], "dimension-text")];
+    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, word(text, [x, y], "dimension-text", upright ? "start" : "middle")];
   });
 }
 
@@ -132,13 +132,19 @@ function apart(labels, pegs) {
 
 /** The name of each peg's hole, on the side away from the part. */
 function holeNames(drawing) {
-  const { row, view, contacts, vise } = drawing;
+  const { row, view, contacts } = drawing;
   const shifts = new Map(row.carriers.flatMap((each) => each.pegs.map((k) => [k, drawing.shift(each)])));
-  const radius = Math.max(vise.peg_radius * view.k, 4);
+  const radius = Math.max(...row.carriers.map((each) => each.peg_radius * view.k), 4);
   const centers = row.pegs.map(([x, y], k) => view.page([x + shifts.get(k)[0], y + shifts.get(k)[1]]));
   const labels = centers.map(([x, y], k) => {
     const [nx, ny] = contacts[k].normal;
     const w = 8.4 * row.holes[k].length + 12;
+    const pushed = row.carriers.find((each) => each.clamp && each.pegs.includes(k));
+    if (pushed) {
+      // Beside the body and the arrow behind it, on the lower or the left side.
+      const [bx, by] = pushed.clamp.hole ? view.page(pushed.clamp.hole) : [x, y];
+      return pushed.clamping[0] ? { x: bx, y: by + radius + 20, w, h: 20 } : { x: bx - radius - 14 - w / 2, y: by, w, h: 20 };
+    }
     return { x: x + nx * (radius + 8 + w / 2), y: y - ny * (radius + 18), w, h: 20 };
   });
   apart(labels, centers.map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius, fixed: true })));

@@ -128,8 +128,9 @@ export class FixtureList {
   fill(cell, row) {
     cell.row = row;
     cell.element.classList.remove("coming");
+    cell.element.classList.toggle("unfit", Boolean(row.unfit));
     cell.title.replaceChildren(
-      make("b", {}, `${row.rank}`), ` Type ${row.type}`, make("span.faint", {}, ` S ${length(row.jaw_separation, 2)} · ${number(row.theta_deg, 1)}°`),
+      make("b", {}, `${row.rank}`), row.like ? make("span.faint", {}, ` and ${row.like} like it`) : "", ` Type ${row.title}`, make("span.faint", {}, ` ${row.setting.sign} ${length(row.setting.length, 2)} · ${number(row.theta_deg, 1)}°`),
     );
     cell.holes.textContent = row.holes.join("  ");
     cell.figures.replaceChildren(
@@ -141,11 +142,11 @@ export class FixtureList {
     drawThumbnail(cell.canvas, state.part, state.vise, row);
   }
 
-  /** Three figures at most: the one sorted by first, then those that fixtures are ranked by. */
+  /** Three figures at most: the one sorted by first, then warnings and what tells most. */
   shownFigures() {
     const first = this.figures.filter((figure) => figure.key === state.list.sort);
-    const usual = ["location_error", "clamp_amplification", "closure_margin", "load_reaction"];
-    if (state.loads.length) usual.splice(1, 0, usual.pop());
+    const strong = state.loads.length ? "load_reaction" : "clamp_amplification";
+    const usual = ["warnings", "location_error", strong, "closure_margin"];
     const rest = usual.map((key) => this.figures.find((figure) => figure.key === key)).filter((f) => f && f !== first[0]);
     return [...first, ...rest].slice(0, 3);
   }

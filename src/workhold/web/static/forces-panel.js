@@ -15,6 +15,8 @@ import { fieldLength, number, readLength, readNumber } from "./units.js";
 /** A drag over the part's diagonal is this many newtons. */
 const NEWTONS = 1000;
 const STEP = 5;
+/** What the jaw is, and how many times as stiff as a contact. */
+const KINDS = ["force-kind", "force-ratio"];
 const FIELDS = ["force-x", "force-y", "force-size", "force-direction", "force-moment", "force-jaw"];
 
 /** @returns {HTMLInputElement} */
@@ -31,6 +33,7 @@ export function forcesPanel() {
   byId("push").addEventListener("click", togglePush);
   byId("rank-load").addEventListener("click", rankByLoad);
   for (const id of FIELDS) field(id).addEventListener("input", read);
+  for (const id of KINDS) field(id).addEventListener("input", readKind);
   fixtureDrawing.view.tool = { down: grab, move: drag, up: askBest };
   on(["force", "selected", "part", "unit"], (changed) => {
     write();
@@ -47,7 +50,7 @@ export function togglePush() {
     return;
   }
   const [x, y] = centerOf(state.part);
-  change({ force: { x, y, size: 200, direction: 0, moment: 0, jaw: null } });
+  change({ force: { x, y, size: 200, direction: 0, moment: 0, jaw: null, kind: "screw" } });
   byId("forces").scrollIntoView({ block: "nearest" });
 }
 
@@ -101,7 +104,7 @@ function read() {
   if (!state.force) return;
   const [x, y] = [readLength(field("force-x").value), readLength(field("force-y").value)];
   const [size, direction, moment, jaw] = FIELDS.slice(2).map((id) => readNumber(field(id).value));
-  const values = { x, y, size, direction, moment: moment ?? 0, jaw };
+  const values = { x, y, size, direction, moment: moment ?? 0, jaw, kind: state.force.kind };
   const wrong = {
     "force-x": x === null || !Number.isFinite(x), "force-y": y === null || !Number.isFinite(y),
     "force-size": !(size !== null && size >= 0), "force-direction": direction === null || !Number.isFinite(direction),
@@ -109,6 +112,23 @@ function read() {
   };
   for (const [id, bad] of Object.entries(wrong)) field(id).setAttribute("aria-invalid", String(bad));
   if (!Object.values(wrong).some(Boolean)) change({ force: values });
+}
+
+/** Read what the jaw is. */
+function readKind() {
+  if (!state.force) return;
+  const chosen = field("force-kind").value;
+  const ratio = readNumber(field("force-ratio").value);
+  const wrong = chosen === "ratio" && !(ratio !== null && ratio >= 0);
+  field("force-ratio").setAttribute("aria-invalid", String(wrong));
+  show(byId("force-ratio-label"), chosen === "ratio");
+  if (!wrong) change({ force: { ...state.force, kind: chosen === "ratio" ? ratio : chosen } });
+}
+
+/** What the jaw is, in words. */
+function kindWords(kind) {
+  if (kind === "constant") return "a jaw that keeps its force";
+  return typeof kind === "number" ? `a screw vise whose jaw is ${number(kind, 3)} times as stiff as a contact` : "a screw vise";
 }
 
 /** Show the force and what it does. */
@@ -127,6 +147,10 @@ function write() {
   FIELDS.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = texts[k];
   });
+  const ratio = typeof force.kind === "number";
+  if (field("force-kind") !== document.activeElement) field("force-kind").value = ratio ? "ratio" : (force.kind ?? "screw");
+  if (ratio && field("force-ratio") !== document.activeElement) field("force-ratio").value = String(force.kind);
+  show(byId("force-ratio-label"), field("force-kind").value === "ratio");
   const answer = reactions(part, selected, force);
   if (!answer) {
     byId("force-words").textContent = "The pegs of this fixture do not determine the forces.";
@@ -162,7 +186,7 @@ function writeBars(row, { forces, needed, jaw, loose }) {
     needed === 0
       ? "No peg lets go, however little the jaw presses."
       : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
-    enough ? `Forces are told for ${told}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
+    enough ? `Forces are told for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
   ].join(" ");
 }
 

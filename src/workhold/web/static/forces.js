@@ -6,7 +6,10 @@
  *
  *   sum f n = g,   sum f (q - c) x n = m,   sum over that carrier of f n . (-d) = F.
  *
- * Four equations for four forces, so f = f0 + F h; contacts are without friction (docs/quality.md).
+ * Four equations for four forces, so f = f0 + F h for a jaw that keeps its force. A screw vise is locked once it is closed with F:
+ * what its jaw takes of the load changes its push, and of f0 the part at right angles to h is left; of a jaw s times as stiff as
+ * a contact, f0 - h (h . f0) / (1 / s + h . h) is. Contacts are without
+ * friction (docs/quality.md).
  */
 import { contactsOf, turn } from "./pose.js";
 
@@ -48,8 +51,9 @@ export function centerOf(part) {
  * What a load does to a fixture.
  * @param {any} part
  * @param {import("./pose.js").Row} row
- * @param {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null}} load force in N at a
- *   point of the part, direction in degrees from the part's x axis, moment in N mm
+ * @param {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null, kind?: string|number}} load
+ *   force in N at a point of the part, direction in degrees from the part's x axis, moment in N mm, and of the jaw its force
+ *   and what it is: "screw", "constant", or how many times as stiff as one contact
  * @returns {{forces: number[], needed: number, jaw: number, loose: number}|null} peg forces, the jaw force needed so that no
  *   peg lets go, the jaw force they are told for, and which peg lets go first
  */
@@ -60,7 +64,12 @@ export function reactions(part, row, load) {
   const angle = (load.direction * Math.PI) / 180;
   const [gx, gy] = [load.size * Math.cos(angle), load.size * Math.sin(angle)];
   const moment = (load.x - center[0]) * gy - (load.y - center[1]) * gx + load.moment;
-  const bare = rows.map(([x, y, m]) => x * gx + y * gy + m * moment);
+  const free = rows.map(([x, y, m]) => x * gx + y * gy + m * moment);
+  const squares = rows.reduce((sum, line) => sum + line[3] * line[3], 0);
+  const stiffness = load.kind === "constant" ? 0 : typeof load.kind === "number" ? load.kind : Infinity;
+  const along = rows.reduce((sum, line, k) => sum + line[3] * free[k], 0);
+  const taken = stiffness > 0 ? along / (1 / stiffness + squares) : 0;
+  const bare = rows.map((line, k) => free[k] - taken * line[3]);
   const needs = rows.map((line, k) => -bare[k] / line[3]);
   const loose = needs.indexOf(Math.max(...needs));
   const needed = Math.max(0, needs[loose]);

@@ -17,6 +17,7 @@ import { takePanel } from "./take-panel.js";
 import { unitWord } from "./units.js";
 import { offerVises, visePanel } from "./vise-panel.js";
 import { visesDialog } from "./vises-dialog.js";
+import { warningsPanel } from "./warnings-panel.js";
 import { whyPanel } from "./why-panel.js";
 
 /** Distances of the drawing grid in the unit shown. */
@@ -96,6 +97,7 @@ async function begin() {
   whyPanel();
   visesDialog(figures);
   takePanel(about);
+  warningsPanel();
   const taken = await takeUpState().catch(() => false);
   await offerVises(taken);
   const keepSoon = quiet(keep, 150);

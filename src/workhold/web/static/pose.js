@@ -5,12 +5,13 @@
  */
 import { nearest, normalAt, pointAt, segmentsOf } from "./geometry.js";
 
-/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[]}} Row */
+/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[], title: string, setting: {sign: string, name: string, length: number}|null, mover: string, origin: string}} Row */
 
 /**
  * What shows of a carrier of holes, as the server tells it: the hole in column 0 and row 0, first and last column and row,
- * corners of its plate, numbers of its pegs and their columns and rows, the direction in which it slides to clamp or null.
- * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], used: number[][], clamping: number[]|null, measured: number[][]|null}} Carrier
+ * corners of its plate, numbers of its pegs, columns and rows that are used, the direction in which it slides to clamp or null.
+ * A clamp that is bolted to a plate comes last, without columns and rows; its plate is the room it takes.
+ * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], peg_radius: number, used_columns: number[], used_rows: number[], clamping: number[]|null, measured: number[][]|null, clamp: null|{hole: number[]|null, tip: number[], bolt_radius: number, line: number[]}}} Carrier
  */
 
 /**

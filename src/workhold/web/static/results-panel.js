@@ -15,7 +15,7 @@ import { explain } from "./why-panel.js";
 /** Short names of figures where there is little room. */
 const SHORT = {
   closure_margin: "margin", clamp_amplification: "clamp", wrench_radius: "wrench", location_error: "error",
-  end_distance: "to end", load_reaction: "load",
+  end_distance: "to end", load_reaction: "load", edge_distance: "to edge", jaw_force_needed: "needs", smallest_face: "face",
 };
 
 /** @type {FixtureList} */
@@ -29,6 +29,9 @@ let chosenByUser = false;
 
 /** @returns {HTMLSelectElement} */
 const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
+
+/** @returns {HTMLInputElement} */
+const box = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** @param {any[]} figures */
 export function resultsPanel(figures) {
@@ -51,8 +54,14 @@ export function resultsPanel(figures) {
   choice("filter-type").addEventListener("change", () => setList({ type: choice("filter-type").value }));
   choice("filter-face").addEventListener("change", () => setList({ face: choice("filter-face").value }));
   byId("filter-angle").addEventListener("change", readAngle);
+  for (const key of ["each", "unfit"]) byId(key).addEventListener("change", () => setList({ [key]: box(key).checked }));
+  choice("prefer").addEventListener("change", () => {
+    change({ prefer: choice("prefer").value || null, ranking: null });
+    start();
+  });
   on(["job"], showJob);
   on(["part"], writeFaces);
+  on(["arrangements"], writeTypes);
   on(["list"], () => {
     writeFilters();
     openRows();
@@ -102,9 +111,20 @@ function writeFaces() {
   choice("filter-face").value = state.list.face;
 }
 
+/** Offer the arrangements of the vise. */
+function writeTypes() {
+  choice("filter-type").replaceChildren(
+    make("option", { value: "" }, "all"), ...state.arrangements.map(({ name }) => make("option", { value: name }, name)),
+  );
+  choice("filter-type").value = state.list.type;
+}
+
 /** Show how the list is sorted and filtered. */
 export function writeFilters() {
-  const { sort, descending, type, face, angle } = state.list;
+  const { sort, descending, type, face, angle, each, unfit } = state.list;
+  box("each").checked = Boolean(each);
+  box("unfit").checked = Boolean(unfit);
+  choice("prefer").value = state.prefer ?? "";
   choice("sort").value = sort;
   choice("filter-type").value = type;
   choice("filter-face").value = face;
@@ -145,7 +165,7 @@ async function firstRow(from) {
     const job = state.job.job;
     const [row, other] = await Promise.all([rank, pinned].map((each) => (each ? rowOfRank(job, each) : null)));
     if (from !== rows) return;
-    const plain = state.list.sort === "rank" && !state.list.descending && !state.list.type && !state.list.face && !state.list.angle;
+    const plain = state.list.sort === "rank" && !state.list.descending && !state.list.type && !state.list.face && !state.list.angle && state.list.each && state.list.unfit;
     if (row) change({ selected: row, index: plain ? rank - 1 : -1 });
     if (other) change({ pinned: other });
     if (row && view === "fixture") change({ view });
@@ -243,6 +263,9 @@ function summary(job, busy) {
 function tellMatches() {
   const filtered = state.list.type || state.list.face || state.list.angle;
   if (!rows?.known || searching()) return;
-  if (!filtered) writeSummary();
-  else byId("count-words").textContent = `${countText(rows.total)} match the filters.`;
+  if (!filtered) {
+    writeSummary();
+    const { unfit } = rows;
+    if (unfit) byId("count-words").append(` ${countText(unfit)} of them ${unfit === 1 ? "is" : "are"} no fixture for a workshop and not listed.`);
+  } else byId("count-words").textContent = `${countText(rows.total)} match the filters.`;
 }

@@ -10,7 +10,7 @@ const MOST_PAGES = 60;
 export class Rows {
   /**
    * @param {string} job
-   * @param {{sort: string, descending: boolean, type: string, face: string, angle: string}} list
+   * @param {{sort: string, descending: boolean, type: string, face: string, angle: string, each?: boolean, unfit?: boolean}} list
    * @param {() => void} changed called when rows or their number are known
    * @param {() => void} gone called when the server has forgotten the job
    */
@@ -20,6 +20,8 @@ export class Rows {
     this.changed = changed;
     this.gone = gone;
     this.total = 0;
+    /** How many are left out because they are none for a workshop. */
+    this.unfit = 0;
     /** The total is known. */
     this.known = false;
     this.revision = -1;
@@ -34,6 +36,8 @@ export class Rows {
   path(offset, limit) {
     const query = new URLSearchParams({ offset: String(offset), limit: String(limit), sort: this.list.sort });
     query.set("descending", String(this.list.descending));
+    query.set("together", String(!this.list.each));
+    query.set("unfit", String(Boolean(this.list.unfit)));
     for (const key of ["type", "face", "angle"]) if (this.list[key]) query.set(key, this.list[key]);
     return `jobs/${encodeURIComponent(this.job)}/fixtures?${query}`;
   }
@@ -61,6 +65,7 @@ export class Rows {
       .then((answer) => {
         if (this.left) return;
         this.total = answer.total;
+        this.unfit = answer.unfit;
         this.known = true;
         this.revision = answer.revision;
         this.pages.set(page, answer.rows);

@@ -27,17 +27,11 @@ export function rulesPanel(drawing, showPart) {
     field(id).addEventListener("input", quiet(read, 250));
     field(id).addEventListener("change", read);
   }
-  for (const id of ["type-1", "type-2"]) {
-    field(id).addEventListener("change", (event) => {
-      const types = ["I", "II"].filter((_, k) => field(`type-${k + 1}`).checked);
-      if (types.length) change({ types });
-      else /** @type {HTMLInputElement} */ (event.target).checked = true;
-    });
-  }
   on(["part"], () => writeFaces(drawing));
   on(["avoid"], markFaces);
   on(["zones", "unit"], writeZones);
-  on(["angles", "contactMargin", "types", "unit"], write);
+  on(["angles", "contactMargin", "unit"], write);
+  on(["arrangements", "types"], writeTypes);
   on(["loads"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
@@ -126,7 +120,7 @@ function read() {
   if (JSON.stringify(angles) !== JSON.stringify(state.angles)) change({ angles });
 }
 
-/** Write angles, margin and types. */
+/** Write angles and margin. */
 function write() {
   const values = {
     "angle-low": state.angles.length ? String(state.angles[0][0]) : "",
@@ -134,7 +128,23 @@ function write() {
     "contact-margin": state.contactMargin ? fieldLength(state.contactMargin) : "",
   };
   for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
-  ["I", "II"].forEach((type, k) => (field(`type-${k + 1}`).checked = state.types.includes(type)));
+}
+
+/** A box for each arrangement of the vise; ticked means sought. */
+function writeTypes() {
+  byId("types").replaceChildren(
+    ...state.arrangements.map(({ name, words }) => {
+      const box = make("input", { type: "checkbox", value: name, checked: !state.types || state.types.includes(name), change: readTypes });
+      return make("label.check", {}, box, ` ${words}`);
+    }),
+  );
+}
+
+/** Read which arrangements are sought; one is. */
+function readTypes(event) {
+  const boxes = [...byId("types").querySelectorAll("input")];
+  if (!boxes.some((box) => box.checked)) event.target.checked = true;
+  change({ types: boxes.every((box) => box.checked) ? null : boxes.filter((box) => box.checked).map((box) => box.value) });
 }
 
 /** Tell which load the search ranks by, and offer to drop it. */
@@ -152,5 +162,6 @@ export function writeRules(drawing) {
   writeFaces(drawing);
   writeZones();
   write();
+  writeTypes();
   writeLoads();
 }

@@ -186,7 +186,7 @@ function pegWords(k, at, row) {
   const box = byId("peg-words");
   show(box, k !== null && row !== null);
   if (k === null || !row) return;
-  const force = fixtureDrawing.load && row === state.selected ? `${number(fixtureDrawing.load.forces[k], 0)} N` : `${number(row.forces[k], 3)} N for each N of jaw force`;
+  const force = fixtureDrawing.load && row === state.selected ? `${number(fixtureDrawing.load.forces[k], 0)} N` : `${number(row.forces[k], 3)} N for each N of ${row.mover} force`;
   box.textContent = `${row.holes[k]} · face ${row.faces[k]} · ${force}`;
   const wide = box.offsetWidth;
   box.style.left = `${Math.max(6, Math.min(innerWidth - wide - 6, at.left + at.width / 2 - wide / 2))}px`;

@@ -6,7 +6,7 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "vise", "types", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking",
+  "part", "vise", "types", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
 ];
 
 /**
@@ -15,7 +15,8 @@ export const SETTINGS = [
  * @property {string} viseName the preset chosen; "own" for own values
  * @property {any} vise fields of the vise in mm
  * @property {string} unit "mm" or "inch", for reading and typing only
- * @property {string[]} types
+ * @property {{name: string, words: string}[]} arrangements of the vise, as the server tells them
+ * @property {string[]|null} types names of the arrangements sought; null is all
  * @property {number} contactMargin in mm
  * @property {number[]} avoid faces not to touch
  * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
@@ -23,13 +24,14 @@ export const SETTINGS = [
  * @property {{peg: number, face: number}|null} tolerance in mm
  * @property {any[]} loads that the search ranks by
  * @property {string[]|null} ranking
+ * @property {string|null} prefer what is wanted most, where no figures are named to rank by
  * @property {any} job the search as the server tells it, or null
- * @property {{sort: string, descending: boolean, type: string, face: string, angle: string}} list
+ * @property {{sort: string, descending: boolean, type: string, face: string, angle: string, each: boolean, unfit: boolean}} list with near copies one by one, and with what is none for a workshop
  * @property {any} selected the fixture shown
  * @property {number} index its place in the list, -1 where it is not known
  * @property {any} pinned the fixture it is compared with, or null
  * @property {string} view "part", "fixture" or "draw"
- * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null}|null} force
+ * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null, kind?: string|number}|null} force with the force and kind of the jaw
  */
 
 /** @type {State} */
@@ -38,7 +40,8 @@ export const state = {
   viseName: "",
   vise: { pitch: [10, 10], columns: 2, peg_radius: 3 },
   unit: "mm",
-  types: ["I", "II"],
+  arrangements: [],
+  types: null,
   contactMargin: 0,
   avoid: [],
   zones: [],
@@ -46,8 +49,9 @@ export const state = {
   tolerance: null,
   loads: [],
   ranking: null,
+  prefer: null,
   job: null,
-  list: { sort: "rank", descending: false, type: "", face: "", angle: "" },
+  list: { sort: "rank", descending: false, type: "", face: "", angle: "", each: false, unfit: false },
   selected: null,
   index: -1,
   pinned: null,
@@ -87,6 +91,7 @@ export function request() {
     contact_margin: state.contactMargin,
     restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles },
     ranking: state.ranking,
+    prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
   };

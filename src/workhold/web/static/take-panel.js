@@ -6,12 +6,14 @@ import { byId, show } from "./dom.js";
 import { keep } from "./link.js";
 import { searching } from "./search.js";
 import { on, state } from "./state.js";
+import { loadQuery } from "./warnings-panel.js";
 
 /** @param {any} about what the server can do */
 export function takePanel(about) {
   show(byId("take-step"), Boolean(about.step));
   on(["part", "selected", "job", "unit", "force"], write);
   byId("paper").addEventListener("change", write);
+  byId("zero").addEventListener("input", write);
   byId("print").addEventListener("click", () => print());
   byId("copy-link").addEventListener("click", copyLink);
 }
@@ -27,7 +29,9 @@ function write() {
   const date = new Date();
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
   const sheet = { paper: /** @type {HTMLSelectElement} */ (byId("paper")).value, unit: state.unit, date: day };
-  if (state.force?.jaw) sheet.jaw_force = String(state.force.jaw);
+  const zero = /** @type {HTMLInputElement} */ (byId("zero")).value.trim();
+  if (zero) sheet.zero = zero;
+  Object.assign(sheet, loadQuery());
   // Files are made of a whole search only; until then a link leads nowhere.
   const over = !searching();
   const point = (id, path) => {
@@ -39,8 +43,8 @@ function write() {
   };
   point("take-sheet", downloadPath(job, rank, "sheet.pdf", sheet));
   point("take-svg", downloadPath(job, rank, "sheet.svg", sheet));
-  point("take-dxf", downloadPath(job, rank, "setup.dxf"));
-  point("take-step", downloadPath(job, rank, "setup.step"));
+  point("take-dxf", downloadPath(job, rank, "setup.dxf", zero ? { zero, unit: state.unit } : {}));
+  point("take-step", downloadPath(job, rank, "setup.step", zero ? { zero, unit: state.unit } : {}));
   point("take-picture", downloadPath(job, rank, "picture.svg"));
   point("take-json", downloadPath(job, null, "result.json"));
   point("take-csv", downloadPath(job, null, "result.csv"));

@@ -78,7 +78,7 @@ export function figureText(figure, value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (figure.unit === "mm") return length(value, figure.key === "location_error" ? 4 : 2);
   if (figure.unit === "N") return `${number(value, 0)} N`;
-  return number(value, figure.key === "clamp_amplification" ? 2 : 4);
+  return number(value, figure.key === "clamp_amplification" ? 2 : figure.decimals);
 }
 
 /**

@@ -46,7 +46,9 @@ export async function offerVises(chosen) {
     ...presets.map((preset) => make("option", { value: preset.name }, preset.title)),
     make("option", { value: OWN }, "own values"),
   );
-  if (!chosen) usePreset((presets.find((preset) => preset.name === "gripper-two-columns") ?? presets[0]).name);
+  const usual = presets.find((preset) => preset.name === "gripper-two-columns") ?? presets[0];
+  if (chosen) change({ arrangements: (presets.find((preset) => preset.name === state.viseName) ?? usual).arrangements });
+  else usePreset(usual.name);
   write();
 }
 
@@ -61,7 +63,9 @@ export function usePreset(name) {
     return;
   }
   const fields = Object.fromEntries(Object.entries(preset.fields).filter(([, value]) => value !== null));
-  change({ viseName: name, vise: fields, tolerance: preset.tolerance, unit: preset.unit ?? state.unit });
+  const { arrangements, tolerance } = preset;
+  const types = state.types?.filter((type) => arrangements.some((each) => each.name === type));
+  change({ viseName: name, vise: fields, arrangements, types: types?.length ? types : null, tolerance, unit: preset.unit ?? state.unit });
 }
 
 /** Read the fields into the state; what cannot be read is marked and changes nothing. */
@@ -87,9 +91,11 @@ function read() {
   if (words || !off.every((value) => value >= 0)) return;
   const blocked = field("blocked").value.split(/[\s,;]+/).filter(Boolean).map((name) => name.toUpperCase());
   const vise = { pitch: [x, y], ...rest, ...(blocked.length ? { blocked } : {}) };
-  const tolerance = { peg: off[0], face: off[1] };
+  const fit = vise.peg_radius === state.vise.peg_radius ? (state.tolerance?.fit ?? null) : null;
+  const tolerance = { peg: off[0], face: off[1], fit };
   const same = JSON.stringify(sorted(vise)) === JSON.stringify(sorted(state.vise));
-  const sameOff = off[0] === (state.tolerance?.peg ?? 0.01) && off[1] === (state.tolerance?.face ?? 0.01);
+  const sameOff = off[0] === (state.tolerance?.peg ?? 0.01) && off[1] === (state.tolerance?.face ?? 0.01)
+    && fit === (state.tolerance?.fit ?? null);
   if (same && sameOff) return;
   change({ ...(same ? {} : { vise, viseName: OWN }), ...(sameOff ? {} : { tolerance }) });
 }

@@ -54,32 +54,32 @@ export async function openVises() {
 /** The table as far as it is known. */
 function write(table) {
   if (!table.length) return;
-  const shown = figures.filter((figure) => table.some((line) => figure.key in bestOf(line)));
-  const usual = ["location_error", "clamp_amplification", "closure_margin"];
+  const shown = figures.filter((figure) => table.some((line) => figure.key in figuresOf(line)));
+  const usual = ["warnings", "tilt", "location_error", "clamp_amplification", "closure_margin"];
   const columns = usual.map((key) => shown.find((figure) => figure.key === key)).filter(Boolean);
   const lines = table.map((line) => {
     const name = line.name ?? line.title ?? line.vise?.name ?? line.vise?.title ?? "";
     const counts = line.counts ?? {};
     const total = (counts.I ?? 0) + (counts.II ?? 0);
-    const best = bestOf(line);
+    const first = figuresOf(line);
     const take = () => {
       /** @type {HTMLDialogElement} */ (byId("vises")).close();
       usePreset(name);
     };
-    return make("tr", {},
+    return make(total && !line.fit ? "tr.unfit" : "tr", {},
       make("th", { scope: "row" }, name), make("td.number", {}, line.error ? "–" : countText(total)),
-      ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, best[figure.key]) : "–")),
+      ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, first[figure.key]) : "–")),
       make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
   });
-  const heads = ["Vise", "Fixtures", ...columns.map((figure) => `best ${figure.words}`), ""];
+  const heads = ["Vise", "Fixtures", ...columns.map((figure) => figure.words), ""];
   byId("vises-table").replaceChildren(
-    make("table", {}, make("caption.unseen", {}, "The part in each vise"),
+    make("table", {}, make("caption.unseen", {}, "The first choice in each vise"),
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(k && words ? "th.number" : words ? "th" : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
   );
 }
 
-/** The best figures of a line, by key. */
-function bestOf(line) {
-  return line.quality ?? line["best quality"] ?? line.best ?? {};
+/** The figures of the first choice in a vise, by key. */
+function figuresOf(line) {
+  return line.figures ?? {};
 }

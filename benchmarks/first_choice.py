@@ -1,0 +1,138 @@
+"""The bench of first choices: for twenty parts what stands first, against the best of each figure, with its picture.
+
+    python benchmarks/first_choice.py            all parts, and docs/first-choice.md with its pictures
+    python benchmarks/first_choice.py --only hinge --pictures /tmp
+
+Targets: no warnings wherever a fixture without exists; contacts at least 1 mm from edges wherever one has that; square where
+a square fixture is within 25 % of the best location error; a clamp amplification of at most 1.5 where that is attainable
+within the same, among square ones where the part is to be square. "The best" is of the fixtures with the fewest warnings.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import workhold
+from shop_parts import PARTS, ShopPart
+from workhold.conventions import GENTLE_PEG, NEAR_EDGE
+from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.render import render
+from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
+    CLOSURE_MARGIN,
+    EDGE_DISTANCE,
+    FIGURES,
+    LOCATION_ERROR,
+    TILT,
+    WARNINGS,
+)
+
+ROOT = Path(__file__).parents[1]
+PAGE, PICTURES = ROOT / "docs" / "first-choice.md", ROOT / "docs" / "figures" / "first-choice"
+PLACE = "<!-- first choices -->\n", "<!-- end of first choices -->"
+SHOWN = (LOCATION_ERROR, CLAMP_AMPLIFICATION, CLOSURE_MARGIN, EDGE_DISTANCE)
+WITHIN = 1.25
+TARGETS = ("warnings", "edges", "square", "gentle")
+
+
+def judged(quality: NDArray[np.float64]) -> dict[str, bool]:
+    """Whether the first fixture of a list of figures of quality (N, 12) meets each target."""
+    first, fewest = quality[0], quality[:, WARNINGS] == quality[:, WARNINGS].min()
+    good = quality[fewest]
+    close = good[good[:, LOCATION_ERROR] <= WITHIN * good[:, LOCATION_ERROR].min()]
+    square_wanted = bool((close[:, TILT] == 0).any())
+    among = close[close[:, TILT] == 0] if square_wanted else close
+    gentle_wanted = bool((among[:, CLAMP_AMPLIFICATION] <= GENTLE_PEG).any())
+    return {
+        "warnings": bool(fewest[0]),
+        "edges": bool(first[EDGE_DISTANCE] >= NEAR_EDGE) or not bool((quality[:, EDGE_DISTANCE] >= NEAR_EDGE).any()),
+        "square": first[TILT] == 0 or not square_wanted,
+        "gentle": bool(first[CLAMP_AMPLIFICATION] <= GENTLE_PEG) or not gentle_wanted,
+    }
+
+
+def chosen(part: ShopPart) -> dict[str, Any]:
+    """The first choice for a part: its figures, the best of each, what targets it meets, and its picture."""
+    result = workhold.design(part.make(), part.vise, restrictions=part.restrictions)
+    quality = result.table.quality
+    good = quality[quality[:, WARNINGS] == quality[:, WARNINGS].min()]
+    best = {n: float((good[:, n].max if FIGURES[n].more_is_better else good[:, n].min)()) for n in SHOWN}
+    first = result[0]
+    return {
+        "part": part,
+        "count": len(result),
+        "first": {n: float(quality[0, n]) for n in (*SHOWN, TILT, WARNINGS)},
+        "holes": " ".join(peg.hole for peg in first.pegs),
+        "angle": first.pose.theta_deg,
+        "best": best,
+        "targets": judged(quality),
+        "picture": draw_fixture(first, result.workpiece, part.vise, title=f"{part.name}: first choice", unit=part.unit),
+    }
+
+
+def value(number: int, found: float, part: ShopPart) -> str:
+    """A figure in the part's unit."""
+    if FIGURES[number].unit == "mm":
+        return part.unit.text(found, part.unit.decimals)
+    return f"{found:.2f}"
+
+
+def section(choice: dict[str, Any]) -> str:
+    """What the page says of a part."""
+    part, first = choice["part"], choice["first"]
+    short = [name for name, met in choice["targets"].items() if not met]
+    lies = "square" if first[TILT] == 0 else f"tilted by {first[TILT]:.2f}°"
+    lines = [
+        f"### {part.name}",
+        f"{part.words[:1].upper()}{part.words[1:]}. First of {choice['count']:,}: {choice['holes']}, {lies} at "
+        f"{choice['angle']:.3f}°, {first[WARNINGS]:.0f} warnings. "
+        + (f"**Short of: {', '.join(short)}.**" if short else "All targets met."),
+        "",
+        "| figure | first choice | best of the list |",
+        "|---|---:|---:|",
+        *(f"| {FIGURES[n].words} | {value(n, first[n], part)} | {value(n, choice['best'][n], part)} |" for n in SHOWN),
+        "",
+        f"![First choice for {part.name}](figures/first-choice/{part.name}.svg)",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Run the bench."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", action="append", help="a part's name; nothing is written into the docs")
+    parser.add_argument("--pictures", type=Path, help="also write pictures as PNG into this folder")
+    asked = parser.parse_args()
+    sections = []
+    missed = 0
+    for part in PARTS:
+        if asked.only and part.name not in asked.only:
+            continue
+        choice = chosen(part)
+        sections.append(section(choice))
+        missed += sum(not met for met in choice["targets"].values())
+        sys.stdout.write(section(choice) + "\n")
+        sys.stdout.flush()
+        if asked.pictures:
+            asked.pictures.mkdir(parents=True, exist_ok=True)
+            (asked.pictures / f"{part.name}.png").write_bytes(render(choice["picture"], ".png"))
+        if not asked.only:
+            PICTURES.mkdir(parents=True, exist_ok=True)
+            (PICTURES / f"{part.name}.svg").write_text(choice["picture"], encoding="utf-8")
+    sys.stdout.write(f"{missed} targets missed of {len(TARGETS) * len(sections)}\n")
+    if not asked.only:
+        head, tail = (PAGE.read_text(encoding="utf-8").partition(mark) for mark in PLACE)
+        total = f"{len(TARGETS) * len(sections) - missed} of {len(TARGETS) * len(sections)} targets are met.\n\n"
+        PAGE.write_text(head[0] + PLACE[0] + total + "\n".join(sections) + PLACE[1] + tail[2], encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,194 @@
+"""Compile all kernels ahead of time into one shared library that ``workhold.kernels.base.built`` loads.
+
+Numba compiles each kernel for a plain processor of this kind (x86-64 without extensions, say), just as it would on first
+use. Of its optimized code everything but the kernel itself is made private or thrown away, LLVM writes an object file,
+and the linker joins them. Kernels keep numba's calling convention, so the library needs nothing of Python; what they need of
+numba's runtime, making and giving back arrays, is a few lines of LLVM's language below.
+
+The parts of ``workhold.kernels.preparing`` are compiled in processes of their own at the same time. Run as a script with the
+folder for the library, and the parts, if not all.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+SOURCES = Path(__file__).resolve().parents[1] / "src"
+# The first word to a process that compiles a part.
+EMIT = "emit"
+# The plain processor that is compiled for; of others whatever LLVM takes for the oldest.
+PLAIN = {"x86_64": "x86-64", "AMD64": "x86-64"}
+# numba's record of an array in memory: references, two for a destructor, address, bytes, allocator.
+RUNTIME = """
+declare ptr @malloc(i64)
+declare void @free(ptr)
+
+define ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %align) {
+  %wide = zext i32 %align to i64
+  %room = add i64 %wide, 48
+  %total = add i64 %size, %room
+  %made = call ptr @malloc(i64 %total)
+  %none = icmp eq ptr %made, null
+  br i1 %none, label %failed, label %filled
+failed:
+  ret ptr null
+filled:
+  %address = ptrtoint ptr %made to i64
+  %behind = add i64 %address, %room
+  %over = urem i64 %behind, %wide
+  %start = sub i64 %behind, %over
+  %data = inttoptr i64 %start to ptr
+  store i64 1, ptr %made
+  %data_at = getelementptr i64, ptr %made, i64 3
+  store ptr %data, ptr %data_at
+  %size_at = getelementptr i64, ptr %made, i64 4
+  store i64 %size, ptr %size_at
+  ret ptr %made
+}
+
+define void @NRT_MemInfo_call_dtor(ptr %made) {
+  call void @free(ptr %made)
+  ret void
+}
+"""
+EXPORTS = """
+declare void @free(ptr)
+@{description} = constant [{length} x i8] c"{text}"
+
+define void @{release}(ptr %made) {{
+  %before = atomicrmw sub ptr %made, i64 1 seq_cst
+  %last = icmp eq i64 %before, 1
+  br i1 %last, label %unused, label %used
+unused:
+  call void @free(ptr %made)
+  ret void
+used:
+  ret void
+}}
+"""
+
+
+def described(kind: Any) -> Any:
+    """A type of numba as ``workhold.kernels.base.built`` tells it."""
+    from numba.core import types
+
+    if isinstance(kind, types.Array):
+        assert kind.layout == "C", kind
+        element = "i8" if kind.dtype == types.int64 else "f8" if kind.dtype == types.float64 else "i1"
+        assert element != "i1" or kind.dtype == types.int8, kind
+        return {"array": element, "dimensions": kind.ndim}
+    if isinstance(kind, types.BaseTuple):
+        return [described(part) for part in kind.types]
+    if kind == types.none:
+        return None
+    assert kind in (types.int64, types.float64, types.boolean), kind
+    return "bool" if kind == types.boolean else str(kind)
+
+
+def emit(part: str, folder: Path) -> None:
+    """Compile the kernels of a part and write an object file for each, and what it is called with."""
+    # Before numba is imported.
+    os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = PLAIN.get(platform.machine(), "generic"), ""
+    os.environ["WORKHOLD_KERNELS"] = "building"
+    sys.path.insert(0, str(SOURCES))
+    import llvmlite.binding as llvm
+
+    from workhold.kernels import preparing
+
+    machine = llvm.Target.from_default_triple().create_target_machine(
+        cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
+    )
+    for kernel in preparing.prepared(part):
+        (signature,) = kernel.signatures
+        compiled = kernel.overloads[signature]
+        module = llvm.parse_assembly(compiled.library.get_llvm_str())
+        module.link_in(llvm.parse_assembly(RUNTIME))
+        for thing in (*module.functions, *module.global_variables):
+            if not thing.is_declaration:
+                thing.linkage = "internal"
+        own = module.get_function(compiled.fndesc.llvm_func_name)
+        own.linkage, own.name = "external", kernel.__name__
+        tuning = llvm.create_pipeline_tuning_options(speed_level=0)
+        builder = llvm.create_pass_builder(machine, tuning)
+        passes = llvm.create_new_module_pass_manager()
+        passes.add_global_dead_code_eliminate_pass()
+        passes.run(module, builder)
+        (folder / f"{kernel.__name__}.o").write_bytes(machine.emit_object(module))
+        told = {
+            "arguments": [described(kind) for kind in signature],
+            "result": described(compiled.signature.return_type),
+        }
+        (folder / f"{kernel.__name__}.json").write_text(json.dumps(told))
+
+
+def build(folder: Path, parts: Sequence[str] = ()) -> Path:
+    """Build the library of these sources, or of some parts of them, into a folder, unless it is there; return its path.
+
+    Raises
+    ------
+    SystemExit
+        In one sentence, where there is no linker, or a kernel cannot be compiled.
+    """
+    os.environ["WORKHOLD_KERNELS"] = "building"
+    sys.path.insert(0, str(SOURCES))
+    from workhold.kernels.base.built import DESCRIPTION, RELEASE, Library
+    from workhold.kernels.base.sources import library_name, source_hash
+
+    path, wanted = folder / library_name(), source_hash()
+    try:
+        if Library(path).source_hash == wanted:
+            return path
+    except (OSError, AttributeError, ValueError):
+        pass
+    linker = shutil.which("cc") or shutil.which("ld")
+    if linker is None:
+        sys.exit("Building the kernels needs a linker: install gcc or binutils.")
+    with tempfile.TemporaryDirectory() as name:
+        objects = Path(name)
+        from workhold.kernels.preparing import PARTS
+
+        compilers = [subprocess.Popen([sys.executable, __file__, EMIT, part, name]) for part in parts or PARTS]
+        codes = [process.wait() for process in compilers]
+        if any(codes):
+            sys.exit("The kernels could not be compiled.")
+        kernels = {told.stem: json.loads(told.read_text()) for told in sorted(objects.glob("*.json"))}
+        write_exports(objects / "exports.o", {"source_hash": wanted, "kernels": kernels}, DESCRIPTION, RELEASE)
+        if sys.platform == "darwin":
+            options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
+        else:
+            # What is left open, the functions of libm and malloc, is found in the process that loads the library.
+            options = ["-shared", "-s"] + (["-nostdlib"] if linker.endswith("cc") else [])
+        unfinished = objects / path.name
+        subprocess.run([linker, *options, "-o", unfinished, *sorted(objects.glob("*.o"))], check=True)
+        shutil.copy(unfinished, path.with_suffix(".new"))
+        path.with_suffix(".new").replace(path)
+    return path
+
+
+def write_exports(path: Path, description: Any, name: str, release: str) -> None:
+    """Write the object file of what the library exports besides its kernels."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    content = json.dumps(description).encode() + b"\0"
+    text = "".join(chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\{byte:02X}" for byte in content)
+    module = llvm.parse_assembly(EXPORTS.format(description=name, release=release, length=len(content), text=text))
+    machine = llvm.Target.from_default_triple().create_target_machine(reloc="pic", codemodel="default")
+    path.write_bytes(machine.emit_object(module))
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == EMIT:
+        emit(sys.argv[2], Path(sys.argv[3]))
+    else:
+        sys.stdout.write(f"{build(Path(sys.argv[1]), sys.argv[2:])}\n")

@@ -1,0 +1,306 @@
+"""An archive of columns: an uncompressed ZIP of NumPy arrays (.npy) and one text, which ``numpy.load`` opens too.
+
+The arrays all have the same number of rows and begin at multiples of 64 bytes, so that they can be mapped into memory:
+opening reads the directory and the text, whatever the number of rows. No times are written, so the same content gives the
+same bytes.
+
+Formats: PKWARE, "APPNOTE.TXT - .ZIP File Format Specification", version 6.3.10, sections 4.3.7 to 4.3.16 and 4.5.3 (sizes of
+64 bits); NumPy, "NEP 1 - A simple file format for NumPy arrays".
+
+Glossary
+--------
+column : an array of one row for each thing that is listed.
+member : a column or the text, with its local header in front.
+mark : a few letters at the very end of the file, by which its writer is known.
+"""
+
+from __future__ import annotations
+
+import io
+import mmap
+import struct
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, BinaryIO
+from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+from zlib import crc32
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+
+__all__ = ["ArchiveWriter", "Column", "is_archive", "mapped_archive"]
+
+FIRST_BYTES = b"PK\x03\x04"
+ALIGNMENT = 64
+# Version 4.5 of the format knows sizes of 64 bits; 1 January 1980 is its first day.
+VERSION, FIRST_DAY = 45, 0x21
+LOCAL, CENTRAL = struct.Struct("<4s5H3L2H"), struct.Struct("<4s6H3L5H2L")
+END_64, LOCATOR, END = struct.Struct("<4sQ2H2L4Q"), struct.Struct("<4sLQL"), struct.Struct("<4s4H2LH")
+# An extra field of large sizes, and one that only takes up room.
+SIZES, ROOM = 0x0001, 0xD935
+IN_EXTRA = 0xFFFFFFFF
+# Bytes of a directory, of an array's header, and of the text of an archive to be read.
+MOST_DIRECTORY, MOST_HEADER, MOST_TEXT = 1 << 20, 1 << 12, 200_000_000
+
+
+@frozen
+class Column:
+    """What a column holds: NumPy's name of the type of its numbers, such as ``<f8``, and the shape of a row."""
+
+    kind: str
+    shape: tuple[int, ...] = ()
+
+    def header(self, rows: int) -> bytes:
+        """What stands in front of so many rows."""
+        stream = io.BytesIO()
+        about = {"descr": self.kind, "fortran_order": False, "shape": (rows, *self.shape)}
+        np.lib.format.write_array_header_1_0(stream, about)
+        return stream.getvalue()
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of one row."""
+        return int(np.dtype(self.kind).itemsize * np.prod(self.shape, dtype=np.int64))
+
+
+@define(eq=False)
+class Member:
+    """A member on its way into the file: its name, where it begins, and so much of it as is known."""
+
+    name: bytes
+    start: int
+    size: int
+    checksum: int = 0
+
+    @property
+    def room(self) -> int:
+        """Bytes that only make the content begin at a multiple of 64 bytes."""
+        return -(self.start + LOCAL.size + len(self.name) + 24) % ALIGNMENT
+
+    @property
+    def content(self) -> int:
+        """Where the content begins."""
+        return self.start + LOCAL.size + len(self.name) + 24 + self.room
+
+    def local_header(self) -> bytes:
+        """The header in front of the content."""
+        sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
+        extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
+        lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
+        return LOCAL.pack(FIRST_BYTES, VERSION, 0, 0, 0, FIRST_DAY, self.checksum, *lengths) + self.name + extra
+
+    def central_header(self) -> bytes:
+        """The entry of the directory."""
+        extra = struct.pack("<2H3Q", SIZES, 24, self.size, self.size, self.start)
+        lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
+        fixed = CENTRAL.pack(
+            b"PK\x01\x02", VERSION, VERSION, 0, 0, 0, FIRST_DAY, self.checksum, *lengths, 0, 0, 0, 0, IN_EXTRA
+        )
+        return fixed + self.name + extra
+
+
+@define(eq=False)
+class ArchiveWriter:
+    """Writes an archive whose number of rows is known, block by block.
+
+    Parameters
+    ----------
+    stream : an empty file, in which the writer goes forth and back.
+    columns : what each holds, by name.
+    rows : how many there will be.
+    """
+
+    stream: BinaryIO
+    columns: Mapping[str, Column]
+    rows: int
+    members: list[Member] = field(factory=list, init=False)
+    done: int = field(default=0, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        start = 0
+        for name, column in self.columns.items():
+            header = column.header(self.rows)
+            size = len(header) + self.rows * column.row_bytes
+            member = Member(f"{name}.npy".encode(), start, size, crc32(header))
+            self.put(member.content, header)
+            self.members.append(member)
+            start = member.content + size
+
+    def put(self, place: int, content: Any) -> None:
+        """Write bytes at a place."""
+        self.stream.seek(place)
+        self.stream.write(content)
+
+    def add(self, block: Sequence[NDArray[Any]]) -> None:
+        """Write the next rows, an array for each column in their order."""
+        for member, column, values in zip(self.members, self.columns.values(), block, strict=True):
+            content = np.ascontiguousarray(values, column.kind).reshape(-1).view(np.uint8).data
+            self.put(member.content + member.size - (self.rows - self.done) * column.row_bytes, content)
+            member.checksum = crc32(content, member.checksum)
+        self.done += len(block[0])
+
+    def close(self, name: str, text: str, mark: str) -> None:
+        """Write the text under its name, the directory and the mark; all rows must be there."""
+        assert self.done == self.rows
+        content = text.encode()
+        last = self.members[-1]
+        member = Member(name.encode(), last.content + last.size, len(content), crc32(content))
+        self.put(member.content, content)
+        self.members.append(member)
+        for one in self.members:
+            self.put(one.start, one.local_header())
+        place, count = member.content + member.size, len(self.members)
+        directory = b"".join(one.central_header() for one in self.members)
+        end = END_64.pack(b"PK\x06\x06", END_64.size - 12, VERSION, VERSION, 0, 0, count, count, len(directory), place)
+        locator = LOCATOR.pack(b"PK\x06\x07", 0, place + len(directory), 1)
+        last_words = END.pack(
+            b"PK\x05\x06", 0, 0, count, count, len(directory), min(place, IN_EXTRA), len(mark.encode())
+        )
+        self.put(place, directory + end + locator + last_words + mark.encode())
+
+
+def is_archive(path: Path) -> bool:
+    """Whether a file begins as an archive does.
+
+    Raises
+    ------
+    OSError
+        When it cannot be read.
+    """
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        return stream.read(len(FIRST_BYTES)) == FIRST_BYTES
+
+
+class CarefulFile(io.FileIO):
+    """A file of which a directory of a sensible size can be read."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Read so many bytes, or those to the end.
+
+        Raises
+        ------
+        BadZipFile
+            When they are too many.
+        """
+        if size is not None and size > MOST_DIRECTORY:
+            raise BadZipFile("its directory is too large")
+        return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
+
+
+def mapped_archive(
+    path: Path, columns: Mapping[str, Column], name: str, whole: bool = False
+) -> tuple[str, dict[str, NDArray[Any]]]:
+    """The text of an archive and its columns, which are read only where they are looked at.
+
+    Nothing in the file is trusted: members must be stored as they are, apart from each other and inside the file, and an
+    array's header must be just that of so many rows as there is room for.
+
+    Parameters
+    ----------
+    columns : what each must hold, by name; further members are left alone.
+    name : of the text.
+    whole : read the columns once, to compare their checksums.
+
+    Raises
+    ------
+    InputError
+        When it is no such archive, or damaged; numbers are for the caller to check.
+    OSError
+        When it cannot be read.
+    """
+    names = {f"{one}.npy" for one in columns} | {name}
+    try:
+        with CarefulFile(path) as stream:
+            with ZipFile(stream) as archive:
+                members = [info for info in archive.infolist() if info.filename in names]
+            content = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
+        spans = {info.filename: span(info, content) for info in members}
+        refuse_unlike(names, members, list(spans.values()))
+        first, end = spans[name]
+        if end - first > MOST_TEXT:
+            raise BadZipFile(f"its {name} is too large")
+        text = content[first:end].decode()
+        for info in members:
+            if (whole or info.filename == name) and checksum(content, *spans[info.filename]) != info.CRC:
+                raise BadZipFile(f"{info.filename} is not what was written")
+        arrays = {one: mapped(content, *spans[f"{one}.npy"], one, column) for one, column in columns.items()}
+    except (BadZipFile, struct.error, ValueError, NotImplementedError, OverflowError) as error:
+        reason = str(error) if isinstance(error, BadZipFile) else "it is damaged"
+        raise InputError(f"{path} is not a result file: {reason[:1].lower()}{reason[1:]}.") from error
+    if len({len(array) for array in arrays.values()}) > 1:
+        raise InputError(f"{path} is not a result file: its columns do not have the same number of rows.")
+    return text, arrays
+
+
+def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
+    """Refuse members that are missing, there twice, or not apart from each other.
+
+    Raises
+    ------
+    BadZipFile
+        Naming the first.
+    """
+    found = [info.filename for info in members]
+    for one in sorted(names):
+        if found.count(one) != 1:
+            raise BadZipFile(f"{one} is {'missing' if one not in found else 'there twice'}")
+    spans = sorted(spans)
+    if any(end > first for (_, end), (first, _) in pairwise(spans)):
+        raise BadZipFile("its members overlap")
+
+
+def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
+    """Where the content of a member begins and ends.
+
+    Raises
+    ------
+    BadZipFile
+        When it is packed or locked, or not inside the file.
+    struct.error
+        When its header is not.
+    """
+    if info.compress_type != ZIP_STORED or info.flag_bits & 1 or info.compress_size != info.file_size:
+        raise BadZipFile(f"{info.filename} is packed, so it cannot be mapped into memory")
+    if info.header_offset < 0:
+        raise BadZipFile(f"{info.filename} lies outside of it")
+    signature, *_, name, extra = LOCAL.unpack_from(content, info.header_offset)
+    first = info.header_offset + LOCAL.size + name + extra
+    if signature != FIRST_BYTES or first + info.file_size > len(content):
+        raise BadZipFile(f"{info.filename} lies outside of it")
+    return first, first + info.file_size
+
+
+def checksum(content: mmap.mmap, first: int, end: int) -> int:
+    """The CRC-32 of a part of a file."""
+    value = 0
+    with memoryview(content) as view:
+        for k in range(first, end, MOST_DIRECTORY):
+            value = crc32(view[k : min(k + MOST_DIRECTORY, end)], value)
+    return value
+
+
+def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
+    """A column (N, ...) in a mapped file, read-only.
+
+    Raises
+    ------
+    BadZipFile
+        When its header is not that of such a column of such a size.
+    struct.error
+        When it is too short for a header.
+    """
+    (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
+    rows, rest = divmod(end - first - 10 - length, column.row_bytes)
+    header, wanted = (b"".join(part.split()) for part in (content[first : first + 10 + length], column.header(rows)))
+    if rows < 0 or rest or header[:8] + header[10:] != wanted[:8] + wanted[10:]:
+        raise BadZipFile(f"{name}.npy is not an array of {column.kind} with rows of shape {column.shape}")
+    if rows == 0:
+        return np.zeros((0, *column.shape), column.kind)
+    values = np.frombuffer(content, column.kind, rows * int(np.prod(column.shape)), first + 10 + length)
+    return values.reshape(rows, *column.shape)

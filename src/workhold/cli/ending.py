@@ -1,0 +1,188 @@
+"""How the command ends when it is told to, by Ctrl-C or SIGTERM, whatever it is doing.
+
+Python acts on a signal between two of its own steps, and then waits for its threads: a long step in compiled code would
+keep the end waiting. So a thread of its own sees the signal at once. It gives the program a moment to end in order, and
+then ends it, without unfinished files. A second signal ends it at once.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from time import monotonic
+from types import FrameType
+from typing import NoReturn
+
+__all__ = [
+    "INTERRUPTED",
+    "Interrupted",
+    "ask_to_stop",
+    "end_on_signals",
+    "keep_what_is_found",
+    "leave",
+    "say_interrupted",
+]
+
+INTERRUPTED, TERMINATED = 130, 143
+CODES = {int(signal.SIGINT): INTERRUPTED, int(signal.SIGTERM): TERMINATED}
+# Seconds for an orderly end, and within which signals are one: some programs tell a process and its whole group.
+GRACE, AT_ONCE = 1.5, 0.05
+# What clears a progress bar off its line and shows the cursor again.
+PLAIN_LINE = b"\r\x1b[2K\x1b[?25h"
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C. A plain KeyboardInterrupt that passes code made from text ends Python by the signal, whatever catches it."""
+
+
+class Terminated(SystemExit):
+    """SIGTERM."""
+
+
+class Ending:
+    """What this process has been told, and what it has to keep."""
+
+    def __init__(self) -> None:
+        self.watched = False
+        self.told_at: float | None = None
+        self.timer: threading.Timer | None = None
+        self.keeping = False
+        self.said = False
+        # Whether the main thread has acted on a signal, and the exit code that was decided.
+        self.heard = False
+        self.code: int | None = None
+
+    def tell(self, number: int) -> None:
+        """Take note of a signal."""
+        now = monotonic()
+        if self.told_at is None:
+            self.told_at = now
+            self.timer = threading.Timer(GRACE, self.lose_patience, (number,))
+            self.timer.daemon = True
+            self.timer.start()
+        elif now - self.told_at > AT_ONCE:
+            end_now(number)
+
+    def lose_patience(self, number: int) -> None:
+        """End a program that has not ended in order, unless it was asked to keep what it has found."""
+        if not (number == signal.SIGINT and self.keeping):
+            end_now(number)
+
+
+ending = Ending()
+
+
+def end_on_signals() -> None:
+    """Let Ctrl-C and SIGTERM end this process from now on, within two seconds."""
+    if ending.watched or threading.current_thread() is not threading.main_thread():
+        return
+    ending.watched = True
+    reader, writer = os.pipe()
+    if sys.platform != "win32":
+        os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGTERM, terminate)
+    sys.unraisablehook = end_where_it_is_lost
+    atexit.register(keep_the_code)
+    threading.Thread(target=watch, args=(reader,), daemon=True).start()
+
+
+def watch(reader: int) -> None:
+    """Tell of every signal that Python has a handler for, also while that handler has to wait."""
+    while told := os.read(reader, 1):
+        if told[0] in CODES:
+            ending.tell(told[0])
+
+
+def interrupt(number: int, frame: FrameType | None) -> None:
+    """Ctrl-C as Python's own, see :class:`Interrupted`."""
+    ending.heard = True
+    raise Interrupted
+
+
+def terminate(number: int, frame: FrameType | None) -> None:
+    """End on SIGTERM through the interpreter, so that temporary files are removed."""
+    ending.heard, ending.code = True, TERMINATED
+    raise Terminated(TERMINATED)
+
+
+def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
+    """End at once where what a signal raises cannot be passed on, as in what a library in compiled code calls back."""
+    for kind, number in ((Interrupted, signal.SIGINT), (Terminated, signal.SIGTERM)):
+        if issubclass(lost.exc_type, kind):
+            end_now(number)
+    sys.__unraisablehook__(lost)
+
+
+def leave(code: int) -> NoReturn:
+    """End the program in order with an exit code."""
+    ending.code = code
+    sys.exit(code)
+
+
+def keep_the_code() -> None:
+    """Let no signal change the exit code any more: Python, while it clears up, would end by it. It has its output out, and
+    has waited for its threads; what clearing up would take, a program that is told to end does not wait for.
+    """
+    for number in CODES:
+        signal.signal(number, signal.SIG_IGN)
+    if ending.heard and ending.code is not None:
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(ending.code)
+
+
+def end_now(number: int) -> None:
+    """End this process from any thread, without unfinished files."""
+    atomic = sys.modules.get("workhold.files.atomic")
+    if atomic is not None:
+        atomic.remove_unfinished()
+    if number == signal.SIGINT:
+        say_interrupted()
+    # Threads may be deep in compiled code: no orderly end waits for them.
+    os._exit(CODES[number])
+
+
+def say_interrupted() -> None:
+    """One sentence, once."""
+    if not ending.said:
+        ending.said = True
+        line = PLAIN_LINE if os.isatty(2) else b""
+        with suppress(OSError):
+            os.write(2, line + b"workhold: interrupted; no unfinished file was left behind.\n")
+
+
+def keep_what_is_found() -> None:
+    """Let the search that is being interrupted, if one is, take its time to hand over what it has found."""
+    ending.keeping = True
+
+
+@contextmanager
+def ask_to_stop(then: str = "what was found so far is kept") -> Iterator[threading.Event]:
+    """An event that Ctrl-C within the block sets, which is said with what ``then`` is; another one ends the program, and so
+    does a moment without any finding (see :func:`keep_what_is_found`)."""
+    event = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield event
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        ending.heard = True
+        if not event.is_set():
+            event.set()
+            os.write(2, f"\nworkhold: stopping; {then} (Ctrl-C again ends at once).\n".encode())
+
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield event
+    finally:
+        # What was found is written next, in any time; a Ctrl-C that comes later has nothing to keep.
+        ending.keeping = event.is_set()
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,102 @@
+"""A table of words, as wide as there is room for."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+
+from attrs import define, field, frozen
+
+__all__ = ["Fitted", "Table"]
+
+# Between two columns where there is room, and where there is little.
+GAP, NARROW_GAP = 3, 2
+# The last column is wrapped down to this many letters.
+LEAST_WRAPPED = 24
+
+
+@frozen
+class Fitted:
+    """A table as lines of text; ``red`` are the numbers of the lines that a terminal shows in red."""
+
+    headings: list[str]
+    lines: list[str]
+    red: set[int]
+
+
+@define
+class Table:
+    """Rows of words under a line of headings.
+
+    Parameters
+    ----------
+    columns : the headings; a column whose heading begins with ``>`` has its content on the right.
+    rows : the words, one for each column.
+    red : numbers of the rows that a terminal shows in red.
+    spare : of the columns, the last so many are left out one by one where a terminal has no room for them.
+    """
+
+    columns: tuple[str, ...]
+    rows: list[tuple[str, ...]] = field(factory=list)
+    red: set[int] = field(factory=set)
+    spare: int = 0
+
+    def add_row(self, *words: str) -> None:
+        """Add a row at the end."""
+        self.rows.append(words)
+
+    def lines(self) -> list[str]:
+        """The table as text without a limit of width: the headings, a rule below them, and a line for each row."""
+        fitted = self.fitted(None)
+        return [*fitted.headings, *fitted.lines]
+
+    def fitted(self, width: int | None) -> Fitted:
+        """The table in a width: where it is wider its headings take several lines, then the spare columns are left out,
+        which a last line says, and at last what stands in the last column takes several lines.
+        """
+        right = [column.startswith(">") for column in self.columns]
+        headings = [column.lstrip(">") for column in self.columns]
+        content = [max(map(len, column), default=0) for column in zip(*self.rows, strict=True)] or [0] * len(headings)
+        widths = [max(len(heading), most) for heading, most in zip(headings, content, strict=True)]
+        tops, gap, kept = [[heading] for heading in headings], GAP, len(headings)
+        rows, left_out = [[[word] for word in row] for row in self.rows], ""
+        if width is not None and total(widths, gap) > width:
+            gap = NARROW_GAP
+            widths = [max(most, *map(len, heading.split())) for heading, most in zip(headings, content, strict=True)]
+            tops = [wrap(heading, room) for heading, room in zip(headings, widths, strict=True)]
+            while total(widths[:kept], gap) > width and kept > len(headings) - self.spare:
+                kept -= 1
+            if kept < len(headings):
+                left_out = f"No room for: {', '.join(headings[kept:])}."
+            over = total(widths[:kept], gap) - width
+            if over > 0 and not right[kept - 1] and widths[kept - 1] - over >= LEAST_WRAPPED:
+                widths[kept - 1] -= over
+                rows = [[*row[: kept - 1], wrap(row[kept - 1][0], widths[kept - 1]) or [""]] for row in rows]
+
+        def lines_of(cells: list[list[str]], low: bool) -> list[str]:
+            high = max(map(len, cells[:kept]))
+            filled = [
+                [""] * (high - len(cell)) + cell if low else cell + [""] * (high - len(cell)) for cell in cells[:kept]
+            ]
+            return [
+                (" " * gap)
+                .join(
+                    f"{word:>{room}}" if at_right else f"{word:<{room}}"
+                    for word, room, at_right in zip(words, widths, right, strict=False)
+                )
+                .rstrip()
+                for words in zip(*filled, strict=True)
+            ]
+
+        lines = ["─" * total(widths[:kept], gap)]
+        red: set[int] = set()
+        for number, row in enumerate(rows):
+            written = lines_of(row, low=False)
+            if number in self.red:
+                red.update(range(len(lines), len(lines) + len(written)))
+            lines += written
+        return Fitted(lines_of(tops, low=True), lines + ([left_out] if left_out else []), red)
+
+
+def total(widths: list[int], gap: int) -> int:
+    """How wide a table is."""
+    return sum(widths) + gap * (len(widths) - 1)

@@ -1,0 +1,164 @@
+"""Verification of a result, and the search of its query once more, for what a file alone cannot show.
+
+It stands above both the verification and the engines, which share nothing: fixtures are compared as the verification tells
+them apart (``verification.repeats``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+from attrs import astuple, evolve, fields
+
+from workhold.model.fixture import Fixture
+from workhold.model.notes import kept_note
+from workhold.model.proof import Proof, Undecided
+from workhold.model.result import Result
+from workhold.verification.account import is_by_algebra
+from workhold.verification.listing import Listing, listing_of, read_listing
+from workhold.verification.repeats import Seen
+from workhold.verification.verify import Verification, no_progress, verify_listing
+
+__all__ = ["completed", "verify"]
+
+Progress = Callable[[float, int], None]
+
+# Degrees. Orientations of undecided entries that agree to this are the same.
+SAME_ORIENTATION = 1e-6
+
+
+def verify(
+    source: Result | str | Path,
+    *,
+    complete: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+) -> Verification:
+    """Prove or refute every fixture of a result or a result file, and every number written with it.
+
+    Parameters
+    ----------
+    complete : also answer the query again, and compare which fixtures there are, how many, and the account of the search.
+    threads, cancel : of that search, see :func:`workhold.answer`; when it is cancelled, nothing is compared.
+    progress : called as ``progress(fraction done, count)``: of fixtures not proven, then of fixtures found.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be read, is no result file, or describes no usable workpiece or toolkit.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+    >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+    >>> outcome = workhold.verify(result, complete=True)
+    >>> outcome.holds, outcome.is_compared
+    (True, True)
+    """
+    tell = no_progress if progress is None else progress
+    listing = listing_of(source) if isinstance(source, Result) else read_listing(source)
+    if not complete:
+        return verify_listing(listing, tell)
+    outcome = verify_listing(listing, lambda fraction, count: tell(fraction / 2, count))
+    return completed(
+        outcome, listing, threads=threads, cancel=cancel, progress=lambda done, count: tell((1 + done) / 2, count)
+    )
+
+
+def completed(outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any) -> Verification:
+    """A verification with what the search of the listing's query finds wrong with it; as it was when that is cancelled.
+
+    Parameters
+    ----------
+    watching : ``progress`` and ``cancel``, see :func:`workhold.answer`.
+    """
+    # The best of a part of the fixtures need not be among the best of all.
+    query = listing.query if listing.complete else evolve(listing.query, best=None)
+    if is_by_algebra(listing.statistics):
+        from workhold.algebra.engine import answer_by_algebra
+
+        result = answer_by_algebra(query, **watching)
+    else:
+        from workhold.search.design import answer
+
+        result = answer(query, threads=threads, **watching)
+    if not result.complete:
+        return outcome
+    return evolve(outcome, faults=(*outcome.faults, *differences(listing, result)), is_compared=True)
+
+
+def differences(listing: Listing, result: Result) -> Iterator[str]:
+    """What a listing says otherwise than the search of its query, one sentence each, without a full stop.
+
+    A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
+    """
+    seen = Seen(listing.hardware)
+    for index, fixture in enumerate(listing.fixtures):
+        seen.add(index, fixture)
+    listed, found = len(listing.fixtures), sum(listing.found.values())
+    # A server may have kept a part: the best of what had been found.
+    best_kept = listing.complete and kept_note(found, listed) in listing.notes
+    expected = result[:listed] if best_kept else result
+    matches = [(fixture, seen.find(fixture)) for fixture in expected]
+    surplus = sorted(set(range(listed)) - {match for _, match in matches})
+    if surplus:
+        yield f"a search does not find {counted(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
+    if not listing.complete:
+        for kind, number in result.found.items():
+            if listing.found[kind] > number:
+                yield f"found says {listing.found[kind]} for {kind}, and there are {number} in all"
+        return
+    missing = [fixture for fixture, match in matches if match is None]
+    if missing:
+        yield f"a search finds {counted(len(missing))} that it does not list, the first of them {in_words(missing[0])}"
+    for name in ("found", "distinct"):
+        yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+    if listing.proof is not None and result.proof is not None:
+        yield from other_numbers("the proof", numbers_of(listing.proof), numbers_of(result.proof))
+        yield from other_entries(listing.proof, result.proof)
+    yield from other_numbers("the statistics", listing.statistics, result.statistics)
+    lacking = [note for note in result.notes if note not in listing.notes]
+    if lacking:
+        yield f'the note is missing that says "{lacking[0]}"'
+
+
+def counted(number: int) -> str:
+    """A number of fixtures in words."""
+    return f"{number} fixture{'s' * (number != 1)}"
+
+
+def in_words(fixture: Fixture) -> str:
+    """A fixture by its type, holes and orientation."""
+    holes = ", ".join(peg.hole for peg in fixture.pegs)
+    direction = "" if fixture.direction is None else f" {fixture.direction}"
+    return f"of type {fixture.type}{direction} in {holes} at {fixture.pose.theta_deg:.6f} degrees"
+
+
+def numbers_of(proof: Proof) -> dict[str, int]:
+    """The numbers of an account."""
+    names = (attribute.name for attribute in fields(Proof) if attribute.name != "undecided")
+    return {name: getattr(proof, name) for name in names}
+
+
+def other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
+    """A fault for each number that is another one in a search."""
+    for key, number in derived.items():
+        if written.get(key) != number:
+            yield f"{name} says {written.get(key)} for {key}, and a search comes to {number}"
+
+
+def other_entries(written: Proof, derived: Proof) -> Iterator[str]:
+    """A fault when other candidates are undecided in a search."""
+
+    def key(entry: Undecided) -> tuple[Any, ...]:
+        *whole, theta, reason, _ = astuple(entry)
+        return *whole, round(theta / SAME_ORIENTATION) % round(360 / SAME_ORIENTATION), reason
+
+    one, other = ({key(entry) for entry in proof.undecided} for proof in (written, derived))
+    if one != other:
+        yield f"the proof names {len(one - other)} undecided candidates that a search decides, and lacks {len(other - one)}"

@@ -1,0 +1,188 @@
+"""What the blocks of a setup sheet are written with: what they speak of, headings, tables, fields to fill in."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Sequence
+
+from attrs import frozen
+
+from workhold.drawing.fonts import text_width
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.panel import FACT_NAME, Column, pegs_words
+from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.drawing.sheet_details import SheetDetails
+from workhold.drawing.sheet_facts import Caution
+from workhold.geometry.segment import Point
+from workhold.model.dowel import fit_words
+from workhold.model.fixture import Fixture
+from workhold.model.holes import hole_name
+from workhold.model.part_zero import PartZero, part_zero
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+
+__all__ = [
+    "BODY",
+    "NOTE",
+    "Block",
+    "Sheet",
+    "fact_or_field",
+    "heading",
+    "height_of",
+    "inside_words",
+    "lies_words",
+    "listed",
+    "peg_rows",
+    "write_dowel",
+    "write_table",
+]
+
+BODY, NOTE, HEADING = 12.5, 11.0, 14.0
+SMALLEST = 7.0
+KILO = 1000.0
+# Least and largest width of a field to fill in, page units.
+FIELD = 60.0, 150.0
+
+Block = Callable[[Column], None]
+
+
+@frozen
+class Sheet:
+    """What the blocks speak of; ``zero_shown`` and ``origin_shown`` tell whether part zero and hole A1 are on the plan."""
+
+    fixture: Fixture
+    workpiece: Workpiece
+    toolkit: Toolkit
+    details: SheetDetails
+    lengths: LengthUnit
+    cautions: tuple[Caution, ...]
+    zero_shown: bool = True
+    origin_shown: bool = True
+
+    @property
+    def name(self) -> str:
+        """The part's name."""
+        return self.details.part_name or self.workpiece.name
+
+    @property
+    def zero(self) -> PartZero:
+        """Part zero."""
+        return self.details.zero or part_zero(self.workpiece)
+
+    @property
+    def zero_place(self) -> Point:
+        """Where part zero lies in the vise frame, in mm."""
+        x, y = self.fixture.pose.apply(*self.zero.point)
+        return float(x), float(y)
+
+    @property
+    def origin(self) -> str:
+        """The name of the hole that places are told from."""
+        return hole_name(self.toolkit.carriers[0].name, 0, 0)
+
+
+def height_of(block: Block, width: float) -> float:
+    """Height of a block in a column of a width, page units."""
+    column = Column(Scene(ET.Element("g")), 0.0, 0.0, width)
+    block(column)
+    return column.y
+
+
+def heading(column: Column, words: str) -> None:
+    """Write the heading of a block below a line."""
+    column.rule(1.4)
+    column.words(words, HEADING, bold=True, gap=0.65)
+
+
+def fact_or_field(column: Column, name: str, value: str | None) -> None:
+    """Write a fact, or where it is not known a line to write it on."""
+    if value is not None:
+        column.fact(name, value, bold=True)
+        return
+    column.y += 0.75 * HEADING
+    column.scene.text((column.x, column.y), name, FACT_NAME, fill=GREY, middle=False)
+    least, most = FIELD
+    right = column.x + column.width
+    room = column.width - text_width(name, FACT_NAME) - 10
+    column.scene.line([(right - min(max(room, least), most), column.y + 2), (right, column.y + 2)], BLACK, 0.8)
+    column.y += 0.62 * HEADING
+
+
+def write_table(column: Column, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Write a table, its first column from the left and the others flush right, in type that fits the width."""
+    size = BODY
+    while True:
+        widths = [
+            max(text_width(header[k], size, bold=True), *(text_width(row[k], size, bold=k == 0) for row in rows))
+            for k in range(len(header))
+        ]
+        gap = (column.width - sum(widths)) / (len(header) - 1)
+        if gap >= 0.6 * size or size <= SMALLEST:
+            break
+        size -= 0.5
+    ends, x = [], widths[0]
+    for width in widths[1:]:
+        x += gap + width
+        ends.append(x / column.width)
+    column.row(header, ends, size, bold=True)
+    for row in rows:
+        column.row(row, ends, size)
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words with commas and a last "and".
+
+    >>> listed(["a"]), listed(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[str]], str]:
+    """The table of the pegs under some names: its header, its rows, and what the forces in it are, up to "of"."""
+    force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.number
+    per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
+    header = ["Hole", "face", f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
+    if force is not None:
+        header.append(f"at {unit.force_words(force)}")
+    rows = []
+    for name, peg in zip(names, sheet.fixture.pegs, strict=True):
+        row = [name, str(peg.face), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
+        rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])
+    each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
+    return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"
+
+
+def lies_words(sheet: Sheet) -> str:
+    """How the part lies beside its drawing."""
+    return f"turned {sheet.fixture.pose.theta_deg:.1f}° counter-clockwise from its drawing"
+
+
+def inside_words(sheet: Sheet) -> str:
+    """Which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
+    outer = len(sheet.workpiece.loops[0])
+    inside = [peg.hole for peg in sheet.fixture.pegs if peg.face >= outer]
+    return f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part." if inside else ""
+
+
+def write_dowel(column: Column, sheet: Sheet) -> None:
+    """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
+    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.carriers[0]
+    diameter = 2 * carrier.peg_radius
+    fit = details.tolerance.fit
+    column.y += 3
+    fact_or_field(column, "dowel and fit", details.dowel or (None if fit is None else fit_words(fit, diameter)))
+    if fit is not None:
+        pin, hole_limits = (
+            f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)
+        )
+        column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
+    sizes = (
+        (f"{carrier.peg} length", details.peg_length),
+        (
+            f"height above the {carrier.noun if carrier.name == carrier.noun else f'{carrier.noun}s'}",
+            details.peg_height,
+        ),
+    )
+    for name, size in sizes:
+        fact_or_field(column, name, None if size is None else lengths.words(size))

@@ -1,0 +1,40 @@
+"""The pins of a fixture as CSV: which hole, which dowel, and what each touches."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from workhold.model.fixture import Fixture
+from workhold.model.holes import column_letters
+from workhold.model.toolkit import Toolkit
+from workhold.model.units import Unit
+from workhold.plain import plain
+
+__all__ = ["HEADER", "pin_list"]
+
+HEADER = ("hole", "carrier", "column", "row", "x", "y", "diameter", "length", "unit", "dowel", "face")
+
+
+def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None) -> str:
+    """A row for each pin, in the fixture's order; a clamp is none.
+
+    Parameters
+    ----------
+    unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length of the pin.
+    dowel : what the pins are and how they fit, in words; the cell is empty where it is not known.
+    length : of the pins, in mm; the same.
+    """
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(HEADER)
+    carriers = {carrier.name: carrier for carrier in toolkit.carriers}
+    for peg in fixture.pegs:
+        carrier = carriers[peg.carrier]
+        if carrier.on is not None:
+            continue
+        sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
+        long = "" if length is None else unit.figure(length)
+        place = (peg.hole, plain(carrier.title), column_letters(peg.column), peg.row + 1)
+        writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face))
+    return stream.getvalue()

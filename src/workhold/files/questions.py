@@ -1,0 +1,39 @@
+"""Questions that the readers of a part leave to the user, named in their sentences without a word of who asks.
+
+A sentence names a question by its mark, such as ``<axis>``. Where a part comes in (``files.part.load.read_workpiece``) the
+mark becomes what the question is called there: an option of the command line, a field of the page, an argument in Python.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+__all__ = ["AXIS", "DRAWING_UNIT", "JOIN_TOLERANCE", "LAYERS", "PART_NUMBER", "SECTION", "UNIT", "worded"]
+
+# The unit of a drawing that does not say its own, and the one that counts whatever it says.
+UNIT, DRAWING_UNIT = "<unit>", "<drawing_unit>"
+PART_NUMBER, LAYERS, JOIN_TOLERANCE, AXIS, SECTION = (
+    "<part_number>",
+    "<layers>",
+    "<join_tolerance>",
+    "<axis>",
+    "<section>",
+)
+MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, AXIS, SECTION)))
+# The arguments of ``workhold.load``; it knows one unit.
+IN_PYTHON = {"drawing_unit": "unit"}
+
+
+def worded(sentence: str, called: Mapping[str, str] | None) -> str:
+    """A sentence with what questions are called in place of their marks; None and what is not given is for Python.
+
+    Examples
+    --------
+    >>> worded(f"choose another with {PART_NUMBER}.", {"part_number": "--part"})
+    'choose another with --part.'
+    >>> worded(f"leave {DRAWING_UNIT} out.", None)
+    'leave unit out.'
+    """
+    names = IN_PYTHON | dict(called or {})
+    return MARK.sub(lambda mark: names.get(mark[0][1:-1], mark[0][1:-1]), sentence)

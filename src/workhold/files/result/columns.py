@@ -1,0 +1,190 @@
+"""A result file in columns: an archive (:mod:`workhold.archive`) of one array for each kind of number, for large results.
+
+Its text ``result.json`` is the head of the JSON form (:mod:`workhold.files.result.writer`). The numbers are those of that
+form, rounded as there, so that a result can go from one form to the other and back without a change. Where pegs stand
+follows from their holes and is not written. Opening such a file reads the head and the types; fixtures are read, and
+checked, when they are looked at.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from attrs import define, frozen
+from numpy.typing import NDArray
+
+from workhold.archive import ArchiveWriter, mapped_archive
+from workhold.errors import InputError
+from workhold.files.atomic import binary_file, plain_errors
+from workhold.files.result.checks import refuse_faulty, refuse_unknown_types
+from workhold.files.result.head import checked_head, checked_query, result_with
+from workhold.files.result.writer import ANGLE_STEPS, FORMAT, LENGTH_STEPS, head, rounded
+from workhold.files.text import json_value
+from workhold.model.columns import COLUMNS, HEAD
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result
+
+__all__ = ["ColumnsReceiver", "MappedTable", "answer_to_file", "read_columns", "write_columns"]
+
+# Fixtures rounded and written together.
+BLOCK = 1 << 15
+# Digits of forces and figures of quality; what lies nearer than this to the middle between two such numbers is rounded
+# one by one, because a product in doubles may fall on its other side.
+DIGITS, DOUBTFUL = 12, 1e-3
+
+
+@frozen
+class ColumnsReceiver:
+    """Writes results in columns as they come; an earlier file of the name is replaced only when all went well."""
+
+    path: Path
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the file, where what is being sorted finds room as well."""
+        return self.path.resolve().parent
+
+    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
+        """Write a result and its fixtures, so many.
+
+        Raises
+        ------
+        InputError
+            When the file cannot be written.
+        """
+        counts = Counter[str]()
+        with binary_file(self.path) as stream:
+            archive = ArchiveWriter(stream, COLUMNS, listed)
+            for table in tables:
+                counts.update(result.toolkit.arrangements_counted(table.arrangement))
+                for start in range(0, len(table), BLOCK):
+                    archive.add(as_written(table.take(slice(start, start + BLOCK))))
+            text = head(result) | {"counts": {name: counts[name] for name in result.toolkit.types}}
+            archive.close(HEAD, json.dumps(text, ensure_ascii=False), FORMAT)
+
+
+def write_columns(result: Result, path: str | Path) -> None:
+    """Write a result file in columns; an earlier file of that name is replaced only when all went well.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    ColumnsReceiver(Path(path)).receive(result, len(result), [result.table])
+
+
+def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
+    """Find every fixture that a query asks for, however many, and write them in columns.
+
+    No more than some 100 MB of fixtures are in memory at a time; what is being sorted is kept beside the file, in files
+    without a name, and takes up to twice its size.
+
+    Parameters
+    ----------
+    watching : threads, progress, cancel and preview as ``workhold.answer`` takes them.
+
+    Returns
+    -------
+    Result
+        Read from the file: fixtures are read when they are looked at.
+
+    Raises
+    ------
+    InputError
+        As ``workhold.answer``, and when the file cannot be written or the disk is full.
+    """
+    from workhold.search.design import answer
+
+    path = Path(path)
+    with plain_errors(path):
+        answer(query, receiver=ColumnsReceiver(path), **watching)
+    return read_columns(path)
+
+
+def as_written(table: FixtureTable) -> tuple[NDArray[Any], ...]:
+    """The columns of a table, rounded as the JSON form writes them."""
+    theta = rounded(np.degrees(table.theta) % 360.0, ANGLE_STEPS)
+    return (
+        table.arrangement,
+        table.column,
+        table.row,
+        table.face,
+        np.radians(theta) % (2 * np.pi),
+        rounded(table.position, LENGTH_STEPS),
+        rounded(table.jaw_separation, LENGTH_STEPS),
+        significant(table.force),
+        significant(table.quality),
+    )
+
+
+def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The floats nearest to values as they are with twelve significant digits; NaN for what is not finite, which JSON does
+    not know either.
+
+    A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
+    """
+    values = np.where(np.isfinite(values), values, np.nan)
+    size = np.abs(values)
+    known = size > 0.0
+    exponent = np.floor(np.log10(np.where(known, size, 1.0))).astype(np.int64)
+    shift = DIGITS - 1 - exponent
+    exact = known & (np.abs(shift) <= 22)
+    power = 10.0 ** np.where(exact, np.abs(shift), 0)
+    scaled = np.where(shift >= 0, values * power, values / power)
+    digits = np.rint(scaled)
+    out = np.where(exact, np.where(shift >= 0, digits / power, digits * power), values)
+    doubtful = known & ~(exact & (np.abs(scaled - np.floor(scaled) - 0.5) > DOUBTFUL))
+    out[doubtful] = [float(f"{value:.{DIGITS}g}") for value in values[doubtful].tolist()]
+    return np.asarray(out)
+
+
+@define(frozen=True, eq=False)
+class MappedTable(FixtureTable):
+    """The fixtures of a file in columns; those taken are checked.
+
+    Parameters
+    ----------
+    query : what they answer.
+    path : of the file.
+    """
+
+    query: Query
+    path: Path
+
+    def take(self, order: NDArray[Any] | slice) -> FixtureTable:
+        """The fixtures of an index array or slice, in its order.
+
+        Raises
+        ------
+        InputError
+            When one of them cannot be used.
+        """
+        table = super().take(order)
+        places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
+        refuse_faulty(table, self.query, self.path, places)
+        return table
+
+
+def read_columns(path: Path) -> Result:
+    """The result of a file in columns; nothing but its head and the types of its fixtures, a byte each, is read yet.
+
+    Raises
+    ------
+    InputError
+        See :func:`read_result`.
+    """
+    text, columns = mapped_archive(path, COLUMNS, HEAD)
+    try:
+        data = json_value(text)
+    except InputError as error:
+        raise InputError(f"{path} is not a result file: {error}") from error
+    head = checked_head(data, path)
+    query = checked_query(head, path)
+    refuse_unknown_types(columns["arrangement"], query.toolkit, path)
+    return result_with(MappedTable(**columns, query=query, path=path), head, query, path)

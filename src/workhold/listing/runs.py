@@ -1,0 +1,228 @@
+"""Rows too many for memory, sorted by keys: runs that are sorted each, kept on the disk, and merged part by part.
+
+Reference: D. E. Knuth, *The Art of Computer Programming* 3 (1998), section 5.4; runs are cut at the same keys instead of
+being merged row by row, which array operations do better.
+
+Glossary
+--------
+key : bytes that compare as rows are to be ordered; rows of one key stay in the order in which they were added.
+run : rows in the order of their keys.
+part : the rows of all runs between two keys.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, Future, wait
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryFile
+from threading import Lock
+from typing import IO, Any, TypeVar
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+__all__ = ["Columns", "Run", "Runs", "in_order", "key_of"]
+
+Keys = NDArray[np.bytes_]
+Columns = tuple[NDArray[Any], ...]
+One = TypeVar("One")
+Other = TypeVar("Other")
+
+# Rows merged at a time, rows in memory that go to the disk together, and rows between two keys that are remembered.
+PART, ROOM, STRIDE = 1 << 15, 1 << 18, 1 << 9
+SIGN = np.uint64(1 << 63)
+
+
+def key_of(*numbers: NDArray[Any]) -> Keys:
+    """Keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from 0 upward, or floats, of
+    which NaN comes last."""
+    words = np.empty((len(numbers[0]), len(numbers)), ">u8")
+    for k, values in enumerate(numbers):
+        if values.dtype.kind == "f":
+            # A float's bits are in its order but for the sign, as J. Herf writes, "Radix tricks" (2001).
+            bits = np.where(np.isnan(values), np.nan, values + 0.0).view(np.uint64)
+            words[:, k] = np.where(bits & SIGN, ~bits, bits | SIGN)
+        else:
+            words[:, k] = values
+    return words.view(f"S{8 * len(numbers)}")[:, 0]
+
+
+@frozen(eq=False)
+class Run:
+    """Rows in memory in the order of their keys."""
+
+    keys: Keys
+    columns: Columns
+
+    @classmethod
+    def of(cls, keys: Keys, columns: Columns) -> Run:
+        """A run of rows in any order."""
+        order = np.argsort(keys, kind="stable")
+        return cls(keys[order], tuple(column[order] for column in columns))
+
+    @classmethod
+    def joined(cls, runs: Sequence[Run]) -> Run:
+        """Several runs as one."""
+        columns = zip(*(run.columns for run in runs), strict=True)
+        return cls.of(np.concatenate([run.keys for run in runs]), tuple(map(np.concatenate, columns)))
+
+    def __len__(self) -> int:
+        return len(self.keys)
+
+    @property
+    def some_keys(self) -> Keys:
+        """Its first key, and every so many-th after it."""
+        return self.keys[::STRIDE]
+
+    def place(self, key: Keys) -> int:
+        """How many of its rows come before a key (1,)."""
+        return int(np.searchsorted(self.keys, key)[0])
+
+    def rows(self, first: int, end: int) -> Run:
+        """Some of its rows."""
+        return Run(self.keys[first:end], tuple(column[first:end] for column in self.columns))
+
+
+@define(eq=False)
+class Scratch:
+    """A file without a name that any thread may write to its end or read; it is gone when the program ends, however it does.
+
+    Parameters
+    ----------
+    folder : in which it takes room.
+    """
+
+    folder: Path
+    file: IO[bytes] = field(init=False)
+    lock: Lock = field(factory=Lock, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.file = TemporaryFile(dir=self.folder, buffering=0)  # noqa: SIM115
+
+    def write(self, array: NDArray[Any]) -> int:
+        """Write the bytes of an array; the place where they begin."""
+        content = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
+        with self.lock:
+            place = self.file.seek(0, os.SEEK_END)
+            while content:
+                content = content[self.file.write(content) :]
+        return place
+
+    def read(self, place: int, size: int) -> bytes:
+        """Some bytes."""
+        with self.lock:
+            self.file.seek(place)
+            return self.file.read(size)
+
+
+@frozen(eq=False)
+class StoredRun:
+    """Rows on the disk in the order of their keys: arrays one after the other in a file, keys first."""
+
+    scratch: Scratch
+    places: tuple[int, ...]
+    forms: tuple[tuple[np.dtype[Any], tuple[int, ...]], ...]
+    count: int
+    some_keys: Keys
+
+    @classmethod
+    def of(cls, run: Run, scratch: Scratch) -> StoredRun:
+        """A run written to a file."""
+        arrays = (run.keys, *run.columns)
+        places = tuple(scratch.write(array) for array in arrays)
+        forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
+        return cls(scratch, places, forms, len(run), run.some_keys.copy())
+
+    def __len__(self) -> int:
+        return self.count
+
+    def array(self, number: int, first: int, end: int) -> NDArray[Any]:
+        """Some rows of one of its arrays."""
+        form, shape = self.forms[number]
+        size = form.itemsize * int(np.prod(shape, dtype=np.int64))
+        content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
+        return np.frombuffer(content, form).reshape(end - first, *shape)
+
+    def place(self, key: Keys) -> int:
+        """How many of its rows come before a key (1,)."""
+        first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
+        return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
+
+    def rows(self, first: int, end: int) -> Run:
+        """Some of its rows."""
+        keys, *columns = (self.array(number, first, end) for number in range(len(self.forms)))
+        return Run(keys, tuple(columns))
+
+
+@define(eq=False)
+class Runs:
+    """Rows that are added in runs and taken out in the order of their keys.
+
+    Parameters
+    ----------
+    folder : of the file that holds what does not stay in memory; None for memory alone.
+    """
+
+    folder: Path | None = None
+    runs: list[Run | StoredRun] = field(factory=list, init=False)
+    fresh: list[Run] = field(factory=list, init=False)
+    scratch: Scratch | None = field(default=None, init=False)
+
+    def __len__(self) -> int:
+        return sum(map(len, self.runs)) + sum(map(len, self.fresh))
+
+    def add(self, run: Run) -> None:
+        """Add rows.
+
+        Raises
+        ------
+        OSError
+            When the disk is full.
+        """
+        self.fresh.append(run)
+        if self.folder is not None and sum(map(len, self.fresh)) >= ROOM:
+            self.scratch = self.scratch or Scratch(self.folder)
+            self.runs.append(StoredRun.of(Run.joined(self.fresh), self.scratch))
+            self.fresh = []
+
+    def parts(self) -> list[Callable[[], Run]]:
+        """What gives the rows of all runs in the order of their keys, part by part; rows of one key are in one part. At
+        least one, where there is any run."""
+        runs = [*self.runs, *self.fresh]
+        keys = np.sort(np.concatenate([run.some_keys for run in runs]))
+        pivots = np.unique(keys[PART // STRIDE :: PART // STRIDE])
+        places = [[run.place(pivots[k : k + 1]) for run in runs] for k in range(len(pivots))]
+        edges = [[0] * len(runs), *places, [len(run) for run in runs]]
+        return [self.part(runs, first, end) for first, end in pairwise(edges)]
+
+    def part(self, runs: Sequence[Run | StoredRun], first: list[int], end: list[int]) -> Callable[[], Run]:
+        """What gives one part."""
+        return lambda: Run.joined([run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)])
+
+    def close(self) -> None:
+        """Give back memory and disk."""
+        self.runs, self.fresh = [], []
+        if self.scratch is not None:
+            self.scratch.file.close()
+
+
+def in_order(pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]) -> Iterator[Other]:
+    """What work gives for each item, in the order of the items; so many at a time are begun and not yet taken."""
+    running: deque[Future[Other]] = deque()
+    try:
+        for item in items:
+            running.append(pool.submit(work, item))
+            if len(running) > ahead:
+                yield running.popleft().result()
+        while running:
+            yield running.popleft().result()
+    finally:
+        # Nobody takes what is left; what it reads must stay until it is over.
+        for future in running:
+            future.cancel()
+        wait(running)

@@ -1,0 +1,55 @@
+"""The remarks that a result may carry for its user, one sentence each.
+
+They follow from the numbers of a result, so that whoever has the numbers can tell which remarks there must be.
+"""
+
+from __future__ import annotations
+
+from workhold.model.toolkit import Wording
+
+__all__ = [
+    "best_note",
+    "kept_note",
+    "no_fixture_notes",
+    "no_place_note",
+    "stopped_note",
+    "undecided_note",
+]
+
+
+def no_fixture_notes(wording: Wording) -> tuple[str, str, str, str]:
+    """Why a search finds no fixture: all normals meet, no pegs of one carrier touch, no four touch, no four hold."""
+    return (
+        "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
+        "from turning.",
+        f"No {wording.two} can touch the part together: the pitch is too large for it.",
+        f"No {wording.four} can touch the part at the same time inside their faces.",
+        f"Four pegs can touch the part at the same time, but no such set {wording.rules}.",
+    )
+
+
+def no_place_note(verified: int, wording: Wording) -> str:
+    """Why a search finds no fixture though so many candidates are proven to hold the part."""
+    return f"{verified} sets of four pegs would hold the part, but none of them can stand in {wording.within}."
+
+
+def best_note(best: int) -> str:
+    """Of a search for so many, the best, that left others out."""
+    return f"Only the best {best} were sought, so how many fixtures there are in all was not counted."
+
+
+def undecided_note(count: int) -> str:
+    """Of a search that left so many candidates undecided."""
+    some = "1 candidate is undecided" if count == 1 else f"{count} candidates are undecided"
+    return f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+
+
+def kept_note(found: int, kept: int) -> str:
+    """Of a server that keeps only some of the fixtures found, the best."""
+    return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
+
+
+def stopped_note(seconds: float) -> str:
+    """Of a server that ended a search after so many seconds."""
+    end = f"The search was stopped after {seconds:g} s, the longest this server allows"
+    return f"{end}: this is a part of the fixtures only."

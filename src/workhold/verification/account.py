@@ -1,0 +1,160 @@
+"""Whether the numbers that a result gives about itself agree with each other and with what it lists.
+
+The identities, for each type apart where a number is told for each:
+
+- counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct * rotations, those
+  of the part onto itself;
+- where more are found than listed, the best were asked for and as many are listed, or a note says that some were not kept;
+  a search that leaves others out lists as many as were asked for, and none lists more;
+- a type that is not asked for is not found;
+- candidates = discarded_by_bound + verified + undecided; escalated <= candidates, and some were where some are undecided;
+  found <= verified, since every fixture comes from a candidate of its own; what is undecided is a real place
+  (``verification.undecided``);
+- of a search: crossings_sought <= curve_pairs, and contacts_examined <= candidates once it is complete, which then has
+  examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
+- features >= faces touched;
+- the notes are those that follow from these numbers.
+
+What became of the candidates, and how much work that was, is otherwise known to the search alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from workhold.geometry.symmetry import rotations_onto_itself
+from workhold.model.notes import best_note, kept_note, no_fixture_notes, no_place_note, stopped_note, undecided_note
+from workhold.model.proof import Proof
+from workhold.verification.listing import Listing
+from workhold.verification.undecided import undecided_faults
+
+__all__ = ["account_faults"]
+
+SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
+ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "undecided")
+# The algebra names so many undecided systems, and counts the others in one note more.
+MOST_NAMED = 20
+
+
+def account_faults(listing: Listing) -> Iterator[str]:
+    """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each."""
+    yield from count_faults(listing)
+    if listing.proof is None:
+        yield "it has no proof, the account of the search"
+    else:
+        yield from proof_faults(listing, listing.proof)
+    yield from statistics_faults(listing)
+    yield from note_faults(listing)
+
+
+def count_faults(listing: Listing) -> Iterator[str]:
+    """Contradictions among the fixtures listed, counts, found and distinct."""
+    rotations = len(rotations_onto_itself([face.segment for face in listing.query.workpiece.faces]))
+    for kind, counts in listing.counts.items():
+        listed = sum(fixture.type == kind for fixture in listing.fixtures)
+        found, distinct = listing.found[kind], listing.distinct[kind]
+        if counts != listed:
+            yield f"counts say {counts} fixtures of type {kind}, but {listed} are listed"
+        if found < listed:
+            yield f"found says {found} fixtures of type {kind}, but {listed} are listed"
+        if not (distinct <= found <= distinct * rotations):
+            yield f"distinct says {distinct} fixtures of type {kind}, which {found} cannot form"
+        if found and kind not in listing.query.arrangements:
+            yield f"found says {found} fixtures of type {kind}, which is not asked for"
+    listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
+    if best is not None and listed > best:
+        yield f"the best {best} are asked for, but {listed} are listed"
+    if found > listed != best and kept_note(found, listed) not in listing.notes:
+        yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
+
+
+def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
+    """Contradictions in the account of the candidates."""
+    undecided, found = len(proof.undecided), sum(listing.found.values())
+    accounted = proof.discarded_by_bound + proof.verified + undecided
+    if accounted != proof.candidates:
+        yield f"the proof says {proof.candidates} candidates, but {accounted} are discarded, verified or undecided"
+    yield from undecided_faults(proof.undecided, listing.query)
+    if proof.escalated > proof.candidates:
+        yield f"the proof says {proof.escalated} of {proof.candidates} candidates were escalated"
+    if undecided and not proof.escalated:
+        yield f"the proof says that {undecided} candidates are undecided, but none was escalated"
+    if found > proof.verified:
+        yield f"the proof says {proof.verified} candidates were verified, but {found} fixtures were found"
+
+
+def statistics_faults(listing: Listing) -> Iterator[str]:
+    """Contradictions in the numbers that tell how much work the search was."""
+    numbers, proof = listing.statistics, listing.proof
+    if set(numbers) not in (set(SEARCH), set(ALGEBRA)) or min(numbers.values()) < 0:
+        yield f"the statistics are not {', '.join(SEARCH)}, each a number from 0"
+        return
+    touched = len({peg.face for fixture in listing.fixtures for peg in fixture.pegs})
+    if numbers["features"] < touched:
+        yield f"the statistics say {numbers['features']} features, but the fixtures touch {touched} faces"
+    by_algebra = is_by_algebra(numbers)
+    if not by_algebra and numbers["crossings_sought"] > numbers["curve_pairs"]:
+        yield "the statistics say that more crossings were sought than there are pairs of curves"
+    if proof is None:
+        return
+    if by_algebra == (proof.cells > 0) and listing.complete:
+        yield f"the proof says {proof.cells} cells, which does not go with the statistics"
+    if listing.complete and by_algebra and proof.candidates > numbers["simultaneous_contacts"]:
+        yield "the proof has more candidates than the statistics have simultaneous contacts"
+    if listing.complete and not by_algebra and numbers["contacts_examined"] > proof.candidates:
+        yield "the statistics have more contacts examined than the proof has candidates"
+
+
+def is_by_algebra(statistics: Mapping[str, int]) -> bool:
+    """Whether the engine was the paper's algebra, from the statistics of a result."""
+    return set(statistics) == set(ALGEBRA)
+
+
+def note_faults(listing: Listing) -> Iterator[str]:
+    """Notes that are missing, and those that do not follow from the numbers."""
+    left = list(listing.notes)
+    for wanted in notes_implied(listing):
+        # Of several sentences any will do.
+        said = next((note for note in wanted if note in left), None)
+        if said is None:
+            yield f'the note is missing that says "{wanted[0]}"'
+        else:
+            left.remove(said)
+    for note in left:
+        if not may_be_said(note, listing):
+            yield f'the note "{note[:80]}" does not follow from what the result says'
+
+
+def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
+    """The notes that there must be, each as the sentences of which it is one."""
+    proof, found = listing.proof, sum(listing.found.values())
+    undecided = 0 if proof is None else len(proof.undecided)
+    if undecided:
+        yield (undecided_note(undecided),)
+    systems = listing.statistics.get("undecided", 0)
+    yield from (tuple(n for n in listing.notes if n.startswith("Undecided: ")) or ("Undecided: ",),) * min(
+        systems, MOST_NAMED + 1
+    )
+    if listing.complete and not found and not undecided and not is_by_algebra(listing.statistics):
+        wording = listing.query.toolkit.wording
+        verified = 0 if proof is None else proof.verified
+        yield (no_place_note(verified, wording),) if verified else no_fixture_notes(wording)
+
+
+def may_be_said(note: str, listing: Listing) -> bool:
+    """Whether a note fits that need not be there."""
+    listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
+    if best is not None and note == best_note(best):
+        return found >= best
+    if note == kept_note(found, listed):
+        return found > listed
+    return not listing.complete and note in stopped_notes(note)
+
+
+def stopped_notes(note: str) -> Iterator[str]:
+    """The note of a search that was stopped after the seconds that a note tells."""
+    for word in note.split():
+        try:
+            yield stopped_note(float(word))
+        except ValueError:
+            continue

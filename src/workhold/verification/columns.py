@@ -1,0 +1,96 @@
+"""The fixtures of a result file in columns, number for number as it writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import degrees
+from pathlib import Path
+from typing import Any, overload
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.archive import mapped_archive
+from workhold.errors import InputError
+from workhold.model.columns import COLUMNS, HEAD
+from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.quality import FIGURES
+from workhold.model.toolkit import Toolkit
+
+__all__ = ["Columns", "FixturesInColumns", "columns_of"]
+
+Columns = Mapping[str, NDArray[Any]]
+
+# Fixtures looked at together.
+BLOCK = 1 << 14
+LARGEST = 1e300
+# Decimals of an angle in degrees.
+DECIMALS = 10
+
+
+def columns_of(path: Path) -> tuple[str, Columns]:
+    """Head and columns of a file, all of which is read once to compare its checksums.
+
+    Raises
+    ------
+    InputError
+        When it is damaged.
+    OSError
+        When it cannot be read.
+    """
+    return mapped_archive(path, COLUMNS, HEAD, whole=True)
+
+
+@frozen(eq=False)
+class FixturesInColumns(Sequence[Fixture]):
+    """The fixtures of columns; their pegs stand in the order of their type, in the holes of a toolkit.
+
+    Raises
+    ------
+    InputError
+        When one of them is of no type, or has a number that is none.
+    """
+
+    columns: Columns
+    toolkit: Toolkit
+
+    def __attrs_post_init__(self) -> None:
+        for start in range(0, len(self), BLOCK):
+            block = {name: values[start : start + BLOCK] for name, values in self.columns.items()}
+            usable = np.isin(block["arrangement"], range(len(self.toolkit.arrangements)))
+            for name in ("theta", "position", "jaw_separation", "force"):
+                usable &= (np.abs(block[name]).reshape(len(usable), -1) <= LARGEST).all(axis=1)
+            usable &= ~np.isinf(block["quality"]).any(axis=1)
+            if not usable.all():
+                number = start + int(np.argmin(usable)) + 1
+                raise InputError(f"number {number} in fixtures: it has no type, or a number that is none.")
+
+    def __len__(self) -> int:
+        return len(self.columns["arrangement"])
+
+    def __iter__(self) -> Iterator[Fixture]:
+        return (self[place] for place in range(len(self)))
+
+    @overload
+    def __getitem__(self, place: int) -> Fixture: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[Fixture]: ...
+
+    def __getitem__(self, place: int | slice) -> Fixture | list[Fixture]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(len(self))[place]]
+        numbers = {name: values[place].tolist() for name, values in self.columns.items()}
+        arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
+        pegs = []
+        each = (numbers[name] for name in ("column", "row", "face", "force"))
+        for carrier, column, row, face, force in zip(arrangement.carriers, *each, strict=True):
+            one = self.toolkit.carriers[carrier]
+            x, y = one.place(column, row, travelled)
+            called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
+            pegs.append(Peg(one.name, column, row, x, y, face, force, called))
+        pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
+        figures = zip(FIGURES, numbers["quality"], strict=True)
+        known = {figure.key: value for figure, value in figures if value == value}
+        return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)

@@ -1,0 +1,28 @@
+"""The rules of each kind of toolkit that a verification knows."""
+
+from __future__ import annotations
+
+from workhold.errors import InputError
+from workhold.model.plate import Plate
+from workhold.model.toolkit import Toolkit
+from workhold.model.vise import Vise
+from workhold.verification.hardware import Hardware
+from workhold.verification.plate import PlateRules
+from workhold.verification.vise import ViseRules
+
+__all__ = ["hardware_of"]
+
+
+def hardware_of(toolkit: Toolkit) -> Hardware:
+    """The rules of a toolkit.
+
+    Raises
+    ------
+    InputError
+        For a kind whose rules are not known.
+    """
+    if isinstance(toolkit, Vise):
+        return ViseRules(toolkit)
+    if isinstance(toolkit, Plate):
+        return PlateRules(toolkit)
+    raise InputError(f"a result in a {toolkit.kind} cannot be verified: its rules are not known.")

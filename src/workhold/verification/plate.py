@@ -1,0 +1,251 @@
+"""The rules that are a dowel plate's own: locators in its holes, the clamp on a line of them, and where that is bolted.
+
+A clamp with a travel is bolted in the nearest hole behind its tip that fits everything. Its body, all that is within its
+radius of the piece from hole to tip, contains that of the same clamp in a nearer hole: where it clears locators and part, it
+would from there as well, and a nearer hole is left out only because it is off the plate or too near.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi, radians, tau
+from typing import ClassVar
+
+from attrs import evolve, frozen
+from flint import arb
+
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.holes import column_letters, hole_name
+from workhold.model.plate import Plate
+from workhold.verification.balls import Point, exact_point, norm
+from workhold.verification.capsule import clearance
+from workhold.verification.contacts import Contact, Pose
+from workhold.verification.findings import Finding, number, rule
+from workhold.verification.hardware import Hardware, Key, Place, Rank, from_anchor
+from workhold.verification.outline import Outline
+from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_PUSH, SAME
+from workhold.verification.sides import Side
+
+__all__ = ["PLATE", "WAYS", "PlateRules", "clamp_place", "quarter_turns", "seen_along_x"]
+
+# The ways a clamp may move when it clamps, in the order of a list, and the way of its travel, which grows as it opens.
+WAYS = {"-x": (1, 0), "+x": (-1, 0), "-y": (0, 1), "+y": (0, -1)}
+PLATE = "plate"
+
+
+@frozen
+class PlateRules(Hardware):
+    """The rules of a plate with one translating clamp."""
+
+    names: ClassVar[tuple[str, ...]] = ("locator 1", "locator 2", "locator 3", "the clamp")
+    travel_words: ClassVar[str] = "place of the clamp's tip on its line"
+    slack_words: ClassVar[str] = "the clamp does not push the part"
+    wider_words: ClassVar[str] = (
+        "a smaller contact margin, a longer stroke, more columns or rows, fewer restrictions or more directions"
+    )
+    least_clamping: ClassVar[float] = LEAST_PUSH
+
+    toolkit: Plate
+
+    @property
+    def largest_radius(self) -> float:
+        """Of locators and tip, in mm."""
+        return max(self.toolkit.peg_radius, self.toolkit.clamp_radius)
+
+    @property
+    def is_bolted(self) -> bool:
+        """Whether the hole that the clamp is bolted in is told."""
+        return self.toolkit.travel is not None
+
+    def taken(self, fixture: Fixture) -> Fixture:
+        """A fixture as it is read, with the travel that puts the clamp's tip where it is written.
+
+        Raises
+        ------
+        InputError
+            When it has no clamp.
+        """
+        if fixture.type != "clamp" or fixture.direction is None:
+            raise InputError("its type is not clamp")
+        tip, way = fixture.pegs[-1], WAYS[fixture.direction]
+        pitch_x, pitch_y = self.toolkit.pitch
+        travel = (tip.x - tip.column * pitch_x) * way[0] + (tip.y - tip.row * pitch_y) * way[1]
+        return evolve(fixture, jaw_separation=travel)
+
+    def contact(self, peg: Peg, side: Side) -> Contact:
+        """The contact of a locator, or of the clamp's tip, which moves on its line, with a side."""
+        pitch_x, pitch_y = self.toolkit.pitch
+        hole = arb(pitch_x) * peg.column, arb(pitch_y) * peg.row
+        if peg.carrier == PLATE:
+            return Contact(hole, exact_point(0.0, 0.0), side, arb(self.toolkit.peg_radius))
+        x, y = WAYS[peg.carrier.removeprefix("clamp ")]
+        return Contact(hole, exact_point(float(x), float(y)), side, arb(self.toolkit.clamp_radius))
+
+    def lattice_numbers(self, fixture: Fixture) -> tuple[list[int], list[int]]:
+        """Columns and rows of the plate that a fixture takes: of its locators, and of the clamp's hole or its line."""
+        *locators, clamp = fixture.pegs
+        along_x = is_along_x(fixture)
+        columns, rows = [peg.column for peg in locators], [peg.row for peg in locators]
+        if self.is_bolted or not along_x:
+            columns.append(clamp.column)
+        if self.is_bolted or along_x:
+            rows.append(clamp.row)
+        return columns, rows
+
+    def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
+        """What is wrong with roles, direction, columns, rows and the places x, y written for them."""
+        plate, direction = self.toolkit, fixture.direction
+        if not has_its_pegs(fixture):
+            yield Finding(True, "its pegs are not three locators and then a clamp")
+        if direction not in plate.directions:
+            yield Finding(True, f"its clamp moves in {direction}, which is not asked for")
+        if len({(peg.column, peg.row) for peg in fixture.pegs[:3]}) < 3:
+            yield Finding(True, "two locators are in the same hole")
+        for noun, numbers, count in zip(
+            ("column", "row"), self.lattice_numbers(fixture), (plate.columns, plate.rows), strict=True
+        ):
+            for name, place in zip(self.names, numbers, strict=False):
+                if place < 0 or (count is not None and place >= count):
+                    known = f"{noun}s from 0 upward" if count is None else f"{count} {noun}s"
+                    yield Finding(True, f"{name} is in {noun} {place} of a plate with {known}")
+            if min(numbers) > 0:
+                yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
+        clamp = fixture.pegs[-1]
+        if clamp.place != clamp_place(fixture.direction or "", clamp.column, clamp.row, self.is_bolted):
+            told = "hole in which it is bolted" if self.is_bolted else "line alone, since it has no travel"
+            yield Finding(True, f"the clamp is not told by the {told}")
+        if not self.is_bolted and (clamp.column if is_along_x(fixture) else clamp.row):
+            yield Finding(True, "the place of the clamp on its line is not counted from the plate's first hole")
+        for name, peg in zip(self.names, fixture.pegs, strict=True):
+            contact_way = WAYS[fixture.direction or ""] if peg is clamp else (0, 0)
+            for axis, written, count, pitch, way in zip(
+                "xy", (peg.x, peg.y), (peg.column, peg.row), plate.pitch, contact_way, strict=True
+            ):
+                off = abs(arb(pitch) * count + arb(fixture.jaw_separation) * way - written)
+                if not off < AGREEMENT:
+                    words = f"the {axis} of {name} is {number(off)} mm from that of its {'line' if peg is clamp else 'hole'}"
+                    yield from rule(AGREEMENT - off, words, words)
+
+    def standing_findings(
+        self, fixture: Fixture, contacts: list[Contact], pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether the clamp, bolted where it is said to be, reaches its place and clears locators and part."""
+        *locators, clamp = contacts
+        tip = clamp.place(pose)
+        bolted = evolve(clamp, way=exact_point(0.0, 0.0)) if self.is_bolted else clamp
+        hole = bolted.place(pose)
+        for name, locator in zip(self.names, locators, strict=False):
+            apart = distance_from_piece(locator.hole, tip, hole) - locator.radius - clamp.radius
+            yield from rule(
+                apart + HAIR,
+                f"the clamp meets {name}: they overlap by {number(-apart)} mm",
+                f"the clamp touches {name} exactly at the edge of what is allowed",
+            )
+        if self.toolkit.travel is None:
+            return
+        yield from self.stroke_findings(fixture, -pose.travel, self.toolkit.travel)
+        if -pose.travel > 0:
+            start, end = clamp.in_part(pose), bolted.in_part(pose)
+            clear = clearance(start, end, clamp.radius, outline.segments, enough=1.0)
+            yield from rule(
+                clear + BODY_SLACK,
+                f"the clamp enters the workpiece between its hole and its tip by {number(-clear)} mm",
+                "the clamp touches the workpiece between its hole and its tip exactly at the edge of what is allowed",
+            )
+
+    def stroke_findings(self, fixture: Fixture, stroke: arb, travel: tuple[float, float]) -> Iterator[Finding]:
+        """Whether the clamp stretches as far from its hole as it can, and from no nearer hole on the plate."""
+        least, most = travel
+        yield from rule(
+            stroke - least + HAIR,
+            f"the clamp is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its stroke",
+            "the clamp is bolted exactly at the edge of the least of its stroke",
+        )
+        yield from rule(
+            most - stroke + HAIR,
+            f"the clamp is bolted {number(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
+            "the clamp is bolted exactly at the edge of the most of its stroke",
+        )
+        clamp, along_x = fixture.pegs[-1], is_along_x(fixture)
+        way, pitch = WAYS[fixture.direction or ""], self.toolkit.pitch[0 if along_x else 1]
+        column, row = clamp.column - way[0], clamp.row - way[1]
+        numbers = [peg.column if along_x else peg.row for peg in fixture.pegs[:3]] + [column if along_x else row]
+        count = self.toolkit.columns if along_x else self.toolkit.rows
+        if count is None or max(numbers) - min(numbers) < count:
+            yield from rule(
+                least - HAIR - (stroke - pitch),
+                f"the clamp could be bolted one hole nearer, {number(stroke - pitch)} mm behind its tip",
+                "one hole nearer the clamp would be bolted exactly at the edge of the least of its stroke",
+            )
+
+    def broken_restriction(self, fixture: Fixture) -> str:
+        """A plate rules nothing out."""
+        return ""
+
+    def body_radius(self, peg: Peg) -> float:
+        """Radius in mm of a locator, or of the clamp's tip."""
+        return self.toolkit.peg_radius if peg.carrier == PLATE else self.toolkit.clamp_radius
+
+    def patterns(self, fixture: Fixture) -> Iterator[tuple[Key, Place]]:
+        """The locators' holes and the clamp's line, up to lattice steps, names and the half turn that makes +x into -x."""
+        if not has_its_pegs(fixture):
+            return
+        sign = 1 if (fixture.direction or "").startswith("-") else -1
+        *locators, clamp = fixture.pegs
+        column, row = min(sign * peg.column for peg in locators), min(sign * peg.row for peg in locators)
+        places = sorted((sign * peg.column - column, sign * peg.row - row, k) for k, peg in enumerate(locators))
+        anchor, along_x = locators[places[0][2]], is_along_x(fixture)
+        line = sign * clamp.row - row if along_x else sign * clamp.column - column
+        ahead = clamp.x - anchor.x if along_x else clamp.y - anchor.y
+        angle = radians(fixture.pose.theta_deg) + (pi if sign < 0 else 0.0)
+        key = along_x, tuple((column, row) for column, row, _ in places), line
+        yield key, (angle, *from_anchor(fixture, anchor), sign * ahead)
+
+    def rank(self, fixture: Fixture) -> Rank:
+        """Direction and holes, orientation and faces, as they are on the plate turned so that its clamp moves in -x.
+
+        Columns count from the first locator and from the clamp itself, rows from the lowest of all.
+        """
+        direction = fixture.direction or ""
+        turns = quarter_turns(direction)
+        pegs = [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in fixture.pegs]
+        first, lowest = min(column for column, *_ in pegs[:3]), min(row for _, row, _ in pegs)
+        *locators, (_, line, face) = pegs
+        shifted = sorted((column - first, row - lowest, face) for column, row, face in locators)
+        columns, rows, faces = (list(numbers) for numbers in zip(*shifted, (0, line - lowest, face), strict=True))
+        angle = (radians(fixture.pose.theta_deg) - turns * pi / 2 + SAME) % tau - SAME
+        return [list(WAYS).index(direction), *columns, *rows], angle, faces
+
+
+def has_its_pegs(fixture: Fixture) -> bool:
+    """Whether the pegs of a fixture are three locators and then its clamp."""
+    return [peg.carrier for peg in fixture.pegs] == [PLATE, PLATE, PLATE, f"clamp {fixture.direction}"]
+
+
+def is_along_x(fixture: Fixture) -> bool:
+    """Whether a fixture's clamp moves along a row."""
+    return (fixture.direction or "").endswith("x")
+
+
+def clamp_place(direction: str, column: int, row: int, bolted: bool) -> str:
+    """What the place of a clamp is called: by its hole, or by its line where it is in none."""
+    if bolted:
+        return f"clamp {hole_name(PLATE, column, row)}"
+    return f"clamp row {row + 1}" if direction.endswith("x") else f"clamp column {column_letters(column)}"
+
+
+def quarter_turns(direction: str) -> int:
+    """How many quarter turns, counter-clockwise, make -x of the plate the direction of a clamp."""
+    return ("-x", "-y", "+x", "+y").index(direction)
+
+
+def seen_along_x(turns: int, column: int, row: int) -> tuple[int, int]:
+    """Column and row of a hole on the plate turned back by so many quarter turns."""
+    return ((column, row), (row, -column), (-column, -row), (-row, column))[turns]
+
+
+def distance_from_piece(point: Point, one: Point, other: Point) -> arb:
+    """Distance in mm of a point from a straight piece along x or y."""
+    beyond = [arb(0).max(a.min(b) - at).max(at - a.max(b)) for at, a, b in zip(point, one, other, strict=True)]
+    return norm((beyond[0], beyond[1]))

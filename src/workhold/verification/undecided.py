@@ -1,0 +1,222 @@
+"""Whether an undecided entry of a proof is a real place: four contacts, or two chords, that there may be.
+
+The entry tells faces, holes and a range of orientations. At these orientations the centres of pegs of one jaw are known from
+two of them: in the workpiece's frame each moves on the line or circle of its face moved out by the peg radius, and the first
+on that of any other one moved back by the step between their holes; where the two cross is found in balls. Every other peg
+must then touch its face, inside the ends; pegs of two jaws must stand in rows as far apart as the entry says, and the
+smallest gap apart. What certainly is not so anywhere in the range is a fault; where ways run parallel nothing is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+from attrs import evolve, frozen
+from flint import arb, ctx
+
+from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
+from workhold.model.query import Query
+from workhold.model.toolkit import Arrangement, Carrier
+from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
+from workhold.verification.ends import on_circle, on_line
+from workhold.verification.outline import Outline
+from workhold.verification.plate import quarter_turns, seen_along_x
+from workhold.verification.rules import AGREEMENT
+from workhold.verification.sides import ArcSide, LineSide, Side
+
+__all__ = ["undecided_faults"]
+
+# mm. Features end so much farther out while contacts are sought, and contacts are as far off as their errors are.
+LOOSE = 10 * AGREEMENT
+# No unit. Lines with a sine less than this between them may be taken for parallel, and the others cross where they do.
+PARALLEL = 1e-7
+# Degrees. An orientation is written to 1e-10.
+WRITTEN = 1e-9
+REASONS = (AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED)
+
+
+@frozen(eq=False)
+class Touching:
+    """A peg that touches a side: the side, the step to it from the first peg in the workpiece's frame in mm, its column."""
+
+    side: Side
+    step: Point
+    column: int
+
+
+def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str]:
+    """A fault for every undecided entry that is no real place."""
+    if not entries:
+        return
+    with ctx.workprec(PRECISIONS[0]):
+        outline = Outline.of(query.workpiece)
+        for number, entry in enumerate(entries, 1):
+            fault = (
+                written_fault(entry, query, outline) or holes_fault(entry, query) or place_fault(entry, query, outline)
+            )
+            if fault:
+                yield f"undecided candidate {number} of the proof {fault}"
+
+
+def is_of_chords(entry: Undecided) -> bool:
+    """Whether an entry is a pair of chords, each from the first peg to the second."""
+    return entry.reason == GIVEN_UP
+
+
+def arrangement_of(entry: Undecided, query: Query) -> Arrangement:
+    """The arrangement that an entry names, with the direction where there are several."""
+    return next(one for one in query.toolkit.arrangements if one.title == entry.type)
+
+
+def along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
+    """An entry with what each of its four pegs stands on, on a plate as it is turned so that its clamp moves in -x."""
+    arrangement, carriers = arrangement_of(entry, query), query.toolkit.carriers
+    if is_of_chords(entry) and arrangement.pegs != (2, 2):
+        pegs = [carriers[0]] * 4
+    else:
+        pegs = [carriers[number] for number in arrangement.carriers]
+    turns = 0 if arrangement.direction is None else quarter_turns(arrangement.direction)
+    if turns == 0:
+        return entry, pegs
+    holes = [seen_along_x(turns, *hole) for hole in zip(entry.columns, entry.rows, strict=True)]
+    columns, rows = ((a, b, c, d) for a, b, c, d in zip(*holes, strict=True))
+    if turns % 2:
+        pegs = [evolve(one, pitch=one.pitch[::-1], columns=one.rows, rows=one.columns) for one in pegs]
+    return evolve(entry, columns=columns, rows=rows, theta_deg=entry.theta_deg - 90.0 * turns), pegs
+
+
+def groups_of(entry: Undecided, query: Query) -> list[list[int]]:
+    """The numbers of pegs whose steps from the first of them are told."""
+    first = 2 if is_of_chords(entry) else arrangement_of(entry, query).pegs[0]
+    return [list(range(first)), list(range(first, 4))]
+
+
+def written_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+    """What is wrong with the whole numbers and the words of an entry; empty when nothing is."""
+    if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.arrangements]:
+        return f"is of type {entry.type}, which is not asked for"
+    if entry.reason not in REASONS:
+        return "is undecided for a reason that is none"
+    if not is_of_chords(entry) and entry.reason != UNBOUNDED and entry.reach_deg is None:
+        return "does not say how far its orientation may be off"
+    if not set(entry.faces) <= set(outline.faces):
+        return "names a segment that is no face"
+    return ""
+
+
+def holes_fault(entry: Undecided, query: Query) -> str:
+    """What is wrong with the holes of an entry; empty when nothing is."""
+    entry, carriers = along_x(entry, query)
+    for group in groups_of(entry, query):
+        carrier, first = carriers[group[0]], group[0]
+        if entry.columns[first] or (entry.rows[first] and (first == 0 or is_of_chords(entry))):
+            return "does not count its holes from the first peg"
+        holes = {(entry.columns[k], entry.rows[k]) for k in group}
+        if len(holes) < len(group):
+            return "has two pegs in the same hole"
+        for column, row in holes:
+            if carrier.columns is not None and abs(column) >= carrier.columns:
+                return f"spans {abs(column) + 1} columns of a {carrier.noun} with {carrier.columns}"
+            if carrier.rows is not None and abs(row - entry.rows[first]) >= carrier.rows:
+                return f"spans {abs(row - entry.rows[first]) + 1} rows of a {carrier.noun} with {carrier.rows}"
+    return ""
+
+
+def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+    """What is wrong with the place of an entry; empty when nothing is, and where that is not certain."""
+    if entry.reach_deg is None and not is_of_chords(entry):
+        return ""
+    entry, carriers = along_x(entry, query)
+    theta = arb(entry.theta_deg, (entry.reach_deg or 0.0) + WRITTEN)
+    sine, cosine = (theta / 180).sin_cos_pi()
+    groups = groups_of(entry, query)
+    radii = [arb(carriers[group[0]].peg_radius) for group in groups]
+    pegs = []
+    for group in groups:
+        pitch_x, pitch_y = carriers[group[0]].pitch
+        steps = [
+            (arb(pitch_x) * entry.columns[k], arb(pitch_y) * (entry.rows[k] - entry.rows[group[0]])) for k in group
+        ]
+        sides = [outline.faces[entry.faces[k]] for k in group]
+        turns = [turned(step, cosine, -sine) for step in steps]
+        pegs.append([Touching(s, t, entry.columns[k]) for s, t, k in zip(sides, turns, group, strict=True)])
+    held = [first_pegs(group, radius) if len(group) > 1 else None for group, radius in zip(pegs, radii, strict=True)]
+    if any(places is not None and not places for places in held):
+        return "is no place where its pegs touch their faces"
+    standing, moving = held
+    if is_of_chords(entry) or standing is None:
+        return ""
+    first, second = (carriers[group[0]] for group in groups)
+    up = arb(second.pitch[1]) * entry.rows[groups[1][0]] + second.offset[1] - first.offset[1]
+    reach = arb(max(peg.column for peg in pegs[0])) - min(peg.column for peg in pegs[1])
+    gap = query.toolkit.gap
+    ahead = None if gap is None else reach * first.pitch[0] + gap
+    if len(pegs[1]) == 1:
+        rows = [on_row(pegs[1][0].side, radii[1], tail, up, (cosine, sine)) for tail in standing]
+        moving = None if None in rows else [place for row in rows for place in row or ()]
+    if moving is None:
+        return ""
+    for tail, place in product(standing, moving):
+        apart = turned((place[0] - tail[0], place[1] - tail[1]), cosine, sine)
+        if not (abs(apart[1] - up) > LOOSE or (ahead is not None and apart[0] < ahead - LOOSE)):
+            return ""
+    if gap is None:
+        return "is no place where the clamp's tip is on its line"
+    return "is no place where the pegs of both jaws stand in their rows, the smallest gap apart"
+
+
+def first_pegs(group: Sequence[Touching], radius: arb) -> list[Point] | None:
+    """Where the first peg of a jaw may be when all its pegs touch; None when that may be anywhere along a way."""
+    one = group[0]
+    other = next((peg for peg in group[1:] if are_across(one, peg)), None)
+    if other is None:
+        return None if all(may_slide_with(one, peg, radius) for peg in group[1:]) else []
+    side, (x, y) = other.side, other.step
+    if isinstance(side, LineSide):
+        points = on_line(one.side, radius, side.normal, side.level + radius - dot(side.normal, (x, y)))
+    else:
+        points = on_circle(one.side, radius, (side.center[0] - x, side.center[1] - y), side.reach(radius))
+    return [point for point in points if all(may_touch(peg, point, radius) for peg in group)]
+
+
+def are_across(one: Touching, other: Touching) -> bool:
+    """Whether the ways of two pegs of one jaw certainly are no nearly parallel lines and no nearly concentric circles."""
+    a, b = one.side, other.side
+    if isinstance(a, LineSide) and isinstance(b, LineSide):
+        return bool(abs(cross(a.tangent, b.tangent)) > PARALLEL)
+    if isinstance(a, ArcSide) and isinstance(b, ArcSide):
+        x, y = b.center[0] - other.step[0] - a.center[0], b.center[1] - other.step[1] - a.center[1]
+        return bool(norm((x, y)) > LOOSE)
+    return True
+
+
+def may_slide_with(one: Touching, other: Touching, radius: arb) -> bool:
+    """Whether two pegs whose ways run parallel may touch both at once."""
+    a, b = one.side, other.side
+    if isinstance(a, ArcSide):
+        return not abs(a.reach(radius) - b.reach(radius)) > LOOSE if isinstance(b, ArcSide) else True
+    point = a.start[0] + radius * a.normal[0] + other.step[0], a.start[1] + radius * a.normal[1] + other.step[1]
+    return not abs(b.gap(point) - radius) > LOOSE + PARALLEL * (a.length + norm(other.step))
+
+
+def may_touch(peg: Touching, first: Point, radius: arb) -> bool:
+    """Whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
+    side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
+    if isinstance(side, ArcSide) and not side.reach(radius) > 0:
+        return False
+    if abs(side.gap(point) - radius) > LOOSE:
+        return False
+    return not any(slack < -LOOSE for slack in side.slacks(point, radius))
+
+
+def on_row(side: Side, radius: arb, tail: Point, up: arb, turn: Point) -> list[Point] | None:
+    """Where a peg on a side may be that stands ``up`` mm above another in the toolkit; None where the side runs along."""
+    across = turned((arb(0), arb(1)), turn[0], -turn[1])
+    if isinstance(side, LineSide):
+        slope = dot(across, side.tangent)
+        if not (slope > 0 or slope < 0):
+            return None
+    peg = Touching(side, (arb(0), arb(0)), 0)
+    points = on_line(side, radius, across, dot(across, tail) + up)
+    return [point for point in points if may_touch(peg, point, radius)]

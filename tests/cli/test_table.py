@@ -1,0 +1,61 @@
+"""Tables: as they are where there is room, and within the width that there is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fakes import fake_result
+from workhold.cli.table import Table
+from workhold.files.result.writer import write_result
+
+
+def table(spare: int = 0) -> Table:
+    """Three columns, the last of them words."""
+    made = Table(("name", ">a long heading mm", "what it is"), spare=spare)
+    made.add_row("one", "1.5", "a plate with dowel holes every twenty millimetres")
+    made.add_row("two", "12.25", "a table")
+    made.red.add(1)
+    return made
+
+
+def test_without_a_limit_every_row_is_one_line() -> None:
+    """Headings, a rule, and the rows."""
+    assert [line.split()[0] for line in table().lines()] == ["name", "─" * 76, "one", "two"]
+
+
+@pytest.mark.parametrize("width", [50, 60, 75, 76, 200])
+def test_a_table_is_no_wider_than_there_is_room_and_loses_no_word(width: int) -> None:
+    """Headings and the last column take several lines; what is red stays red on all of them."""
+    fitted = table().fitted(width)
+    lines = [*fitted.headings, *fitted.lines]
+    assert max(map(len, lines)) <= width
+    words = " ".join(lines).split()
+    whole = "name a long heading mm what it is one 1.5 plate twenty millimetres two table"
+    assert set(whole.split()) <= set(words)
+    assert [fitted.lines[k].split()[0] for k in sorted(fitted.red)] == ["two"]
+
+
+def test_spare_columns_are_left_out_and_named() -> None:
+    """Only where there is no room for them."""
+    fitted = table(spare=1).fitted(40)
+    assert fitted.lines[-1] == "No room for: what it is."
+    assert "plate" not in " ".join(fitted.lines)
+    assert "plate" in " ".join(table(spare=1).fitted(76).lines)
+
+
+def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tables of a fixture and of the vises."""
+    write_result(fake_result(12), tmp_path / "r.json")
+    monkeypatch.setenv("COLUMNS", "80")
+    for words in (("show", tmp_path / "r.json", 1), ("vises",)):
+        outcome = run(*words)
+        assert outcome.exit_code == 0, outcome.stderr
+        lines = outcome.stdout.splitlines()
+        rules = [k for k, line in enumerate(lines) if line.startswith("──")]
+        assert rules
+        for k in rules:
+            end = next((n for n in range(k, len(lines)) if not lines[n].strip()), len(lines))
+            assert all(len(line) <= 80 for line in lines[k:end])

@@ -1,0 +1,254 @@
+"""Seeded hostile files, each read and held against what its own numbers say, in a process with limits of time and memory.
+
+``python hostile_batch.py part.json 0 60`` tries some; it ends with 0, or tells the seed of the file that fails.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import os
+import random
+import signal
+import sys
+import tempfile
+import tomllib
+import warnings
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from io import StringIO
+from itertools import pairwise
+from math import hypot
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+from ezdxf import DXFError, recover
+from ezdxf.disassemble import recursive_decompose, to_primitives
+from ezdxf.entities import LWPolyline
+from hostile_files import MAKERS
+from pytest import approx
+
+from workhold.cli.main import app
+from workhold.errors import InputError
+from workhold.files.apart import limit_memory, limit_processor
+from workhold.files.loads_file import read_loads
+from workhold.files.part.load import read_workpiece
+from workhold.files.result.reader import read_result
+from workhold.files.toolkit.reader import read_vise_file
+from workhold.kernels.base.distance import outline_distances
+
+__all__ = ["check_one", "run_batch"]
+
+# Processor seconds for one file, wall seconds, and bytes of address space beyond what the libraries take.
+SECONDS, WALL_SECONDS, MEMORY = 20, 200, 2 << 30
+
+
+def check_part(path: Path) -> None:
+    """The edges are those of the file's own numbers, run either way."""
+    read = read_workpiece(path).workpiece
+    content = json.loads(path.read_bytes().decode("utf-8-sig"))
+    unit = {"mm": 1.0, "inch": 25.4}[content["units"]]
+    told = [[[x * unit, y * unit, bulge] for x, y, bulge in loop] for loop in content["loops"]]
+    assert [edges_of(loop.tolist()) for loop in read.loops] == [edges_of(loop) for loop in told]
+
+
+def edges_of(loop: list[list[float]]) -> list[tuple[float, ...]]:
+    """Every edge with its bulge, from its smaller end to its larger one; too flat an arc is a line."""
+    edges = []
+    for (x, y, bulge), (to_x, to_y, _) in zip(loop, loop[1:] + loop[:1], strict=True):
+        bulge *= abs(bulge) >= max(2e-6, 2e-6 / hypot(to_x - x, to_y - y))
+        edges.append((x, y, to_x, to_y, bulge + 0.0) if (x, y) < (to_x, to_y) else (to_x, to_y, x, y, 0.0 - bulge))
+    return sorted(edges)
+
+
+def check_result(path: Path) -> None:
+    """All fixtures of the file are there, with their holes and places."""
+    read = read_result(path)
+    content = json.loads(path.read_bytes().decode("utf-8-sig"))
+    assert len(read) == len(content["fixtures"])
+    for fixture, told in zip(read, content["fixtures"], strict=True):
+        pegs = sorted((peg.carrier, peg.column, peg.row, peg.face, peg.force) for peg in fixture.pegs)
+        told_pegs = [[peg[key] for key in ("jaw", "column", "row", "segment", "force")] for peg in told["pegs"]]
+        assert pegs == sorted(map(tuple, told_pegs))
+        assert fixture.jaw_separation == approx(told["jaw_separation"])
+        assert fixture.pose.x == approx(told["pose"]["x"])
+
+
+def check_columns(path: Path) -> None:
+    """All fixtures of the file are there, with the holes and places that NumPy reads, and as the other form gives them."""
+    read = list(read_result(path))
+    with np.load(path, allow_pickle=False) as told:
+        assert len(read) == len(told["theta"])
+        for k, fixture in enumerate(read):
+            assert fixture.pose.theta_deg % 360 == approx(np.degrees(told["theta"][k]) % 360)
+            assert [fixture.pose.x, fixture.pose.y, fixture.jaw_separation] == approx(
+                [*told["position"][k], told["jaw_separation"][k]]
+            )
+            holes = zip(*(told[name][k].tolist() for name in ("column", "row", "face", "force")), strict=True)
+            assert sorted((peg.column, peg.row, peg.face, peg.force) for peg in fixture.pegs) == sorted(holes)
+
+
+def check_vise(path: Path) -> None:
+    """Every length is the file's."""
+    read = read_vise_file(path).toolkit
+    content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    unit = {"mm": 1.0, "inch": 25.4}[content["unit"]]
+    told = content["pitch"] if isinstance(content["pitch"], list) else [content["pitch"]] * 2
+    assert read.pitch == approx([unit * length for length in told])
+    for key in ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius"):
+        if content.get(key) is not None:
+            assert getattr(read, key) == approx(unit * content[key])
+    assert read.columns == content["columns"] and len(read.blocked) == len(content.get("blocked", ()))
+
+
+def check_loads(path: Path) -> None:
+    """As many loads as the file has, forces that are plain numbers as they stand there."""
+    read = read_loads(path)
+    content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    assert len(read) == len(content["load"])
+    for load, told in zip(read, content["load"], strict=True):
+        if isinstance(told.get("force", 0), int | float):
+            assert load.force == told.get("force", 0)
+
+
+def check_drawing(path: Path) -> None:
+    """Every segment lies on what ezdxf itself makes of the drawing."""
+    read = read_workpiece(path, unit="mm").workpiece
+    try:
+        document = ezdxf.readfile(path)
+    except Exception:
+        document, _ = recover.readfile(path)
+    if any(entity.has_width for entity in document.query("LWPOLYLINE") if isinstance(entity, LWPolyline)):
+        # What it makes of a polyline with a width is the outline of a stroke.
+        return
+    rows = []
+    try:
+        primitives = list(to_primitives(recursive_decompose(document.modelspace())))
+    except DXFError:
+        # There is nothing to compare with.
+        return
+    for primitive in primitives:
+        if primitive.path is not None and len(primitive.path):
+            points = np.array([(point.x, point.y) for point in primitive.path.flattening(1e-4)])
+            rows += [line_row(start, end) for start, end in pairwise(points) if (start != end).any()]
+    samples = np.array([point for segment in read.segments for point in points_of(segment)])
+    # ezdxf draws arcs as Bézier curves, which are off by 2.7e-4 of the radius.
+    assert outline_distances(samples, np.array(rows)).max() < 1e-3 + 4e-4 * float(np.ptp(samples, axis=0).max())
+
+
+def line_row(start: Any, end: Any) -> Any:
+    """A short line as a kernel's row."""
+    from workhold.geometry.segment import Line, segment_rows
+
+    return segment_rows([Line(tuple(map(float, start)), tuple(map(float, end)))])[0]
+
+
+def points_of(segment: Any) -> list[tuple[float, float]]:
+    """Start and middle of a segment."""
+    from workhold.geometry.segment import Arc
+
+    (x0, y0), (x1, y1) = segment.start, segment.end
+    if not isinstance(segment, Arc):
+        return [(x0, y0), ((x0 + x1) / 2, (y0 + y1) / 2)]
+    x, y = segment.center
+    return [
+        (x0, y0),
+        (x + segment.radius * np.cos(segment.mid_angle), y + segment.radius * np.sin(segment.mid_angle)),
+    ]
+
+
+CHECKS: dict[str, Callable[[Path], None]] = {
+    "part.json": check_part,
+    "result.json": check_result,
+    "vise.toml": check_vise,
+    "loads.toml": check_loads,
+    "drawing.dxf": check_drawing,
+    "result.npz": check_columns,
+}
+
+# What is done on the command line with a file that is read: with every tenth, for it takes longer than the reading.
+EVERY = 10
+RESULT_COMMANDS = (
+    ("show", "{file}", "1", "--draw", "{picture}", "--force"),
+    ("verify", "{file}"),
+    ("convert", "{file}", "{other}", "--force"),
+)
+COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
+    "part.json": (("features", "{file}", "--peg-radius", "2", "--draw", "{picture}", "--force"),),
+    "drawing.dxf": (("features", "{file}", "--peg-radius", "2", "--drawing-unit", "mm"),),
+    "result.json": RESULT_COMMANDS,
+    "result.npz": RESULT_COMMANDS,
+}
+
+
+def check_one(path: Path, with_commands: bool) -> bool:
+    """Whether a file is read, and then as what it says; otherwise it is refused in one short sentence."""
+    try:
+        CHECKS[path.name](path)
+    except InputError as error:
+        message = str(error)
+        assert path.name in message and message.isprintable() and len(message) <= 1000, message
+        return False
+    for words in COMMANDS.get(path.name, ()) if with_commands else ():
+        told = StringIO()
+        picture, other = (str(path.with_name(name)) for name in ("picture.svg", "other.json"))
+        with redirect_stdout(told), redirect_stderr(told):
+            code = app([word.format(file=path, picture=picture, other=other) for word in words], standalone_mode=False)
+        assert code in (0, 2), f"{words[0]} ends with {code}: {told.getvalue()}"
+    return True
+
+
+def address_space() -> int:
+    """Bytes of address space that this process has, where the system tells."""
+    try:
+        return int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 4 << 30
+
+
+def warm_up(name: str, path: Path) -> None:
+    """Read some files without limits: what is loaded and compiled once does not count."""
+    for seed in range(20):
+        path.write_bytes(MAKERS[name](random.Random(seed)))
+        with suppress(Exception):
+            check_one(path, with_commands=True)
+
+
+def run_batch(name: str, first: int, last: int) -> None:
+    """Try the files of some seeds, each told on standard output before it is tried, so that the last one is known where the
+    process ends: when a file takes too long, or brings the interpreter down.
+
+    Raises
+    ------
+    AssertionError
+        With the seeds that failed and why.
+    """
+    # A warning would reach the terminal.
+    warnings.simplefilter("error", RuntimeWarning)
+    if hasattr(signal, "SIGXCPU"):
+        faulthandler.register(signal.SIGXCPU, chain=True)
+    read, failures = 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / name
+        warm_up(name, path)
+        limit_memory(address_space() + MEMORY)
+        for seed in range(first, last):
+            path.write_bytes(MAKERS[name](random.Random(seed)))
+            sys.stdout.write(f"{name} of seed {seed}\n")
+            sys.stdout.flush()
+            limit_processor(SECONDS)
+            faulthandler.dump_traceback_later(WALL_SECONDS, exit=True)
+            try:
+                read += check_one(path, with_commands=seed % EVERY == 0)
+            except Exception as error:
+                failures.append(f"seed {seed}: {error!r}")
+            faulthandler.cancel_dump_traceback_later()
+    assert not failures, "\n".join(failures)
+    # The files are neither harmless nor so bad that nothing of the reader is tried.
+    assert 0 < read < last - first, read
+
+
+if __name__ == "__main__":
+    run_batch(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))

@@ -1,0 +1,157 @@
+"""Kernels of a shared library answer as those compiled on first use, and refuse whatever they were not compiled for."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections import namedtuple
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import numpy as np
+import pytest
+
+import workhold
+from workhold.errors import InputError
+from workhold.kernels.base import built, compiling, distance, sources
+from workhold.kernels.chord.coincidences import are_concentric
+from workhold.kernels.preparing import PARTS
+
+BUILDER = Path(workhold.__file__).parents[2] / "building" / "compile_kernels.py"
+SQUARE = np.array([[0.0, x, y, -y / 10, x / 10, 10.0, 0.0, 1.0] for x, y in ((0, -10), (10, 0), (0, 10), (-10, 0))])
+POINTS = np.random.default_rng(1).uniform(-20.0, 20.0, (200, 2))
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory) -> built.Library:
+    """A library of the small kernels, built as that of all is."""
+    folder = tmp_path_factory.mktemp("library")
+    done = subprocess.run([sys.executable, BUILDER, folder, "distances"], capture_output=True, text=True, check=True)
+    path = Path(done.stdout.strip())
+    assert path == folder / sources.library_name()
+    return built.Library(path)
+
+
+def door(library: built.Library, kernel: Any) -> built.Door:
+    """The library's answer to a kernel of numba."""
+    return library.door(kernel.py_func)
+
+
+def test_the_library_tells_of_which_sources_it_is(library):
+    assert library.source_hash == sources.source_hash()
+    assert set(library.kernels) == {kernel.__name__ for kernel, _ in PARTS["distances"]()}
+
+
+def test_every_kernel_that_python_calls_is_compiled_ahead():
+    """One that is not would be missing in the library."""
+    texts = [path.read_text() for path in sources.KERNELS.rglob("*.py")]
+    decorated = {name for text in texts for name in re.findall(r"^@compiled(?:_making_arrays)?\ndef (\w+)", text, re.M)}
+    assert decorated == {kernel.__name__ for calls in PARTS.values() for kernel, _ in calls()}
+
+
+def test_answers_are_the_same_to_the_last_bit(library):
+    """Numbers, truths and arrays that the library makes."""
+    ours, theirs = door(library, distance.outline_distances), distance.outline_distances
+    assert ours(POINTS, SQUARE).tobytes() == theirs(POINTS, SQUARE).tobytes()
+    assert ours(POINTS[:0], SQUARE).shape == (0,)
+    for x, y in POINTS:
+        for kernel in (distance.turns_around, distance.is_inside):
+            answer = door(library, kernel)(x, y, SQUARE)
+            assert answer == kernel(x, y, SQUARE) and type(answer) is type(kernel(x, y, SQUARE))
+    circle = np.array([1.0, 0, 0, 1, 0, np.pi, 5, 1])
+    assert door(library, are_concentric)(circle, circle) is True
+    assert door(library, are_concentric)(circle, SQUARE[0]) is False
+
+
+def test_arrays_that_nobody_looks_at_are_given_back(library):
+    """A view keeps an array of the library alive; thousands of large ones do not add up."""
+    distances = door(library, distance.outline_distances)
+    last = distances(POINTS, SQUARE)[-1:]
+    kept = last.copy()
+    many, released = np.zeros((20_000, 2)), []
+    release = library.release
+    library.release = lambda address: (released.append(address), release(address))
+    try:
+        for _ in range(50):
+            distances(many, SQUARE)
+    finally:
+        library.release = release
+    assert len(released) == 50
+    assert last == kept
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((0.0, 0.0), "takes 3 arguments, not 2"),
+        ((0.0, 0.0, SQUARE, SQUARE), "takes 3 arguments, not 4"),
+        ((0.0, "0", SQUARE), "y must be float64, not str"),
+        ((0.0, 0.0, SQUARE.tolist()), "rows must be a C-contiguous array of float64 with 2 dimensions, not list"),
+        ((0.0, 0.0, SQUARE[0]), "not an array of float64 of shape (8,)"),
+        ((0.0, 0.0, SQUARE[:, ::2]), "not an array of float64 of shape (4, 4), not contiguous"),
+        ((0.0, 0.0, np.asfortranarray(SQUARE)), "not contiguous"),
+        ((0.0, 0.0, SQUARE.astype(np.float32)), "not an array of float32"),
+        ((0.0, 0.0, SQUARE.astype(np.int64)), "not an array of int64"),
+        ((0.0, 0.0, SQUARE.astype(">f8")), "not an array of >f8"),
+        ((0.0, 0.0, None), "not NoneType"),
+    ],
+)
+def test_what_a_kernel_was_not_compiled_for_is_refused(library, arguments, words):
+    with pytest.raises(TypeError, match="is_inside") as caught:
+        door(library, distance.is_inside)(*arguments)
+    assert words in str(caught.value)
+
+
+def test_records_are_taken_apart_and_counted(library):
+    """A record is as many arguments as it has fields; one of another length, or of another kind, is refused."""
+    pair = namedtuple("pair", "x rows")
+    taken: list[Any] = []
+    check = door(library, distance.is_inside)
+    described = ["float64", {"array": "f8", "dimensions": 2}]
+    check.take("given", described, pair(2, SQUARE), taken)
+    assert len(taken) == len(built.c_types(described)) == 1 + 5 + 2 * 2
+    with pytest.raises(TypeError, match=r"given must be a record of 2, not tuple of 3"):
+        check.take("given", described, (1.0, SQUARE, SQUARE), taken)
+    with pytest.raises(TypeError, match=r"given\.rows must be"):
+        check.take("given", described, pair(2, SQUARE[0]), taken)
+
+
+def test_the_interpreter_goes_on_while_a_kernel_runs(library):
+    """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
+    distances, many = door(library, distance.outline_distances), np.zeros((1_000_000, 2))
+    thread, counted, before = Thread(target=distances, args=(many, SQUARE)), 0, sys.getswitchinterval()
+    sys.setswitchinterval(60.0)
+    try:
+        thread.start()
+        while thread.is_alive():
+            counted += 1
+    finally:
+        sys.setswitchinterval(before)
+    assert counted > 0
+
+
+@pytest.mark.parametrize("damage", ["missing", "other sources", "no library"])
+def test_a_library_that_does_not_fit_is_not_used(library, damage, tmp_path, monkeypatch):
+    """Without numba that is one sentence with a remedy; with it kernels are compiled on first use."""
+    monkeypatch.setattr(compiling, "MODE", "")
+    monkeypatch.setattr(compiling, "KERNELS", tmp_path)
+    path = tmp_path / sources.library_name()
+    if damage == "no library":
+        path.write_text("no library")
+    elif damage == "other sources":
+        path.write_bytes(Path(library.code._name).read_bytes())
+        monkeypatch.setattr(compiling, "source_hash", lambda: "another")
+    assert compiling.built_library() is None
+    monkeypatch.setattr(compiling, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"install workhold\[numba\]"):
+        compiling.built_library()
+
+
+def test_a_library_that_fits_is_used(library, tmp_path, monkeypatch):
+    monkeypatch.setattr(compiling, "MODE", "")
+    monkeypatch.setattr(compiling, "KERNELS", Path(library.code._name).parent)
+    assert compiling.built_library() is not None
+    monkeypatch.setattr(compiling, "MODE", "numba")
+    assert compiling.built_library() is None

@@ -1,0 +1,122 @@
+"""A locked jaw: what it does to peg forces agrees with springs that may let go, solved by trying every set of contacts."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import inf
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from held import force_directions, held, load_wrench, plate_fixture
+from workhold.errors import InputError
+from workhold.model.load import Load
+from workhold.model.result import Result
+from workhold.statics.jaw import jaw_stiffness, shared_forces
+from workhold.statics.loads import load_cases
+
+Array = NDArray[np.float64]
+
+
+def springs(wrenches: Array, shares: Array, load: Array, jaw_force: float, stiffness: float) -> Array | None:
+    """Forces of four springs of stiffness 1 that only press, the moving ones on a jaw that is a spring too.
+
+    The jaw is closed until it pushes with the jaw force and its far end then fixed; the load moves part and jaw by y (4,). A
+    spring is pressed by what it was before and by the movement; the set of those that press is found by trying all.
+    Nothing balances where the part escapes: None.
+
+    Parameters
+    ----------
+    wrenches : (4, 3) of each peg's push on the part. shares : (4,) of it in pushing the jaw back. load : (3,).
+    """
+    scale = np.array([1.0, 1.0, 0.05])
+    rows = np.column_stack([wrenches * scale, -shares])
+    before = np.linalg.solve(rows.T, [0.0, 0.0, 0.0, -jaw_force])
+    jaw = np.array([0.0, 0.0, 0.0, stiffness])
+    for count in (4, 3, 2, 1):
+        for pressing in map(list, combinations(range(4), count)):
+            # Balance: sum of rows f = (-load, -jaw_force - stiffness * y_jaw), f = before - rows y on those that press.
+            chosen = rows[pressing]
+            matrix = chosen.T @ chosen + np.diag(jaw)
+            if np.linalg.matrix_rank(matrix, tol=1e-9) < 4:
+                continue
+            given = np.append(load * scale, jaw_force) + chosen.T @ before[pressing]
+            y = np.linalg.solve(matrix, given)
+            forces = before - rows @ y
+            others = [k for k in range(4) if k not in pressing]
+            if (forces[pressing] >= -1e-9).all() and (forces[others] <= 1e-9).all():
+                out = np.zeros(4)
+                out[pressing] = forces[pressing]
+                return out
+    return None
+
+
+@pytest.fixture(scope="module", params=[("widget", 8, 1, 3, 50)], ids=["widget"])
+def result(request: pytest.FixtureRequest) -> Result:
+    """Fixtures of a part."""
+    return held(*request.param)
+
+
+@pytest.mark.parametrize("stiffness", [0.3, 4.0, 1e9])
+def test_locked_forces_are_those_of_springs(result: Result, stiffness: float) -> None:
+    """Above the jaw force needed every spring presses with the force told; below it one has let go."""
+    random = np.random.default_rng(5)
+    jaw = inf if stiffness == 1e9 else stiffness
+    for fixture in list(result)[:12]:
+        point, angle = tuple(random.uniform(-20, 20, 2)), float(random.uniform(0, 360))
+        load = Load(points=[point], force=90, directions=(angle, angle), moment=float(random.uniform(-500, 500)))
+        wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
+        wrench = load_wrench(90, point, angle, load.moment)
+        (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
+        (more,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw_force=1.1 * case.jaw_force, jaw=jaw)
+        assert more.keeps_contact
+        pressed = springs(wrenches, shares, wrench, more.jaw_force, stiffness)
+        assert pressed == pytest.approx(more.largest, rel=1e-5, abs=1e-5 * max(more.largest))
+        lost = springs(wrenches, shares, wrench, 0.99 * case.needed.value, stiffness)
+        assert lost is None or lost[case.needed.peg] == 0
+
+
+def test_the_manuals_plate() -> None:
+    """200 N against one peg of a pinwheel: 100 N either way when locked; 200 and 0 where the jaw keeps its force."""
+    plate, vise, fixture = plate_fixture()
+    for direction, constant in ((0, 200), (180, 0)):
+        push = Load(points=[(0, 0)], force=200, directions=(direction, direction))
+        assert load_cases(fixture, plate, vise, [push])[0].needed.value == pytest.approx(100)
+        assert load_cases(fixture, plate, vise, [push], jaw="constant")[0].needed.value == pytest.approx(constant)
+
+
+def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
+    """A very soft jaw keeps its force and a very stiff one is locked; the load reaction is the same for all."""
+    load = Load(points=[(3.0, 4.0)], force=50)
+    fixture = result[0]
+
+    def case(jaw: str | float) -> tuple[float, float]:
+        (told,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
+        return told.needed.value, told.reaction.value
+
+    (soft, one), (constant, other) = case(1e-9), case("constant")
+    assert soft == pytest.approx(constant, rel=1e-6) and one == pytest.approx(other)
+    (stiff, one), (screw, other) = case(1e9), case("screw")
+    assert stiff == pytest.approx(screw, rel=1e-6) and one == pytest.approx(other) == pytest.approx(case("constant")[1])
+
+
+def test_friction_never_asks_for_more() -> None:
+    """With friction a locked jaw needs no more than without."""
+    plate, vise, fixture = plate_fixture()
+    (case,) = load_cases(fixture, plate, vise, [Load(points=[(0, 15)], force=200, directions=(0, 0))], friction=0.1)
+    assert case.needed_with_friction == pytest.approx(75) == pytest.approx(case.needed.value)
+
+
+def test_what_is_no_load_stays() -> None:
+    """The forces of closing do not depend on the jaw."""
+    forces = np.random.default_rng(1).normal(size=(4, 4))
+    assert (shared_forces(forces, inf)[:, 3] == forces[:, 3]).all() and (shared_forces(forces, 0.0) == forces).all()
+    assert forces[:, 3] @ shared_forces(forces, inf)[:, :3] == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("jaw", ["", "hydraulic", "-1", -1.0, "nan", float("nan")])
+def test_other_jaws_are_refused(jaw: str | float) -> None:
+    """One sentence that names what can be given."""
+    with pytest.raises(InputError, match="give screw, constant, or how many times"):
+        jaw_stiffness(jaw)

@@ -1,0 +1,91 @@
+"""An undecided entry of a proof is a real place, or a fault."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import pytest
+
+from undecided_examples import as_undecided
+from workhold import Result
+from workhold.model.fixture import Fixture
+from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.verification.undecided import undecided_faults
+
+
+def as_chords(fixture: Fixture) -> Undecided:
+    """Its first two pegs and the others, or of three left pegs those that share the first, as chords that were given up."""
+    entry, kind = as_undecided(fixture), fixture.type
+    order = (0, 1, 2, 3) if kind == "I" else (0, 1, 0, 2)
+    rows = [entry.rows[k] for k in order]
+    quartets: list[Any] = [
+        tuple(entry.faces[k] for k in order),
+        tuple(entry.columns[k] for k in order),
+        (0, rows[1], 0, rows[3] - rows[2]),
+    ]
+    return Undecided(kind, *quartets, entry.theta_deg, GIVEN_UP)
+
+
+def faults(entry: Undecided, result: Result) -> list[str]:
+    """What is wrong with one entry."""
+    return list(undecided_faults([entry], result.query))
+
+
+def test_places_where_fixtures_are_may_be_undecided(widget_result: Result) -> None:
+    """As four contacts, as chords, and without a bound."""
+    for fixture in widget_result:
+        entry = as_undecided(fixture)
+        assert faults(entry, widget_result) == []
+        assert faults(as_chords(fixture), widget_result) == []
+        assert faults(attrs.evolve(entry, reason=UNBOUNDED, reach_deg=None), widget_result) == []
+
+
+@pytest.mark.parametrize("change", [1e-3, -1e-3, 20.0])
+def test_no_contacts_at_another_orientation(widget_result: Result, change: float) -> None:
+    """Unless the entry says that its orientation is no better known."""
+    for fixture in widget_result:
+        entry = as_undecided(fixture)
+        other = attrs.evolve(entry, theta_deg=(entry.theta_deg + change) % 360.0)
+        assert "of the proof is no place where" in faults(other, widget_result)[0]
+        if abs(change) < 1.0:
+            assert faults(attrs.evolve(other, reach_deg=2e-3), widget_result) == []
+
+
+@pytest.mark.parametrize("key", ["faces", "columns", "rows"])
+@pytest.mark.parametrize("peg", range(4))
+def test_other_faces_and_holes(widget_result: Result, key: str, peg: int) -> None:
+    """Any whole number changed by one. Three left pegs let the right one stand in any row that meets its face."""
+    for fixture in widget_result:
+        if (fixture.type, key, peg) == ("II", "rows", 3):
+            continue
+        entry = as_undecided(fixture)
+        for change in (1, -1):
+            numbers = list(getattr(entry, key))
+            numbers[peg] += change
+            assert faults(attrs.evolve(entry, **{key: tuple(numbers)}), widget_result), (entry, key, peg, change)
+
+
+def test_chords_that_are_none(widget_result: Result) -> None:
+    """A step that the two faces do not have at that orientation, or none."""
+    for fixture in widget_result:
+        entry = as_chords(fixture)
+        rows = (0, entry.rows[1] + 5, 0, entry.rows[3])
+        assert "touch their faces" in faults(attrs.evolve(entry, rows=rows), widget_result)[0]
+        still = attrs.evolve(entry, rows=(0, 0, *entry.rows[2:]), columns=(0, 0, *entry.columns[2:]))
+        assert "two pegs in the same hole" in faults(still, widget_result)[0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"type": "III"}, "is of type III, which is not asked for"),
+        ({"reason": "because"}, "for a reason that is none"),
+        ({"reach_deg": None}, "does not say how far"),
+        ({"faces": (0, 1, 2, 777)}, "names a segment that is no face"),
+        ({"columns": (0, 9, 0, 0)}, "spans 10 columns of a jaw with 2"),
+        ({"columns": (1, 0, 0, 0)}, "does not count its holes from the first peg"),
+    ],
+)
+def test_what_an_entry_says(widget_result: Result, changes: dict[str, Any], words: str) -> None:
+    assert words in faults(attrs.evolve(as_undecided(widget_result[0]), **changes), widget_result)[0]
