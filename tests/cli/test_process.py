@@ -167,9 +167,12 @@ if {interrupted}:
     time.sleep(2 * GRACE)
     print("written", flush=True)
 else:
-    print("ready", flush=True)
+    ready = False
     while True:
         try:
+            if not ready:
+                ready = True
+                print("ready", flush=True)
             time.sleep(60)
         except BaseException:
             pass
