@@ -26,7 +26,7 @@ COMMANDS = {
     "verify": ("verify", "flange.npz"),
 }
 # Seconds: the program promises two, to which a busy machine may add.
-MOST = 10
+MOST = 30
 # Seconds after which Ctrl-C is pressed again.
 PATIENCE = 3
 TEETH = 100

@@ -81,7 +81,7 @@ def test_a_pipe_is_written_to_and_not_replaced(tmp_path: Path) -> None:
     reader = threading.Thread(target=lambda: received.append(pipe.read_bytes()))
     reader.start()
     write_bytes(pipe, b"new")
-    reader.join(10)
+    reader.join(120)
     assert received == [b"new"]
     assert pipe.is_fifo()
 

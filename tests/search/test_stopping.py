@@ -59,7 +59,7 @@ def test_blocks_that_run_when_the_search_is_cancelled_are_stopped_and_not_done()
 
     def work(margin: float) -> np.ndarray:
         cancel.set()
-        assert stopped.wait(20)
+        assert stopped.wait(120)
         return np.ones((1, 19))
 
     records, done = run_blocks([Block(work, 1.0)] * 9, 1, None, cancel, stop=stopped.set)
@@ -73,7 +73,7 @@ def test_blocks_are_stopped_when_a_signal_ends_the_search() -> None:
     stopped = Event()
 
     def work(margin: float) -> np.ndarray:
-        assert stopped.wait(20)
+        assert stopped.wait(120)
         return np.ones((1, 19))
 
     def interrupt(fraction: float, found: int) -> None:

@@ -28,7 +28,7 @@ def reverse_proxy(upstream: str, prefix: str) -> Iterator[str]:
             headers = [(k, v) for k, v in self.headers.items() if k.lower() not in ("connection", "x-forwarded-for")]
             headers.append(("X-Forwarded-For", self.headers.get("X-Pretend", self.client_address[0])))
             with httpx.stream(
-                self.command, upstream + self.path[len(prefix) :], headers=headers, content=body
+                self.command, upstream + self.path[len(prefix) :], headers=headers, content=body, timeout=None
             ) as answer:
                 self.send_response(answer.status_code)
                 for name, value in answer.headers.multi_items():

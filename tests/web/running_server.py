@@ -17,7 +17,8 @@ from workhold.web.limits import Limits
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
-PATIENCE = 60.0
+# Seconds to wait for what comes at once on a machine that has nothing else to do.
+PATIENCE = 120.0
 # Kernels may have to be compiled first.
 START_PATIENCE = 400.0
 
@@ -90,6 +91,14 @@ class RunningServer:
             time.sleep(0.02)
 
 
+def arriving(server: RunningServer) -> int:
+    """How many files are arriving."""
+    app = server.server.config.app.middleware_stack  # type: ignore[union-attr]
+    while not hasattr(app, "arriving"):
+        app = app.app
+    return int(app.arriving.total())
+
+
 @contextmanager
 def running_server(
     hosts: Hosts | None = None, proxies: Collection[str] = (), token: str | None = None, **limits: Any
@@ -97,7 +106,7 @@ def running_server(
     """A server with one worker of each kind, ready for requests."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
-    given = Limits(**{"searches": 1, "desks": 1, **limits})
+    given = Limits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
     server = make_server(given, hosts or Hosts(), listening.set, proxies, token)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()

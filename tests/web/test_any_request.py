@@ -8,7 +8,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from running_server import RunningServer, request
+from running_server import PATIENCE, RunningServer, request
 
 from workhold.web.app import create_app
 
@@ -34,7 +34,7 @@ def test_no_request_brings_out_a_mistake(server: RunningServer, job: str, name: 
         case = data.draw(operation.as_strategy())
         if exists and "name" in case.path_parameters and operation.method.upper() != "DELETE":
             case.path_parameters["name"] = job
-        answer = case.call(base_url=str(server.client.base_url))
+        answer = case.call(base_url=str(server.client.base_url), timeout=PATIENCE)
         assert answer.status_code < 500, answer.text
         if answer.status_code >= 400:
             assert answer.json()["error"].endswith("."), answer.text

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from running_server import RunningServer, request
+from running_server import PATIENCE, RunningServer, request
 from test_parts import refused
 
 from workhold.web.guard import Hosts
@@ -85,7 +85,7 @@ def test_compressed_requests_are_not_unpacked(server: RunningServer) -> None:
 
 
 def test_a_gigabyte_is_refused_before_it_is_sent(server: RunningServer) -> None:
-    with socket.create_connection(server.address, timeout=20) as connection:
+    with socket.create_connection(server.address, timeout=PATIENCE) as connection:
         connection.sendall(b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000\r\n\r\n")
         assert b" 413 " in connection.recv(200)
 
@@ -110,6 +110,6 @@ def test_a_body_without_a_length_is_cut_off(server: RunningServer) -> None:
 
 @pytest.mark.parametrize("length", ["-1", "x", "9" * 30])
 def test_lengths_that_are_none_are_refused(server: RunningServer, length: str) -> None:
-    with socket.create_connection(server.address, timeout=20) as connection:
+    with socket.create_connection(server.address, timeout=PATIENCE) as connection:
         connection.sendall(f"POST /api/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: {length}\r\n\r\n".encode())
         assert connection.recv(200).split(b" ")[1] in (b"400", b"413")

@@ -11,7 +11,7 @@ from typing import Any
 
 import httpx
 import pytest
-from running_server import LONG, SQUARE, VISE, WIDGET, RunningServer, request
+from running_server import LONG, PATIENCE, SQUARE, VISE, WIDGET, RunningServer, request
 from test_parts import refused
 
 from workhold.files.part.load import load
@@ -402,9 +402,13 @@ def test_names_of_jobs_are_long_and_never_the_same(server: RunningServer) -> Non
 
 def test_a_stream_of_events_that_is_left_does_not_stay(server: RunningServer) -> None:
     url = server.submit(LONG)
-    with httpx.Client(base_url=server.client.base_url) as other, other.stream("GET", f"{url}/events") as stream:
+    with (
+        httpx.Client(base_url=server.client.base_url, timeout=PATIENCE) as other,
+        other.stream("GET", f"{url}/events") as stream,
+    ):
         lines = stream.iter_lines()
         next(lines)
-        assert server.state.streams == 1
+        # Those of earlier tests may only just have ended.
+        server.wait_until(lambda: server.state.streams == 1)
     server.wait_until(lambda: server.state.streams == 0)
     server.client.delete(url)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import httpx
 import pytest
+from running_server import PATIENCE
 
 from workhold.cli.main import app
 from workhold.cli.serve_command import FIRST_RUN
@@ -24,7 +25,7 @@ def is_alive(pid: int) -> bool:
     """Whether a process runs."""
     try:
         return "Z" not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):
         return False
 
 
@@ -38,16 +39,16 @@ def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
     line = process.stdout.readline()
     found = re.search(r"http://127\.0\.0\.1:\d+/", line)
     assert found, line + process.stderr.read()
-    about = httpx.get(f"{found[0]}api/about").json()
+    about = httpx.get(f"{found[0]}api/about", timeout=PATIENCE).json()
     assert about["limits"]["seconds"] == 77.0
     children = [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
     assert children
     process.send_signal(ending)
-    assert process.wait(20) == {signal.SIGINT: 0, signal.SIGKILL: -signal.SIGKILL}[ending]
+    assert process.wait(PATIENCE) == {signal.SIGINT: 0, signal.SIGKILL: -signal.SIGKILL}[ending]
     if ending != signal.SIGKILL:
         # Kernels that no test has compiled yet are compiled now.
         assert process.stderr.read() in ("", f"{FIRST_RUN}\n")
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while any(map(is_alive, children)):
         assert time.monotonic() < end, "workers stay"
         time.sleep(0.05)

@@ -10,7 +10,7 @@ from running_server import RunningServer
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 # A search may have to wait for kernels to be loaded on a busy machine.
-SEARCH_PATIENCE = 60_000.0
+SEARCH_PATIENCE, SEEN_PATIENCE = 120_000.0, 60_000.0
 
 POINT_ON_PAGE = """async ([view, x, y]) => {
   const stage = await import("/static/stage-panel.js");
@@ -37,7 +37,7 @@ class Walk:
     asked: list[str] = field(factory=list)
 
     def __attrs_post_init__(self) -> None:
-        self.page.set_default_timeout(20_000)
+        self.page.set_default_timeout(SEEN_PATIENCE)
         self.page.on("pageerror", lambda error: self.troubles.append(str(error)))
         self.page.on("console", lambda line: self.troubles.append(line.text) if line.type == "error" else None)
         self.page.on("request", lambda request: self.asked.append(request.url))
@@ -62,7 +62,7 @@ class Walk:
         """Wait until the page has set itself up."""
         self.page.wait_for_selector("body[data-ready]")
 
-    def seen(self, selector: str, patience: float = 20_000.0) -> Any:
+    def seen(self, selector: str, patience: float = SEEN_PATIENCE) -> Any:
         """An element, once it is to be seen."""
         element = self.page.locator(selector).first
         element.wait_for(state="visible", timeout=patience)
