@@ -56,9 +56,8 @@ def show(
     from workhold.cli.load_tables import load_tables
     from workhold.cli.tables import fixture_tables, print_tables, quality_table
 
-    print_tables(
-        *fixture_tables(fixture, result.toolkit, rank, len(result), shown_unit), "", quality_table(fixture, shown_unit)
-    )
+    quality = quality_table(fixture, result.toolkit.moving.noun, shown_unit)
+    print_tables(*fixture_tables(fixture, result.toolkit, rank, len(result), shown_unit), "", quality)
     if asked or result.query.loads:
         from workhold.statics.loads import load_cases
 

@@ -261,8 +261,8 @@ def counted_text(figure: Figure, value: float, unit: Unit) -> str:
     return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))
 
 
-def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
-    """All figures of quality of a fixture, and what they mean."""
+def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Table:
+    """All figures of quality of a fixture, and what they mean where a jaw, or what moves instead of it, presses."""
     from workhold.model.quality import FIGURES
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
@@ -271,7 +271,8 @@ def quality_table(fixture: Fixture, unit: Unit = MILLIMETRE) -> Table:
             of = unit.abbreviation if figure.unit == "mm" else figure.unit
             better = "more" if figure.more_is_better else "less"
             value = figure_text(figure, fixture.quality[figure.key], unit)
-            table.add_row(figure.words, value, of, better, figure.meaning)
+            words, meaning = figure.told(mover)
+            table.add_row(words, value, of, better, meaning)
     return table
 
 

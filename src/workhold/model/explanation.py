@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from attrs import frozen
 
 from workhold.model.fixture import Fixture
@@ -52,11 +55,13 @@ class Help:
     change : in a few words, such as "without avoiding faces 1, 4".
     fixtures : how many there are then.
     complete : False when there are more, because the search for them was ended.
+    fields : those of the toolkit that it changes; None when it changes something else.
     """
 
     change: str
     fixtures: int
     complete: bool = True
+    fields: Mapping[str, Any] | None = None
 
 
 @frozen

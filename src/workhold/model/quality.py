@@ -54,6 +54,14 @@ class Figure:
         """
         return self.key.replace("_", " ")
 
+    def told(self, mover: str) -> tuple[str, str]:
+        """Its name and meaning where what moves is called something else than a jaw.
+
+        >>> FIGURES[1].told("clamp")
+        ('clamp amplification', 'The largest peg force per unit of clamp force.')
+        """
+        return self.words.replace("jaw", mover), self.meaning.replace("jaw", mover)
+
     @property
     def option(self) -> str:
         """Its name on the command line.
@@ -73,9 +81,13 @@ FIGURES = (
     Figure("load_reaction", "N", False, "The largest peg force when the loads act and no peg lets go.", 1),
     Figure("edge_distance", "mm", True, "The smallest distance from a contact to an edge or another face."),
     Figure(
-        "jaw_force_needed", "N", False, "The jaw force of a screw vise above which no peg lets go under any load.", 1
+        "jaw_force_needed",
+        "N",
+        False,
+        "The jaw force, the jaw locked by its screw, above which no peg lets go under any load.",
+        1,
     ),
-    Figure("tilt", "deg", False, "How far the part's main straight faces are from lying square to the jaws.", 3),
+    Figure("tilt", "deg", False, "How far the part's main straight faces are from lying square, along x and y.", 3),
     Figure(
         "smallest_face", "mm", True, "The smallest face touched: the length of a straight one, the radius of an arc."
     ),

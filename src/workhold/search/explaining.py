@@ -7,9 +7,10 @@ plain numbers; the proof that there is no fixture is the search's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from threading import Event, Timer
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve
@@ -313,7 +314,7 @@ def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) ->
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out = []
-    for words, changed in changes(query, unit):
+    for words, changed, fields in changes(query, unit):
         enough = Event()
         timer = Timer(HELP_SECONDS, enough.set)
         timer.start()
@@ -325,7 +326,8 @@ def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
         finally:
             timer.cancel()
         if any(result.found.values()):
-            out.append(Help(words + nearest_turn(query, result), sum(result.found.values()), result.complete))
+            words += nearest_turn(query, result)
+            out.append(Help(words, sum(result.found.values()), result.complete, fields))
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 
@@ -347,24 +349,25 @@ def nearest_turn(query: Query, result: Result) -> str:
     return f", the nearest {beyond[nearest]:.1f} degrees farther, at {found[nearest] % 360.0:.2f}"
 
 
-def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query]]]:
-    """Changes of a query to try, one at a time: in words, and what makes the query, or finds that there is none such."""
+def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query], Mapping[str, Any] | None]]:
+    """Changes of a query to try, one at a time: in words, what makes the query, or finds that there is none such, and the
+    fields of the toolkit that it changes, if it does."""
     asked, toolkit = query.restrictions, query.toolkit
     if asked.avoid:
         if len(asked.avoid) > 1:
             faces = ", ".join(str(number) for number in asked.avoid)
-            yield f"touching faces {faces} too", partial(evolve, query, restrictions=evolve(asked, avoid=()))
+            yield f"touching faces {faces} too", partial(evolve, query, restrictions=evolve(asked, avoid=())), None
         for face in asked.avoid[:MOST_FACES]:
             rest = tuple(number for number in asked.avoid if number != face)
-            yield f"touching face {face} too", partial(evolve, query, restrictions=evolve(asked, avoid=rest))
+            yield f"touching face {face} too", partial(evolve, query, restrictions=evolve(asked, avoid=rest)), None
     if asked.zones:
-        yield "without the keep-out zones", partial(evolve, query, restrictions=evolve(asked, zones=()))
+        yield "without the keep-out zones", partial(evolve, query, restrictions=evolve(asked, zones=())), None
     if asked.angles:
-        yield "at any angle", partial(evolve, query, restrictions=evolve(asked, angles=()))
+        yield "at any angle", partial(evolve, query, restrictions=evolve(asked, angles=())), None
     if query.contact_margin > 0:
-        yield "without a contact margin", partial(evolve, query, contact_margin=0.0)
+        yield "without a contact margin", partial(evolve, query, contact_margin=0.0), None
     for change in (*(limit.lifted for limit in toolkit.limits), *toolkit.further_changes(unit)):
-        yield change.words, partial(held_in_another, query, change)
+        yield change.words, partial(held_in_another, query, change), change.fields
 
 
 def held_in_another(query: Query, change: Change) -> Query:

@@ -9,7 +9,7 @@ from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields
+from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
@@ -19,7 +19,7 @@ from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.setting import setting_of
 from workhold.model.shown import Shown, shown
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from workhold.statics.loads import LoadCase, Worst
 
 __all__ = [
+    "arrangements_answer",
     "contact_answer",
     "explanation_answer",
     "figures_answer",
@@ -100,16 +101,17 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
 
 
 def vise_answer(loaded: LoadedVise) -> dict[str, Any]:
-    """A vise that comes with the program."""
+    """A toolkit that comes with the program; its kind is one of those the page has fields for."""
+    from workhold.web.toolkits import page_kind
+
     given = toolkit_fields(loaded.toolkit)
     return {
         "name": loaded.name,
+        "kind": page_kind(loaded),
         "title": loaded.title,
         "source": loaded.source,
         "unit": loaded.unit.name,
-        "arrangements": [
-            {"name": one.name, "words": arrangement_words(one, loaded.toolkit)} for one in loaded.toolkit.arrangements
-        ],
+        "assumed": list(loaded.assumed),
         "fields": {key: value for key, value in given.items() if key in loaded.fields},
         "tolerance": tolerance_entry(loaded.tolerance),
     }
@@ -182,6 +184,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "clamp": {
                 "hole": each.hole,
                 "tip": [each.tip.x, each.tip.y],
+                "draws_back": draws_back(each.carrier, each.hole, (each.tip.x, each.tip.y)),
                 "bolt_radius": plate.hole_radius,
                 "line": [plate.plate.x0, plate.plate.y0, plate.plate.x1, plate.plate.y1],
             },
@@ -189,6 +192,13 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         for each in seen.clamps
     ]
     return lattices + clamps
+
+
+def draws_back(clamp: Carrier, hole: Sequence[float] | None, tip: Sequence[float]) -> float | None:
+    """How far in mm a clamp can be drawn back from where it clamps; None where only its line is told."""
+    if hole is None or clamp.travel is None or clamp.travel.most is None:
+        return None
+    return max(hypot(tip[0] - hole[0], tip[1] - hole[1]) + clamp.travel.most, 0.0)
 
 
 def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
@@ -206,6 +216,11 @@ def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
     }
 
 
+def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
+    """What fixtures of a toolkit can be told apart by: what the page calls each, and in words."""
+    return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
+
+
 def setting_answer(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any] | None:
     """The length to set, with its sign and its name, and what pushes; None where nothing moves."""
     setting = setting_of(fixture, toolkit)
@@ -214,11 +229,21 @@ def setting_answer(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any] | None:
     return {"sign": setting.sign, "name": setting.name, "length": setting.length}
 
 
+def title_of(arrangement: Arrangement) -> str:
+    """What a fixture of an arrangement is called in a line.
+
+    >>> title_of(Arrangement("II", (3, 1))), title_of(Arrangement("clamp", (3, 1), "-x"))
+    ('Type II', 'Clamp \u2212x')
+    """
+    title = arrangement.title.replace("-", "\u2212")
+    return f"Type {title}" if arrangement.direction is None else title.capitalize()
+
+
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """A fixture by itself, without a rank."""
     return {
         "type": fixture.type,
-        "title": toolkit.arrangement(fixture.type, fixture.direction).title,
+        "title": title_of(toolkit.arrangement(fixture.type, fixture.direction)),
         "setting": setting_answer(fixture, toolkit),
         "mover": toolkit.moving.noun,
         "origin": hole_name(toolkit.carriers[0].name, 0, 0),
@@ -289,6 +314,14 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
         if nearest is None
         else {"row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)}, "words": nearest.words},
         "helps": [
-            {"change": help.change, "fixtures": help.fixtures, "complete": help.complete} for help in explanation.helps
+            {
+                "change": help.change,
+                "fixtures": help.fixtures,
+                "complete": help.complete,
+                "toolkit": None
+                if help.fields is None
+                else {name: written(value) for name, value in help.fields.items()},
+            }
+            for help in explanation.helps
         ],
     }

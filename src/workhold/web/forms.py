@@ -278,9 +278,7 @@ class ExploreForm(SearchForm):
                 (form.title, form.toolkit(), None) for form in self.vises
             ]
         else:
-            named = [
-                (one.name, one.toolkit, one.tolerance) for one in map(preset, preset_names()) if one.is_on_the_page
-            ]
+            named = [(one.name, one.toolkit, one.tolerance) for one in map(preset, preset_names())]
         asked = self.query(named[0][1], most_segments)
         return tuple(
             (

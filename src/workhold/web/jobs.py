@@ -21,7 +21,7 @@ from workhold.listing.alike import Entries
 from workhold.model.explanation import Explanation
 from workhold.model.notes import kept_note, stopped_note
 from workhold.model.result import Result
-from workhold.web.answers import proof_answer
+from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.limits import Limits
 from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
 from workhold.web.selection import Selection
@@ -113,6 +113,7 @@ class Job:
             "counts": None if listed is None else dict(listed.found),
             "distinct": None if listed is None else dict(listed.distinct),
             "listed": 0 if result is None else len(result),
+            "arrangements": [] if self.compares else arrangements_answer(self.queries[0][1].toolkit),
             "ranking": None if result is None else list(result.query.ranking),
             "complete": complete,
             "notes": list(self.notes),

@@ -105,12 +105,20 @@ async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     return answer
 
 
-@router.get("/vises", summary="The vises that come with the program")
+@router.get("/toolkits", summary="The kinds of toolkits")
+async def toolkits() -> list[dict[str, Any]]:
+    """What each is called, its fields, and what to begin with; lengths in mm."""
+    from workhold.web.toolkits import kinds_answer
+
+    return kinds_answer()
+
+
+@router.get("/vises", summary="The toolkits that come with the program")
 async def vises() -> list[dict[str, Any]]:
-    """Plates that people own; lengths in mm."""
+    """What people own, by name; lengths in mm."""
     from workhold.files.toolkit.presets import preset, preset_names
 
-    return [vise_answer(one) for one in map(preset, preset_names()) if one.is_on_the_page]
+    return [vise_answer(one) for one in map(preset, preset_names())]
 
 
 @router.get("/figures", summary="The figures of quality")

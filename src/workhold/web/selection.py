@@ -24,7 +24,7 @@ class Selection:
     ----------
     sort : "rank" or the key of a figure of quality; what is equal stays in the order of ranks.
     descending : largest first; fixtures without the figure are last either way.
-    type : name of an arrangement, or None for all.
+    type : name of arrangements or the title of one, or None for all.
     face : only fixtures that touch this face.
     angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
     together : of fixtures that are alike (``listing.alike``) only the first.
@@ -71,10 +71,13 @@ class Selection:
             raise InputError(f"{self.sort[:40]!r} is nothing to sort by: choose rank or one of {known}.")
         chosen = np.ones(len(table), np.bool_)
         if self.type is not None:
-            names = [one.name for one in toolkit.arrangements]
-            if self.type not in names:
-                raise InputError(f"type {self.type[:40]} is unknown: choose {' or '.join(names)}.")
-            chosen &= table.arrangement == names.index(self.type)
+            titles = [(one.name, one.title) for one in toolkit.arrangements]
+            wanted = [number for number, names in enumerate(titles) if self.type in names]
+            if not wanted:
+                raise InputError(
+                    f"type {self.type[:40]} is unknown: choose {' or '.join(title for _, title in titles)}."
+                )
+            chosen &= np.isin(table.arrangement, wanted)
         if self.face is not None:
             chosen &= (table.face == self.face).any(axis=1)
         if self.angle is not None:

@@ -9,6 +9,7 @@ def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
     """Rows and a drawing come before the end; files wait for it; settings changed then leave nothing behind."""
     page = walk.page
     walk.take("8Handle", None)
+    page.select_option("#toolkit", "vise")
     for name, value in (("#peg-radius", "1.4"), ("#columns", "7"), ("#pitch-x", "3"), ("#pitch-y", "3")):
         page.fill(name, value)
     page.press("#pitch-y", "Tab")

@@ -105,6 +105,7 @@ def test_a_search_can_be_cancelled(walk: Walk) -> None:
     """While it runs there is a count and a button; after that the page says that it is not all."""
     page = walk.page
     walk.take("8Handle", None)
+    page.select_option("#toolkit", "vise")
     vise = LONG["vise"]
     for name, value in (
         ("#peg-radius", vise["peg_radius"]),

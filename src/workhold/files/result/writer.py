@@ -42,6 +42,7 @@ __all__ = [
     "result_text",
     "rounded",
     "toolkit_fields",
+    "written",
     "write_result",
     "write_result_to",
 ]

@@ -67,11 +67,6 @@ class LoadedVise:
         """The toolkit with nothing changed."""
         return toolkit_of(self.kind, self.fields)
 
-    @property
-    def is_on_the_page(self) -> bool:
-        """Whether the page can draw it: it has fields for the jaws of a vise only."""
-        return self.toolkit.moving.on is None
-
 
 def read_vise_file(path: Path) -> LoadedVise:
     """The vise of a user's file.

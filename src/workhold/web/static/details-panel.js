@@ -3,6 +3,7 @@
  */
 import { byId, make } from "./dom.js";
 import { on, state } from "./state.js";
+import { pressedBy } from "./toolkits.js";
 import { bareLength, figureText, length, number } from "./units.js";
 
 /** @type {any[]} */
@@ -64,7 +65,7 @@ function writeQuality(row, pinned) {
       } else {
         cells.push(figureCell(figure, own, false));
       }
-      return make("tr", { title: figure.meaning }, make("th", { scope: "row" }, figure.words), ...cells);
+      return make("tr", { title: pressedBy(figure.meaning, row.mover) }, make("th", { scope: "row" }, pressedBy(figure.words, row.mover)), ...cells);
     });
   if (pinned) {
     const cells = [pinned, row].map((each) => make("td.number", {}, length(each.setting.length, 2)));

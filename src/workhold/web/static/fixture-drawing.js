@@ -78,7 +78,7 @@ export class FixtureDrawing {
   words() {
     const { row } = this;
     const set = row.setting ? `${row.setting.name} ${row.setting.length.toFixed(3)} mm, ` : "";
-    return `Fixture ${row.rank || ""} of type ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
+    return `Fixture ${row.rank || ""}, ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
   }
 
   /** Make everything that lies in mm. */
@@ -180,9 +180,10 @@ export class FixtureDrawing {
     this.letter();
   }
 
-  /** How far from its place in the drawing a carrier is shown, in mm. */
-  shift({ clamping }) {
-    return clamping && this.open ? [-clamping[0] * this.open, -clamping[1] * this.open] : [0, 0];
+  /** How far from its place in the drawing a carrier is shown, in mm; a clamp is drawn back no farther than it goes. */
+  shift({ clamping, clamp }) {
+    const open = Math.min(this.open, clamp?.draws_back ?? Infinity);
+    return clamping && open ? [-clamping[0] * open, -clamping[1] * open] : [0, 0];
   }
 
   /** Put what slides `open` mm from where it clamps. */

@@ -130,16 +130,18 @@ export class FixtureList {
     cell.element.classList.remove("coming");
     cell.element.classList.toggle("unfit", Boolean(row.unfit));
     cell.title.replaceChildren(
-      make("b", {}, `${row.rank}`), row.like ? make("span.faint", {}, ` and ${row.like} like it`) : "", ` Type ${row.title}`, make("span.faint", {}, ` ${row.setting.sign} ${length(row.setting.length, 2)} · ${number(row.theta_deg, 1)}°`),
+      make("span", {}, make("b", {}, `${row.rank}`), ` ${row.title} `, make("span.faint", {}, `${number(row.theta_deg, 1)}°`)),
+      row.like ? make("span.faint.small", {}, `and ${row.like} like it`) : "",
     );
-    cell.holes.textContent = row.holes.join("  ");
+    // What has no room in the line is left out of it.
+    cell.holes.replaceChildren(make("span", {}, row.holes.join("  ")), make("span", {}, `${row.setting.sign} ${length(row.setting.length, 2)}`));
     cell.figures.replaceChildren(
       ...this.shownFigures().map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
           make("i", {}, `${figure.short} `), figureText(figure, row.quality[figure.key])),
       ),
     );
-    drawThumbnail(cell.canvas, state.part, state.vise, row);
+    drawThumbnail(cell.canvas, state.part, row);
   }
 
   /** Three figures at most: the one sorted by first, then warnings and what tells most. */

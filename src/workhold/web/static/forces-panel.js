@@ -10,6 +10,7 @@ import { intoPart, intoVise } from "./pose.js";
 import { selectRank } from "./selection.js";
 import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
+import { kindOf } from "./toolkits.js";
 import { fieldLength, number, readLength, readNumber } from "./units.js";
 
 /** A drag over the part's diagonal is this many newtons. */
@@ -125,10 +126,16 @@ function readKind() {
   if (!wrong) change({ force: { ...state.force, kind: chosen === "ratio" ? ratio : chosen } });
 }
 
+/** What presses is called: the jaw, or a clamp. */
+function mover() {
+  return state.selected?.mover ?? "jaw";
+}
+
 /** What the jaw is, in words. */
 function kindWords(kind) {
-  if (kind === "constant") return "a jaw that keeps its force";
-  return typeof kind === "number" ? `a screw vise whose jaw is ${number(kind, 3)} times as stiff as a contact` : "a screw vise";
+  if (kind === "constant") return `a ${mover()} that keeps its force`;
+  const { locked } = kindOf(state.vise);
+  return typeof kind === "number" ? `${locked.replace(/,$/, "")} ${number(kind, 3)} times as stiff as a contact` : locked.split(",")[0];
 }
 
 /** Show the force and what it does. */
@@ -147,6 +154,10 @@ function write() {
   FIELDS.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = texts[k];
   });
+  const pressing = `${mover()[0].toUpperCase()}${mover().slice(1)}`;
+  byId("force-jaw-name").textContent = `${pressing} force`;
+  byId("force-kind-name").textContent = pressing;
+  byId("force-kind").title = `What the closed ${mover()} does under a load`;
   const ratio = typeof force.kind === "number";
   if (field("force-kind") !== document.activeElement) field("force-kind").value = ratio ? "ratio" : (force.kind ?? "screw");
   if (ratio && field("force-ratio") !== document.activeElement) field("force-ratio").value = String(force.kind);
@@ -181,11 +192,11 @@ function writeBars(row, { forces, needed, jaw, loose }) {
     }),
   );
   const enough = jaw >= needed * (1 - 1e-9);
-  const told = state.force?.jaw === null && needed > 0 ? "that jaw force" : `a jaw force of ${number(jaw, 0)} N`;
+  const told = state.force?.jaw === null && needed > 0 ? `that ${mover()} force` : `a ${mover()} force of ${number(jaw, 0)} N`;
   byId("force-words").textContent = [
     needed === 0
-      ? "No peg lets go, however little the jaw presses."
-      : `The jaw must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
+      ? `No peg lets go, however little the ${mover()} presses.`
+      : `The ${mover()} must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
     enough ? `Forces are told for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
   ].join(" ");
 }

@@ -15,7 +15,7 @@ import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { takePanel } from "./take-panel.js";
 import { unitWord } from "./units.js";
-import { offerVises, visePanel } from "./vise-panel.js";
+import { offerToolkits, toolkitPanel } from "./toolkit-panel.js";
 import { visesDialog } from "./vises-dialog.js";
 import { warningsPanel } from "./warnings-panel.js";
 import { whyPanel } from "./why-panel.js";
@@ -50,11 +50,11 @@ function writeGrids() {
 /** Take up the state that the address holds. */
 async function takeUpState() {
   const kept = await restored(location.hash);
-  if (!kept) return false;
+  if (!kept) return;
   change({ unit: kept.known.unit ?? "mm", view: "part" });
   if (!kept.part) {
     change(kept.known);
-    return Boolean(kept.known.vise);
+    return;
   }
   const part = await send("parts/check", kept.part);
   change({ part });
@@ -65,7 +65,6 @@ async function takeUpState() {
     want(kept.rank, kept.pinned, kept.known.view);
     await takeUp(kept.job);
   }
-  return true;
 }
 
 /** The next frame, or a tenth of a second where none is drawn. */
@@ -81,7 +80,7 @@ async function begin() {
   await painted();
   stagePanel();
   rulesPanel(partDrawing, () => change({ view: "part" }));
-  visePanel();
+  toolkitPanel();
   partPanel({ drawing: partDrawing, onDraw: () => change({ view: "draw" }) });
   listenToSections();
   listenToKeys();
@@ -89,7 +88,7 @@ async function begin() {
   on(["unit"], writeGrids);
   partDrawing.show();
   showView();
-  const [about, figures] = await Promise.all([ask("about"), ask("figures"), offerParts()]);
+  const [about, figures] = await Promise.all([ask("about"), ask("figures"), offerParts(), offerToolkits()]);
   byId("step-word").textContent = about.step ? ", STEP" : "";
   detailsPanel(figures);
   forcesPanel();
@@ -98,8 +97,7 @@ async function begin() {
   visesDialog(figures);
   takePanel(about);
   warningsPanel();
-  const taken = await takeUpState().catch(() => false);
-  await offerVises(taken);
+  await takeUpState().catch(() => {});
   const keepSoon = quiet(keep, 150);
   on(Object.keys(state), keepSoon);
   // Another link in the same window; the page's own changes of the address are not told.

@@ -11,7 +11,7 @@ import { nearest, normalAt, pointAt, segmentsOf } from "./geometry.js";
  * What shows of a carrier of holes, as the server tells it: the hole in column 0 and row 0, first and last column and row,
  * corners of its plate, numbers of its pegs, columns and rows that are used, the direction in which it slides to clamp or null.
  * A clamp that is bolted to a plate comes last, without columns and rows; its plate is the room it takes.
- * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], peg_radius: number, used_columns: number[], used_rows: number[], clamping: number[]|null, measured: number[][]|null, clamp: null|{hole: number[]|null, tip: number[], bolt_radius: number, line: number[]}}} Carrier
+ * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], peg_radius: number, used_columns: number[], used_rows: number[], clamping: number[]|null, measured: number[][]|null, clamp: null|{draws_back: number|null, hole: number[]|null, tip: number[], bolt_radius: number, line: number[]}}} Carrier
  */
 
 /**

@@ -61,7 +61,7 @@ export function resultsPanel(figures) {
   });
   on(["job"], showJob);
   on(["part"], writeFaces);
-  on(["arrangements"], writeTypes);
+  on(["job"], writeTypes);
   on(["list"], () => {
     writeFilters();
     openRows();
@@ -111,11 +111,17 @@ function writeFaces() {
   choice("filter-face").value = state.list.face;
 }
 
-/** Offer the arrangements of the vise. */
+/** Offer what fixtures of the search can be told apart by, where there is more than one. */
+let offered = "";
 function writeTypes() {
+  const titles = (state.job?.arrangements ?? []).map(({ title }) => title);
+  if (!titles.length || String(titles) === offered) return;
+  offered = String(titles);
+  show(byId("filter-type-label"), titles.length > 1);
   choice("filter-type").replaceChildren(
-    make("option", { value: "" }, "all"), ...state.arrangements.map(({ name }) => make("option", { value: name }, name)),
+    make("option", { value: "" }, "all"), ...titles.map((title) => make("option", { value: title }, title.replace("-", "\u2212"))),
   );
+  if (state.list.type && !titles.includes(state.list.type)) setList({ type: "" });
   choice("filter-type").value = state.list.type;
 }
 
@@ -254,9 +260,16 @@ function summary(job, busy) {
   if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
   if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; below is why."];
   if (job.found === 0) return ["None found so far", ["The search was not complete.", ...(job.notes ?? [])].join(" ")];
-  const types = Object.entries(job.counts ?? {}).map(([type, count]) => `${countText(count)} of type ${type}`).join(", ");
-  const seconds = typeof job.seconds === "number" ? `, found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s` : "";
-  return [many, [`${types}${seconds}.`, ...(job.notes ?? [])].join(" ")];
+  const counts = Object.entries(job.counts ?? {});
+  const types = counts.length > 1 ? counts.map(([type, count]) => `${countText(count)} of type ${type}`) : [];
+  const seconds = typeof job.seconds === "number" ? [`found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s`] : [];
+  const found = sentence([...types, ...seconds].join(", "));
+  return [many, [...(found ? [`${found}.`] : []), ...(job.notes ?? [])].join(" ")];
+}
+
+/** Words with a capital letter. */
+function sentence(words) {
+  return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** How many match the filters. */

@@ -4,6 +4,7 @@
 import { byId, make, quiet, show } from "./dom.js";
 import { toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
+import { kindOf, kinds } from "./toolkits.js";
 import { fieldLength, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
 
@@ -31,7 +32,7 @@ export function rulesPanel(drawing, showPart) {
   on(["avoid"], markFaces);
   on(["zones", "unit"], writeZones);
   on(["angles", "contactMargin", "unit"], write);
-  on(["arrangements", "types"], writeTypes);
+  on(["vise", "types"], writeTypes);
   on(["loads"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
@@ -130,17 +131,20 @@ function write() {
   for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
 }
 
-/** A box for each arrangement of the vise; ticked means sought. */
+/** A box for each type of fixture where there are several; ticked means sought. */
 function writeTypes() {
+  if (!kinds.length) return;
+  const { types } = kindOf(state.vise);
+  show(byId("types-box"), types.length > 1);
   byId("types").replaceChildren(
-    ...state.arrangements.map(({ name, words }) => {
+    ...types.map(({ name, words }) => {
       const box = make("input", { type: "checkbox", value: name, checked: !state.types || state.types.includes(name), change: readTypes });
       return make("label.check", {}, box, ` ${words}`);
     }),
   );
 }
 
-/** Read which arrangements are sought; one is. */
+/** Read which types are sought; one is. */
 function readTypes(event) {
   const boxes = [...byId("types").querySelectorAll("input")];
   if (!boxes.some((box) => box.checked)) event.target.checked = true;

@@ -8,6 +8,7 @@ import { PartDrawing } from "./part-drawing.js";
 import { usePart } from "./part-panel.js";
 import { step } from "./selection.js";
 import { change, on, state } from "./state.js";
+import { kindOf, kinds } from "./toolkits.js";
 import { countText, number } from "./units.js";
 
 /** @type {PartDrawing} */
@@ -51,6 +52,7 @@ export function stagePanel() {
   on(["selected"], showSelected);
   on(["pinned"], showPinned);
   on(["selected", "index", "job"], showPlace);
+  on(["vise"], () => (byId("close-vise").textContent = kinds.length ? kindOf(state.vise).closes : "Close"));
   on(["unit"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.letter()));
 }
 

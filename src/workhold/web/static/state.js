@@ -13,9 +13,8 @@ export const SETTINGS = [
  * @typedef {Object} State
  * @property {any} part the part as the server tells it, or null
  * @property {string} viseName the preset chosen; "own" for own values
- * @property {any} vise fields of the vise in mm
+ * @property {any} vise kind and fields of the toolkit in mm
  * @property {string} unit "mm" or "inch", for reading and typing only
- * @property {{name: string, words: string}[]} arrangements of the vise, as the server tells them
  * @property {string[]|null} types names of the arrangements sought; null is all
  * @property {number} contactMargin in mm
  * @property {number[]} avoid faces not to touch
@@ -40,7 +39,6 @@ export const state = {
   viseName: "",
   vise: { pitch: [10, 10], columns: 2, peg_radius: 3 },
   unit: "mm",
-  arrangements: [],
   types: null,
   contactMargin: 0,
   avoid: [],

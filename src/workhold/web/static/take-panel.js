@@ -23,7 +23,7 @@ function write() {
   const job = state.job?.job;
   const rank = state.selected?.rank;
   const name = [state.part?.name, rank && `fixture ${rank}`].filter(Boolean).join(", ");
-  document.title = name ? `${name} – workhold` : "workhold: every way to hold a part in a fixture vise";
+  document.title = name ? `${name} – workhold` : "workhold: every way to hold a part";
   byId("print-title").textContent = name;
   if (!job || !rank) return;
   const date = new Date();

@@ -44,16 +44,16 @@ function pathsOf(part) {
  * Draw a fixture on a canvas.
  * @param {HTMLCanvasElement} canvas
  * @param {any} part
- * @param {any} vise
  * @param {import("./pose.js").Row} row
  */
-export function drawThumbnail(canvas, part, vise, row) {
+export function drawThumbnail(canvas, part, row) {
   const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const { width, height } = canvas;
   const ink = inks();
   const box = boundsOf(partSegments(part).map(({ segment }) => segment), intoVise(row));
-  const radius = vise.peg_radius;
-  for (const [x, y] of row.pegs) {
+  const radii = row.pegs.map((_, k) => row.carriers.find(({ pegs }) => pegs.includes(k))?.peg_radius ?? 0);
+  for (const [k, [x, y]] of row.pegs.entries()) {
+    const radius = radii[k];
     box[0] = Math.min(box[0], x - radius);
     box[1] = Math.min(box[1], y - radius);
     box[2] = Math.max(box[2], x + radius);
@@ -80,10 +80,9 @@ export function drawThumbnail(canvas, part, vise, row) {
   pen.stroke(outline);
   pen.setTransform(1, 0, 0, 1, 0, 0);
   pen.fillStyle = ink.peg;
-  const size = Math.max(radius * k, 0.028 * width);
-  for (const [x, y] of row.pegs) {
+  for (const [at, [x, y]] of row.pegs.entries()) {
     pen.beginPath();
-    pen.arc(k * x + dx, -k * y + dy, size, 0, 2 * Math.PI);
+    pen.arc(k * x + dx, -k * y + dy, Math.max(radii[at] * k, 0.028 * width), 0, 2 * Math.PI);
     pen.fill();
   }
 }

@@ -1,11 +1,11 @@
 /**
- * Which vise suits the part: the sweep over the presets, as a table whose lines can be taken.
+ * Which of all suits the part: the sweep over the presets, as a table whose lines can be taken.
  */
 import { ApiError, ask, send } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { request, state } from "./state.js";
 import { countText, figureText } from "./units.js";
-import { usePreset } from "./vise-panel.js";
+import { usePreset } from "./toolkit-panel.js";
 
 const POLL = 250;
 let latest = 0;
@@ -60,7 +60,7 @@ function write(table) {
   const lines = table.map((line) => {
     const name = line.name ?? line.title ?? line.vise?.name ?? line.vise?.title ?? "";
     const counts = line.counts ?? {};
-    const total = (counts.I ?? 0) + (counts.II ?? 0);
+    const total = Object.values(counts).reduce((sum, count) => sum + count, 0);
     const first = figuresOf(line);
     const take = () => {
       /** @type {HTMLDialogElement} */ (byId("vises")).close();
@@ -71,9 +71,9 @@ function write(table) {
       ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, first[figure.key]) : "–")),
       make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
   });
-  const heads = ["Vise", "Fixtures", ...columns.map((figure) => figure.words), ""];
+  const heads = ["What you have", "Fixtures", ...columns.map((figure) => figure.words), ""];
   byId("vises-table").replaceChildren(
-    make("table", {}, make("caption.unseen", {}, "The first choice in each vise"),
+    make("table", {}, make("caption.unseen", {}, "The first choice in each"),
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(k && words ? "th.number" : words ? "th" : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
   );

@@ -1,0 +1,112 @@
+/**
+ * Fields for the values of a toolkit, made from their description: how each looks, is read and is written.
+ */
+import { byId, make } from "./dom.js";
+import { same } from "./toolkits.js";
+import { fieldLength, readLength, readNumber } from "./units.js";
+
+/** @typedef {import("./toolkits.js").Field} Field */
+
+/** Labels of forms that take two inputs. */
+const PAIRS = { pitch: ["x", "y"], span: ["least", "most"] };
+
+/** @returns {HTMLInputElement} */
+const input = (id) => /** @type {HTMLInputElement} */ (byId(id));
+
+/** The name of a field's element. @param {Field} field */
+function idOf({ name }) {
+  return name.replaceAll("_", "-");
+}
+
+/** The names of the inputs of a field of one or two numbers. @param {Field} field */
+function idsOf(field) {
+  return PAIRS[field.form]?.map((part) => `${idOf(field)}-${part}`) ?? [idOf(field)];
+}
+
+/**
+ * The elements of a field.
+ * @param {Field} field
+ * @returns {HTMLElement[]}
+ */
+export function makeFields(field) {
+  const id = idOf(field);
+  if (field.form === "several") {
+    const boxes = field.choices.map(({ words }, k) => make("label.check", {}, make("input", { type: "checkbox", id: `${id}-${k}` }), ` ${words}`));
+    return [make("fieldset.plain.wide", { id, title: field.hint }, make("legend", {}, field.label), make("div.choices", {}, ...boxes))];
+  }
+  if (field.form === "one") {
+    const options = field.choices.map(({ words }, k) => make("option", { value: k }, words));
+    return [make("label", {}, field.label, make("select", { id }, ...options))];
+  }
+  const mode = field.form === "count" ? "numeric" : field.form === "holes" ? "text" : "decimal";
+  const unit = ["length", "pitch", "span"].includes(field.form) ? [" ", make("span.unit")] : [];
+  return idsOf(field).map((each, k) => {
+    const label = PAIRS[field.form] ? `${field.label}${field.form === "span" ? "," : ""} ${PAIRS[field.form][k]}` : field.label;
+    return make("label", {}, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
+      make("input", { id: each, inputmode: mode, autocomplete: "off", placeholder: field.hint }));
+  });
+}
+
+/**
+ * What a field holds: its value in mm, null for none, and whether it is wrong.
+ * @param {Field} field
+ * @param {any} known the value written last, which is kept to the last digit where its text still stands
+ * @returns {{value: any, wrong: boolean}}
+ */
+export function readField(field, known) {
+  const id = idOf(field);
+  if (field.form === "several") {
+    const chosen = field.choices.filter((_, k) => input(`${id}-${k}`).checked).map(({ value }) => value);
+    return { value: chosen.length ? chosen : null, wrong: false };
+  }
+  if (field.form === "one") return { value: field.choices[Number(input(id).value)]?.value ?? null, wrong: false };
+  if (field.form === "holes") {
+    const names = input(id).value.split(/[\s,;]+/).filter(Boolean).map((name) => name.toUpperCase());
+    return { value: names.length ? names : null, wrong: false };
+  }
+  const ids = idsOf(field);
+  const before = ids.length > 1 ? (known ?? []) : [known];
+  const values = ids.map((each, k) => {
+    const text = input(each).value;
+    if (field.form === "count") return readNumber(text);
+    return text !== "" && text === fieldLength(before[k]) ? before[k] : readLength(text);
+  });
+  const empty = values.every((value) => value === null);
+  const wrong = values.map((value) => (value === null ? field.hint === null || !empty : !fits(field, value)));
+  if (field.form === "span" && !wrong.includes(true) && !empty && values[0] > values[1]) wrong[1] = true;
+  ids.forEach((each, k) => input(each).setAttribute("aria-invalid", String(wrong[k])));
+  if (wrong.includes(true)) return { value: null, wrong: true };
+  return { value: empty ? null : values.length > 1 ? values : values[0], wrong: false };
+}
+
+/** Whether a number suits a field. */
+function fits({ form, least }, value) {
+  if (!Number.isFinite(value)) return false;
+  if (form === "count") return Number.isInteger(value) && value >= 1;
+  return least === "any" || value > 0 || (least === "0" && value === 0);
+}
+
+/**
+ * Write a value into a field that nobody is typing in.
+ * @param {Field} field
+ * @param {any} value
+ */
+export function writeField(field, value) {
+  const id = idOf(field);
+  if (field.form === "several") {
+    field.choices.forEach((choice, k) => (input(`${id}-${k}`).checked = (value ?? []).some((each) => same(each, choice.value))));
+    return;
+  }
+  if (field.form === "one") {
+    input(id).value = String(Math.max(0, field.choices.findIndex((choice) => same(choice.value, value))));
+    return;
+  }
+  const ids = idsOf(field);
+  const values = ids.length > 1 ? (value ?? [null, null]) : [value];
+  ids.forEach((each, k) => {
+    if (input(each) === document.activeElement) return;
+    if (field.form === "holes") input(each).value = (value ?? []).join(", ");
+    else input(each).value = field.form === "count" ? String(values[k] ?? "") : fieldLength(values[k]);
+    input(each).setAttribute("aria-invalid", "false");
+  });
+}

@@ -1,0 +1,137 @@
+/**
+ * Step 2: what holds the part, from what a user has by name or in own values; the fields are those of its kind.
+ */
+import { ask } from "./api.js";
+import { byId, make, quiet, show } from "./dom.js";
+import { change, on, state } from "./state.js";
+import { makeFields, readField, writeField } from "./toolkit-fields.js";
+import { asKind, fieldsOf, kindOf, kinds, learnKinds, same } from "./toolkits.js";
+import { fieldLength, readLength, unitWord } from "./units.js";
+
+const TOLERANCES = ["tolerance-peg", "tolerance-face"];
+const OWN = "own";
+
+/** @type {any[]} */
+let presets = [];
+/** The fields there are, by their names. */
+let shown = "";
+
+/** @returns {HTMLInputElement} */
+const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
+
+/** Set the panel up. */
+export function toolkitPanel() {
+  const typed = quiet(read, 250);
+  for (const box of ["toolkit-usual", "toolkit-more"]) {
+    byId(box).addEventListener("input", typed);
+    byId(box).addEventListener("change", read);
+  }
+  for (const id of TOLERANCES) {
+    field(id).addEventListener("input", typed);
+    field(id).addEventListener("change", read);
+  }
+  byId("preset").addEventListener("change", (event) => usePreset(/** @type {HTMLSelectElement} */ (event.target).value));
+  byId("toolkit").addEventListener("change", (event) => useKind(/** @type {HTMLSelectElement} */ (event.target).value));
+  byId("unit").addEventListener("change", (event) => change({ unit: /** @type {HTMLSelectElement} */ (event.target).value }));
+  on(["vise", "viseName", "unit", "tolerance"], write);
+}
+
+/** Offer what there is. */
+export async function offerToolkits() {
+  [presets] = await Promise.all([ask("vises"), learnKinds()]);
+  const groups = kinds.map((kind) => [kind, presets.filter((preset) => preset.kind === kind.name)]);
+  byId("preset").replaceChildren(
+    ...groups.filter(([, own]) => own.length).map(([kind, own]) =>
+      make("optgroup", { label: kind.title }, ...own.map((preset) => make("option", { value: preset.name }, preset.title)))),
+    make("option", { value: OWN }, "something else: own values"),
+  );
+  byId("toolkit").replaceChildren(...kinds.map((kind) => make("option", { value: kind.name }, kind.title)));
+  usePreset(presets[0].name);
+}
+
+/**
+ * Take a preset: its fields, how far its pegs are off, and its unit.
+ * @param {string} name
+ */
+export function usePreset(name) {
+  const preset = presets.find((each) => each.name === name);
+  if (!preset) {
+    change({ viseName: OWN });
+    return;
+  }
+  const { kind, tolerance } = preset;
+  const vise = asKind(kinds.find((each) => each.name === kind), preset.fields);
+  const given = Object.fromEntries(Object.entries(preset.fields).filter(([, value]) => value !== null));
+  change({ viseName: name, vise: { ...vise, ...given }, tolerance, types: typesOf({ kind }), unit: preset.unit ?? state.unit });
+}
+
+/** Take a kind in own values, with what it has in common with the toolkit there was. */
+function useKind(name) {
+  const kind = kinds.find((each) => each.name === name);
+  if (kind) change({ viseName: OWN, vise: asKind(kind, state.vise), types: typesOf({ kind: name }) });
+}
+
+/** What is left of the types sought in another kind; null for all. */
+function typesOf(vise) {
+  const types = state.types?.filter((type) => kindOf(vise).types.some((each) => each.name === type));
+  return types?.length ? types : null;
+}
+
+/** Read the fields into the state; what cannot be read is marked and changes nothing. */
+function read() {
+  const kind = kindOf(state.vise);
+  const vise = { kind: kind.name, ...kind.said };
+  let bad = "";
+  for (const each of fieldsOf(kind, state.vise)) {
+    const { value, wrong } = readField(each, state.vise[each.name]);
+    if (wrong) bad = bad || each.label;
+    else if (value !== null) vise[each.name] = value;
+  }
+  const off = TOLERANCES.map((id) => readLength(field(id).value) ?? 0.01);
+  TOLERANCES.forEach((id, k) => field(id).setAttribute("aria-invalid", String(!(off[k] >= 0))));
+  let words = "";
+  if (bad) words = `${bad} is not a number that can be used.`;
+  else if (2 * vise.peg_radius > Math.min(...vise.pitch)) words = "Pegs would overlap in neighbouring holes: take a smaller peg or a larger pitch.";
+  byId("vise-trouble").textContent = words;
+  show(byId("vise-trouble"), words !== "");
+  if (words || !off.every((value) => value >= 0)) return;
+  const fit = vise.peg_radius === state.vise.peg_radius ? (state.tolerance?.fit ?? null) : null;
+  const tolerance = { peg: off[0], face: off[1], fit };
+  const unchanged = same(sorted(vise), sorted({ kind: kind.name, ...state.vise }));
+  const sameOff = off[0] === (state.tolerance?.peg ?? 0.01) && off[1] === (state.tolerance?.face ?? 0.01)
+    && fit === (state.tolerance?.fit ?? null);
+  if (unchanged && sameOff) return;
+  change({ ...(unchanged ? {} : { vise, viseName: OWN }), ...(sameOff ? {} : { tolerance }) });
+}
+
+/** An object's entries in the order of their keys. */
+function sorted(values) {
+  return Object.entries(values).sort(([a], [b]) => (a < b ? -1 : 1));
+}
+
+/** Write the state into the fields, but not under the user's fingers. */
+function write() {
+  if (!kinds.length) return;
+  const { vise } = state;
+  const kind = kindOf(vise);
+  const fields = fieldsOf(kind, vise);
+  const wanted = JSON.stringify([kind.name, fields.map(({ name, when }) => [name, when])]);
+  if (wanted !== shown) {
+    shown = wanted;
+    byId("toolkit-usual").replaceChildren(...fields.filter((each) => each.is_usual).flatMap(makeFields));
+    byId("toolkit-more").replaceChildren(...fields.filter((each) => !each.is_usual).flatMap(makeFields));
+  }
+  for (const each of fields) writeField(each, vise[each.name]);
+  const off = [state.tolerance?.peg, state.tolerance?.face];
+  TOLERANCES.forEach((id, k) => {
+    if (field(id) !== document.activeElement) field(id).value = fieldLength(off[k]);
+  });
+  for (const word of document.querySelectorAll(".unit")) word.textContent = unitWord();
+  byId("more-title").textContent = `More about the ${kind.noun}`;
+  field("toolkit").value = kind.name;
+  field("preset").value = state.viseName || OWN;
+  field("unit").value = state.unit;
+  const preset = presets.find((each) => each.name === state.viseName);
+  const assumed = preset?.assumed.length ? ` Assumed: ${preset.assumed.join(", ").replaceAll("_", " ")}.` : "";
+  byId("preset-words").textContent = preset ? `${preset.name}. Source: ${preset.source}.${assumed}` : "Own values.";
+}

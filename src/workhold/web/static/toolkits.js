@@ -1,0 +1,77 @@
+/**
+ * The kinds of toolkits, as the server describes them: what each is called, and its fields.
+ */
+import { ask } from "./api.js";
+
+/** @typedef {{name: string, label: string, form: string, hint: string|null, is_usual: boolean, least: string, choices: {value: any, words: string}[], when: Object<string, any>}} Field */
+/** @typedef {{name: string, kind: string, title: string, noun: string, mover: string, locked: string, closes: string, said: Object<string, any>, start: Object<string, any>, types: {name: string, words: string}[], fields: Field[]}} Kind */
+
+/** What a toolkit is that does not say. */
+const USUAL = "vise";
+
+/** @type {Kind[]} */
+export let kinds = [];
+
+/** Learn the kinds. */
+export async function learnKinds() {
+  kinds = await ask("toolkits");
+}
+
+/**
+ * The kind of a toolkit's fields.
+ * @param {any} vise
+ */
+export function kindOf(vise) {
+  const name = vise.kind ?? USUAL;
+  return kinds.find((kind) => kind.name === name) ?? kinds.find((kind) => kind.name === USUAL) ?? kinds[0];
+}
+
+/** Values that are the same to the server. */
+export function same(a, b) {
+  return JSON.stringify(a ?? null) === JSON.stringify(b ?? null);
+}
+
+/**
+ * The fields of a kind that there are with some values.
+ * @param {Kind} kind
+ * @param {any} vise
+ */
+export function fieldsOf(kind, vise) {
+  return kind.fields.filter(({ when }) => Object.entries(when).every(([name, value]) => same(vise[name] ?? kind.start[name], value)));
+}
+
+/**
+ * A toolkit with some fields changed; null leaves one to its usual value. A kind that says a field by its name is left for
+ * the one it stands for where that field becomes another.
+ * @param {any} vise
+ * @param {Object<string, any>} fields
+ */
+export function withFields(vise, fields) {
+  const kind = kindOf(vise);
+  const left = Object.entries(kind.said).some(([name, value]) => name in fields && !same(fields[name], value));
+  return tidy({ ...vise, ...(left ? { kind: kind.kind } : {}), ...fields });
+}
+
+/**
+ * A toolkit of a kind that keeps what it can of another one.
+ * @param {Kind} kind
+ * @param {any} vise
+ */
+export function asKind(kind, vise) {
+  const kept = kind.fields.map(({ name }) => name).filter((name) => name in vise);
+  return tidy({ kind: kind.name, ...kind.start, ...Object.fromEntries(kept.map((name) => [name, vise[name]])), ...kind.said });
+}
+
+/** Without what is null. */
+function tidy(vise) {
+  return Object.fromEntries(Object.entries(vise).filter(([, value]) => value !== null && value !== undefined));
+}
+
+/**
+ * Words about jaws where something else presses.
+ * @param {string} words
+ * @param {string} mover
+ */
+export function pressedBy(words, mover) {
+  return words.replace(/\bjaw\b/g, mover);
+}

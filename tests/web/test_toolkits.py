@@ -1,0 +1,123 @@
+"""What the page is told of the kinds of toolkits suffices to ask for every one of them."""
+
+from __future__ import annotations
+
+import json
+from itertools import groupby
+from typing import Any
+
+import pytest
+from attrs import fields_dict
+from running_server import WIDGET, RunningServer, request
+
+from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
+from workhold.model.plate import DIRECTIONS
+from workhold.web.forms import JobForm
+from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind
+
+RECTANGLE = {"name": "plate", "loops": [[[0, 0, 0], [90, 0, 0], [90, 50, 0], [0, 50, 0]]]}
+PLATE = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "directions": ["-x", "-y"]}
+
+
+def asked(vise: Any) -> Any:
+    """The toolkit that a request asks for."""
+    form = JobForm.model_validate({"workpiece": WIDGET, "vise": json.loads(json.dumps(vise))})
+    return form.vise.toolkit()
+
+
+def test_every_kind_is_on_the_page() -> None:
+    """A kind, or the alias that says most about one; nothing is there twice."""
+    names = [one.name for one in DESCRIBED]
+    assert len(set(names)) == len(names)
+    assert set(KINDS) <= set(names) | {kind_of(name)[0] for name in names}
+    assert {name for name, (_, said) in ALIASES.items() if said} <= set(names)
+
+
+@pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
+def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
+    """Once for each set of other values, but for those that the name says; what must be filled in begins with a value."""
+    kind = KINDS[kind_of(one.name)[0]]
+    shown = [field.name for field in one.fields]
+    assert set(shown) | set(one.said) == set(fields_dict(kind))  # type: ignore[arg-type]
+    assert not set(shown) & set(one.said)
+    for _, group in groupby(sorted(one.fields, key=lambda field: field.name), key=lambda field: field.name):
+        alike = list(group)
+        assert len({json.dumps(dict(field.when)) for field in alike}) == len(alike)
+    assert all(field.name in one.start for field in one.fields if field.hint is None and not field.when)
+    assert asked({"kind": one.name, **one.start}) == toolkit_of(one.name, one.start)
+
+
+@pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
+def test_every_choice_can_be_asked_for(one: Described) -> None:
+    """A field's choices are values that the toolkit takes."""
+    for field in one.fields:
+        for choice in field.choices:
+            value = [choice.value] if field.form == "several" else choice.value
+            toolkit = asked({"kind": one.name, **one.start, **field.when, field.name: value})
+            assert json.loads(json.dumps(getattr(toolkit, field.name))) == json.loads(json.dumps(value))
+
+
+def test_a_preset_is_of_the_kind_that_says_most() -> None:
+    """A vise of one column is a gripper; every preset is asked for as the page shows it."""
+    kinds = {name: page_kind(load_vise(name)) for name in preset_names()}
+    assert kinds["gripper-one-column"] == "gripper" and kinds["gripper-two-columns"] == "vise"
+    assert kinds["clamp-plate-20mm"] == "translating-clamp"
+    for name, kind in kinds.items():
+        loaded = load_vise(name)
+        assert asked({"kind": kind, **loaded.fields}) == loaded.toolkit
+
+
+def test_the_words_are_of_the_toolkit() -> None:
+    """A plate has a clamp that closes, no jaws."""
+    told = {one["name"]: one for one in kinds_answer()}
+    plate = json.dumps(told["translating-clamp"])
+    assert "jaw" not in plate and "vise" not in plate.lower()
+    assert (told["translating-clamp"]["mover"], told["vise"]["mover"]) == ("clamp", "jaw")
+    assert [one["name"] for one in told["vise"]["types"]] == ["I", "II"]
+    assert [one["name"] for one in told["translating-clamp"]["types"]] == ["clamp"]
+
+
+def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningServer) -> None:
+    """The job tells what there is; each direction by itself, and both by the name they share."""
+    url = server.done(request(workpiece=RECTANGLE, vise=PLATE))
+    state = server.client.get(url).json()
+    assert [one["title"] for one in state["arrangements"]] == ["clamp -x", "clamp -y"]
+    totals = {}
+    for name in ("clamp", "clamp -x", "clamp -y"):
+        page = server.client.get(f"{url}/fixtures", params={"type": name, "limit": 1000}).json()
+        totals[name] = page["total"]
+        titles = {row["title"] for row in page["rows"]}
+        assert titles == {"Clamp −x", "Clamp −y"} if name == "clamp" else {name.capitalize().replace("-", "−")}
+    assert totals["clamp"] == totals["clamp -x"] + totals["clamp -y"] == state["listed"]
+    assert totals["clamp -x"] and totals["clamp -y"]
+    assert server.client.get(f"{url}/fixtures", params={"type": "I"}).status_code == 400
+
+
+def test_a_clamp_is_drawn_back_no_farther_than_it_goes(server: RunningServer) -> None:
+    """From where it clamps to its least stroke; a clamp of which only the line is told has no end."""
+    for travel in ([12.5, 40], None):
+        url = server.done(request(workpiece=RECTANGLE, vise={**PLATE, "travel": travel}))
+        for row in server.client.get(f"{url}/fixtures", params={"limit": 50}).json()["rows"]:
+            clamp = row["carriers"][-1]["clamp"]
+            if travel is None:
+                assert clamp["draws_back"] is None
+            else:
+                assert clamp["draws_back"] == pytest.approx(row["setting"]["length"] - 12.5, abs=1e-9)
+
+
+def test_what_would_help_says_which_fields_change(server: RunningServer) -> None:
+    """So that the page can make any change of any toolkit."""
+    vise = {**PLATE, "columns": 2, "rows": 2, "directions": ["-x"]}
+    url = server.done(request(workpiece=RECTANGLE, vise=vise))
+    helps = server.client.get(f"{url}/explanation").json()["helps"]
+    changes = [one["toolkit"] for one in helps if one["toolkit"] is not None]
+    assert changes
+    for fields in changes:
+        assert server.client.get(server.done(request(workpiece=RECTANGLE, vise={**vise, **fields}))).json()["found"] > 0
+
+
+def test_directions_of_the_page_are_those_of_the_plate() -> None:
+    plate = next(one for one in DESCRIBED if one.name == "translating-clamp")
+    (field,) = [field for field in plate.fields if field.name == "directions"]
+    assert [choice.value for choice in field.choices] == list(DIRECTIONS)
