@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import html
 import json
 import re
@@ -212,6 +213,7 @@ def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningSer
         "unit": "inch",
         "thickness": 0.5,
         "dowel": "m6 in H7",
+        "part_name": "door handle",
     }
     words = " ".join(
         re.findall(r">([^<>]+)</text>", server.client.get(f"{job}/fixtures/1/sheet.svg", params=query).text)
@@ -223,7 +225,12 @@ def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningSer
         "2.5 times as stiff as a contact",
     ):
         assert wanted in words
-    assert "0.5000 in" in words and "m6 in H7" in words
+    assert "0.5000 in" in words and "m6 in H7" in words and "door handle" in words
+    pins = server.client.get(f"{job}/fixtures/1/pins.csv", params={**query, "peg_length": 1.25}).text
+    rows = list(csv.DictReader(pins.splitlines()))
+    shown = server.client.get(f"{job}/fixtures/1").json()
+    assert [row["hole"] for row in rows] == shown["holes"]
+    assert {(row["dowel"], row["length"], row["unit"]) for row in rows} == {("m6 in H7", "1.25", "in")}
     forces = {}
     for jaw in ("screw", "constant"):
         params = {"loads": json.dumps([load]), "jaw_force": 750, "jaw": jaw}

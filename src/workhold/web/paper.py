@@ -24,6 +24,7 @@ KINDS = {
     "setup.dxf": "image/vnd.dxf",
     "setup.step": "model/step",
     "picture.svg": "image/svg+xml",
+    "pins.csv": "text/csv; charset=utf-8",
 }
 
 
@@ -149,10 +150,24 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     return draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title).encode("utf-8"), None
 
 
+def pins(order: PaperOrder) -> tuple[bytes, str | None]:
+    """The list of pins."""
+    from workhold.files.pin_list import pin_list
+    from workhold.model.dowel import fit_words
+    from workhold.model.units import unit_named
+
+    toolkit, fit = order.result.toolkit, order.result.query.tolerance.fit
+    known = None if fit is None else fit_words(fit, 2 * toolkit.carriers[0].peg_radius)
+    wishes = order.wishes
+    text = pin_list(order.fixture, toolkit, unit_named(order.unit), wishes["dowel"] or known, wishes["peg_length"])
+    return text.encode("utf-8"), None
+
+
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
     "sheet.pdf": sheet,
     "sheet.svg": sheet,
     "setup.dxf": setup_drawing,
     "setup.step": setup_solid,
     "picture.svg": picture,
+    "pins.csv": pins,
 }

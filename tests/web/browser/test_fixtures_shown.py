@@ -57,7 +57,7 @@ def test_near_copies_are_one_row(walk: Walk) -> None:
     # The first entry of several shows how many are like it.
     index, like = next((k, row["like"]) for k, row in enumerate(told["rows"]) if row["like"])
     words = walk.seen(f'#list [aria-posinset="{index + 1}"]:not(.coming)').inner_text()
-    assert f"and {like} like it" in words
+    assert f"+{like} alike" in words
     page.check("#each")
     page.check("#unfit")
     walk.seen(f'#list [aria-setsize="{walk.count()}"]:not(.coming)')

@@ -2,6 +2,8 @@
  * The server, in the words of its API. Every failure is an {@link ApiError} with one plain sentence.
  */
 
+const SILENT = "The server does not answer: see whether workhold serve still runs.";
+
 /** What went wrong, in one sentence, and where in the drawing. */
 export class ApiError extends Error {
   /**
@@ -10,7 +12,7 @@ export class ApiError extends Error {
    * @param {{x: number, y: number}|null} place in mm in the drawing
    */
   constructor(message, status, place = null) {
-    super(message);
+    super(message.charAt(0).toUpperCase() + message.slice(1));
     this.status = status;
     this.place = place;
   }
@@ -28,7 +30,7 @@ export async function ask(path, options = {}) {
     response = await fetch(`api/${path}`, options);
   } catch (error) {
     if (error instanceof DOMException && error.name === "AbortError") throw error;
-    throw new ApiError("The server does not answer: see whether workhold serve still runs.", 0);
+    throw new ApiError(SILENT, 0);
   }
   if (response.status === 204) return null;
   const text = await response.text();
@@ -40,6 +42,26 @@ export async function ask(path, options = {}) {
   }
   if (response.ok && answer !== null) return answer;
   throw new ApiError(answer?.error ?? `The server answered ${response.status}.`, response.status, answer?.place ?? null);
+}
+
+/**
+ * A file of the server and what it is to be called.
+ * @param {string} path
+ * @returns {Promise<{content: Blob, name: string}>}
+ */
+export async function fetched(path) {
+  let response;
+  try {
+    response = await fetch(path);
+  } catch {
+    throw new ApiError(SILENT, 0);
+  }
+  if (response.ok) {
+    const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
+    return { content: await response.blob(), name: named?.[1] ?? path.split("?")[0].split("/").pop() ?? "file" };
+  }
+  const answer = await response.json().catch(() => null);
+  throw new ApiError(answer?.error ?? `The server answered ${response.status}.`, response.status);
 }
 
 /**

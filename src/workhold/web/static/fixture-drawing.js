@@ -29,6 +29,8 @@ export class FixtureDrawing {
     this.open = 0;
     this.frame = 0;
     this.underPegs = draw("g");
+    /** How far the cutter is to keep off the pegs, in mm; null for no such circles. @type {number|null} */
+    this.clearance = null;
   }
 
   /**
@@ -64,6 +66,13 @@ export class FixtureDrawing {
     if (keepView && !this.view.fitted) this.view.apply();
     else this.view.fit(whole, margins);
     this.svg.setAttribute("aria-label", this.words());
+  }
+
+  /** Show how far the cutter is to keep off the pegs. */
+  keepOff(clearance) {
+    if (clearance === this.clearance) return;
+    this.clearance = clearance;
+    if (this.row) this.build();
   }
 
   /** Nothing is shown. */
@@ -140,9 +149,10 @@ export class FixtureDrawing {
   /** A peg that can be pointed at and focused. */
   peg([x, y], k, size) {
     const radius = Math.max(size, Math.min(...this.vise.pitch) / 12);
-    const { row } = this;
+    const { row, clearance } = this;
     const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${row.mover} force`;
     const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
+    if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.vise.body_radius ?? size) + clearance }));
     group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
     const cross = radius / 2;
     group.append(draw("path.peg-cross", { d: `M${x - cross} ${y}H${x + cross}M${x} ${y - cross}V${y + cross}` }));

@@ -131,7 +131,7 @@ export class FixtureList {
     cell.element.classList.toggle("unfit", Boolean(row.unfit));
     cell.title.replaceChildren(
       make("span", {}, make("b", {}, `${row.rank}`), ` ${row.title} `, make("span.faint", {}, `${number(row.theta_deg, 1)}°`)),
-      row.like ? make("span.faint.small", {}, `and ${row.like} like it`) : "",
+      row.like ? make("span.faint.small", { title: `and ${row.like} like it` }, `+${row.like} alike`) : "",
     );
     // What has no room in the line is left out of it.
     cell.holes.replaceChildren(make("span", {}, row.holes.join("  ")), make("span", {}, `${row.setting.sign} ${length(row.setting.length, 2)}`));

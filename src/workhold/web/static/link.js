@@ -8,7 +8,7 @@ import { state } from "./state.js";
 /** Keys of the state that a link carries. */
 const CARRIED = [
   "viseName", "vise", "unit", "types", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
-  "list", "view", "force",
+  "list", "view", "force", "sheet",
 ];
 
 let latest = 0;

@@ -53,6 +53,7 @@ export function stagePanel() {
   on(["pinned"], showPinned);
   on(["selected", "index", "job"], showPlace);
   on(["vise"], () => (byId("close-vise").textContent = kinds.length ? kindOf(state.vise).closes : "Close"));
+  on(["sheet"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.keepOff(state.sheet.clearance ?? null)));
   on(["unit"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.letter()));
 }
 

@@ -31,6 +31,7 @@ export const SETTINGS = [
  * @property {any} pinned the fixture it is compared with, or null
  * @property {string} view "part", "fixture" or "draw"
  * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null, kind?: string|number}|null} force with the force and kind of the jaw
+ * @property {Object<string, any>} sheet what stands on the setup sheet besides: wishes by the server's names, lengths in mm
  */
 
 /** @type {State} */
@@ -55,6 +56,7 @@ export const state = {
   pinned: null,
   view: "part",
   force: null,
+  sheet: { paper: "a4" },
 };
 
 /** @type {{keys: string[], call: (changed: Set<string>) => void}[]} */

@@ -1,19 +1,23 @@
 /**
  * Take away: the setup sheet and the other files of the fixture shown, all fixtures as files, and a link to all of it.
  */
-import { downloadPath } from "./api.js";
-import { byId, show } from "./dom.js";
+import { ApiError, downloadPath, fetched } from "./api.js";
+import { byId, make, show } from "./dom.js";
 import { keep } from "./link.js";
 import { searching } from "./search.js";
+import { sheetFields, sheetQuery } from "./sheet-fields.js";
 import { on, state } from "./state.js";
 import { loadQuery } from "./warnings-panel.js";
+
+/** Links to what is made for the fixture shown. */
+const PAPERS = ["take-sheet", "take-svg", "take-dxf", "take-step", "take-pins", "take-picture"];
 
 /** @param {any} about what the server can do */
 export function takePanel(about) {
   show(byId("take-step"), Boolean(about.step));
-  on(["part", "selected", "job", "unit", "force"], write);
-  byId("paper").addEventListener("change", write);
-  byId("zero").addEventListener("input", write);
+  sheetFields();
+  on(["part", "selected", "job", "unit", "force", "sheet"], write);
+  for (const id of PAPERS) byId(id).addEventListener("click", save);
   byId("print").addEventListener("click", () => print());
   byId("copy-link").addEventListener("click", copyLink);
 }
@@ -28,10 +32,7 @@ function write() {
   if (!job || !rank) return;
   const date = new Date();
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
-  const sheet = { paper: /** @type {HTMLSelectElement} */ (byId("paper")).value, unit: state.unit, date: day };
-  const zero = /** @type {HTMLInputElement} */ (byId("zero")).value.trim();
-  if (zero) sheet.zero = zero;
-  Object.assign(sheet, loadQuery());
+  const sheet = { ...sheetQuery(), date: day, ...loadQuery() };
   // Files are made of a whole search only; until then a link leads nowhere.
   const over = !searching();
   const point = (id, path) => {
@@ -43,11 +44,35 @@ function write() {
   };
   point("take-sheet", downloadPath(job, rank, "sheet.pdf", sheet));
   point("take-svg", downloadPath(job, rank, "sheet.svg", sheet));
-  point("take-dxf", downloadPath(job, rank, "setup.dxf", zero ? { zero, unit: state.unit } : {}));
-  point("take-step", downloadPath(job, rank, "setup.step", zero ? { zero, unit: state.unit } : {}));
+  point("take-dxf", downloadPath(job, rank, "setup.dxf", sheet));
+  point("take-step", downloadPath(job, rank, "setup.step", sheet));
+  point("take-pins", downloadPath(job, rank, "pins.csv", sheet));
   point("take-picture", downloadPath(job, rank, "picture.svg"));
   point("take-json", downloadPath(job, null, "result.json"));
   point("take-csv", downloadPath(job, null, "result.csv"));
+}
+
+/** Save what is made for one fixture; what it is refused for is told here, not by the browser. */
+async function save(event) {
+  event.preventDefault();
+  const link = /** @type {HTMLAnchorElement} */ (event.currentTarget);
+  const path = link.getAttribute("href");
+  const box = byId("take-trouble");
+  show(box, false);
+  if (!path || link.getAttribute("aria-busy") === "true") return;
+  link.setAttribute("aria-busy", "true");
+  try {
+    const { content, name } = await fetched(path);
+    const address = URL.createObjectURL(content);
+    make("a", { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    box.textContent = error.message;
+    show(box, true);
+  } finally {
+    link.removeAttribute("aria-busy");
+  }
 }
 
 /** Copy the page's address, which holds the whole state. */
