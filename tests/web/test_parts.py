@@ -170,3 +170,55 @@ def test_there_is_nothing_elsewhere(server: RunningServer) -> None:
     for path in ("/static/../limits.py", "/static/%2e%2e/limits.py", "/static/", "/api/none", "/docs", "/etc/passwd"):
         refused(server.client.get(path), 404)
     refused(server.client.put("/api/parts"), 405)
+
+
+def survey(server: RunningServer, content: bytes, name: str, **query: Any) -> dict[str, Any]:
+    """What a file leaves open."""
+    answer = server.client.post("/api/parts/survey", content=content, headers={"X-Filename": name}, params=query)
+    assert answer.status_code == 200, answer.text
+    told: dict[str, Any] = answer.json()
+    return told
+
+
+def test_a_survey_has_the_part_or_what_is_asked(server: RunningServer) -> None:
+    """The same part as reading gives, or the sentence and its question, with all that is drawn."""
+    told = survey(server, BRACKET.read_bytes(), "bracket.dxf")
+    assert told["part"] == upload(server, BRACKET.read_bytes(), "bracket.dxf").json()
+    assert (told["error"], told["asked"]) == (None, [])
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H20V10H0Z"/><path d="M50 0H60V5H50Z"/></svg>'
+    told = survey(server, svg, "two.svg")
+    assert told["part"] is None and told["asked"] == ["unit"] and told["size"] == [60, 10]
+    assert told["error"] == refused(upload(server, svg, "two.svg"))
+    assert [len(stroke) for stroke in told["strokes"]] == [5, 5]
+    told = survey(server, svg, "two.svg", unit="mm", part=2)
+    assert told["part"]["name"] == "two" and told["part"]["bounds"][2] == 60
+    assert [(part["number"], part["holes"]) for part in told["parts"]] == [(1, 0), (2, 0)]
+
+
+def test_gaps_are_joined_and_layers_chosen_as_asked(server: RunningServer) -> None:
+    """Over HTTP, as in a file that leaves them open."""
+    lines = ["M0 0H20", "M20.3 0V10", "M20 10H0V0"]
+    svg = "".join(f'<path fill="none" stroke="#000" d="{line}"/>' for line in lines)
+    content = f'<svg xmlns="http://www.w3.org/2000/svg">{svg}</svg>'.encode()
+    told = survey(server, content, "open.svg", unit="mm")
+    assert told["part"] is None and told["asked"] == ["join_tolerance"] and told["gaps"] == [0.3]
+    assert survey(server, content, "open.svg", unit="mm", join=0.31)["part"]["faces"]
+    assert upload(server, content, "open.svg", unit="mm", join="0.31").status_code == 200
+    layers = {"layer": ["OUTLINE", "nothing"]}
+    assert "nothing" in str(survey(server, BRACKET.read_bytes(), "bracket.dxf", **layers)["error"])
+
+
+@pytest.mark.parametrize("name", ["empty.dxf", "part.json", "note.txt"])
+def test_a_survey_of_no_part_is_a_sentence(server: RunningServer, name: str) -> None:
+    """Without the path of the file, whatever it is."""
+    answer = server.client.post("/api/parts/survey", content=b"{hello", headers={"X-Filename": name})
+    told = answer.json()
+    assert told["error"].endswith(".") and "/tmp" not in told["error"] and "part." not in told["error"]
+    assert answer.status_code == 400 or told["part"] is None
+
+
+def test_a_survey_may_be_as_large_as_a_file(server: RunningServer) -> None:
+    """The limit of files counts, not that of other requests."""
+    limits = server.state.limits
+    content = b"{" + b" " * (limits.request_bytes + 1000)
+    assert survey(server, content, "large.json")["part"] is None

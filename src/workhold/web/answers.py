@@ -23,6 +23,7 @@ from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
+    from workhold.files.part.survey import Survey
     from workhold.files.toolkit.reader import LoadedVise
     from workhold.statics.loads import LoadCase, Worst
 
@@ -37,11 +38,14 @@ __all__ = [
     "place_in",
     "proof_answer",
     "rows_answer",
+    "survey_answer",
     "vise_answer",
 ]
 
 # Undecided candidates told of a proof; the result file has them all.
 MOST_UNDECIDED = 50
+# Segments of a drawing, parts and gaps of a file that are told to be shown.
+MOST_STROKES, MOST_PARTS, MOST_GAPS = 20_000, 200, 500
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
@@ -98,6 +102,34 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
+
+
+def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
+    """What a file holds and leaves open; strokes and outlines are chains of x, y in mm and bulge."""
+    strokes, room = [], MOST_STROKES
+    for chain in seen.chains:
+        room -= len(chain.bulges)
+        if room < 0:
+            break
+        strokes.append([[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)])
+    return {
+        "part": part,
+        "error": refusal or None,
+        "place": place_in(refusal) if refusal else None,
+        "asked": list(seen.asked),
+        "size": None if seen.size is None else list(seen.size),
+        "strokes": strokes,
+        "parts": [
+            {
+                "number": one.number,
+                "loops": [loop.vertices.tolist() for loop in one.loops],
+                "bounds": list(one.bounds),
+                "holes": len(one.loops) - 1,
+            }
+            for one in seen.parts[:MOST_PARTS]
+        ],
+        "gaps": list(seen.gaps[:MOST_GAPS]),
+    }
 
 
 def vise_answer(loaded: LoadedVise) -> dict[str, Any]:

@@ -36,7 +36,7 @@ HEADERS = {
     b"permissions-policy": b"camera=(), geolocation=(), microphone=()",
 }
 READING = ("GET", "HEAD", "OPTIONS")
-UPLOADS = "/api/parts"
+UPLOADS = ("/api/parts", "/api/parts/survey")
 COOKIE = "workhold-token"
 
 
@@ -118,7 +118,7 @@ class Guard:
         if self.token is not None and not brings(self.token, headers):
             await ask_for_token(send_guarded, scope, self.token)
             return
-        uploads = scope["method"] == "POST" and scope["path"] == UPLOADS
+        uploads = scope["method"] == "POST" and scope["path"] in UPLOADS
         client = scope["client"][0] if scope.get("client") else ""
         if uploads and self.arriving[client] >= self.limits.client_uploads:
             await answer(send_guarded, 429, "Too many of your files are arriving at the same time: send one by one.")
@@ -149,7 +149,7 @@ class Guard:
                 return 403, "A page of another site may not change anything here."
             if headers.get("content-encoding", "identity").lower() != "identity":
                 return 415, "Send the request as it is, without compression."
-            most = self.limits.upload_bytes if scope["path"] == UPLOADS else self.limits.request_bytes
+            most = self.limits.upload_bytes if scope["path"] in UPLOADS else self.limits.request_bytes
             length = headers.get("content-length", "0")
             if not (length.isascii() and length.isdigit()):
                 return 400, "The length of the request is no number."

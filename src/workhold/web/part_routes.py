@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 from urllib.parse import unquote
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Depends, Query, Request
 from starlette.exceptions import HTTPException
 
 from workhold import __version__
@@ -63,31 +63,52 @@ async def part(request: Request, name: str) -> dict[str, Any]:
     return state.builtin[known]
 
 
-@router.post(
-    "/parts",
-    summary="Read a part from a file",
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-        },
-        "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
+FILE = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
     },
-)
-async def read_part(
+    "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
+}
+UnitGiven = Literal["mm", "cm", "m", "inch"] | None
+PartGiven = Annotated[int | None, Query(ge=1, le=100_000)]
+LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
+JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
+AxisGiven = Literal["x", "y", "z"] | None
+
+
+async def sent(
     request: Request,
-    unit: Literal["mm", "cm", "m", "inch"] | None = None,
-    part: Annotated[int | None, Query(ge=1, le=100_000)] = None,
-    axis: Literal["x", "y", "z"] | None = None,
-) -> dict[str, Any]:
-    """The body is the file as it is: DXF, SVG, JSON, or STEP where installed; its name is in the header X-Filename."""
-    state = state_of(request)
+    unit: UnitGiven = None,
+    part: PartGiven = None,
+    layer: LayersGiven = None,
+    join: JoinGiven = None,
+    axis: AxisGiven = None,
+) -> Upload:
+    """A file that is sent, and what is said about how to read it."""
     content = await request.body()
-    options: dict[str, Any] = {"unit": unit, "part_number": part}
+    given: dict[str, Any] = {"unit": unit, "part_number": part, "layers": layer, "join_tolerance": join}
     name = shown_name(request.headers.get("x-filename", ""))
     if axis is not None and name.lower().endswith((".step", ".stp")):
-        options["axis"] = axis
-    answer: dict[str, Any] = await at_desk(request, "read_part", Upload(content, name, state.limits.segments, options))
+        given["axis"] = axis
+    options = {key: value for key, value in given.items() if value is not None}
+    return Upload(content, name, state_of(request).limits.segments, options)
+
+
+Sent = Annotated[Upload, Depends(sent)]
+
+
+@router.post("/parts", summary="Read a part from a file", openapi_extra=FILE)
+async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
+    """The body is the file as it is: DXF, SVG, JSON, or STEP where installed; its name is in the header X-Filename."""
+    answer: dict[str, Any] = await at_desk(request, "read_part", upload)
+    return answer
+
+
+@router.post("/parts/survey", summary="See what a file holds and leaves open", openapi_extra=FILE)
+async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
+    """Sent as to read a part: the part if it can be read, else why not and what is asked; and all that is drawn."""
+    answer: dict[str, Any] = await at_desk(request, "survey_part", upload)
     return answer
 
 

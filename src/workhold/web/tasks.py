@@ -6,7 +6,8 @@ Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; w
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -25,6 +26,7 @@ from workhold.web.paper import make_paper
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
+    from workhold.files.part.load import Loaded
     from workhold.model.fixture import Fixture
     from workhold.model.toolkit import Toolkit
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
@@ -42,9 +44,9 @@ MOST_RESISTING = 10
 CALLED = {
     "unit": '"File drawn in"',
     "drawing_unit": '"File drawn in"',
-    "layers": "the choice of layers",
-    "part_number": "the part number",
-    "join_tolerance": "join tolerance",
+    "layers": '"Layers"',
+    "part_number": '"Part"',
+    "join_tolerance": '"Join gaps up to"',
     "axis": "axis",
     "section": "the height of a section",
 }
@@ -180,21 +182,61 @@ def builtin_part(name: str, order: Order) -> dict[str, Any]:
 def read_part(upload: Upload, order: Order) -> dict[str, Any]:
     """The part of a file that was sent."""
     from workhold.files.part.load import read_workpiece
+
+    with sent_file(upload) as path:
+        loaded = read_workpiece(path, **upload.options, called=CALLED)
+        return uploaded_part(upload, path, loaded)
+
+
+def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
+    """What a file that was sent holds and leaves open, with the part if it can be read."""
+    from workhold.files.part.survey import survey
+    from workhold.web.answers import survey_answer
+
+    with sent_file(upload) as path:
+        seen = survey(path, **upload.options, called=CALLED)
+        part = None if seen.loaded is None else uploaded_part(upload, path, seen.loaded)
+        return survey_answer(seen, part, without_path(seen.refusal, path))
+
+
+@contextmanager
+def sent_file(upload: Upload) -> Iterator[Path]:
+    """A file that was sent, as long as the block runs; what goes wrong there is told without its path.
+
+    Raises
+    ------
+    InputError
+        For what cannot be read.
+    """
+    ending = f".{upload.name.rpartition('.')[2].lower()}"
+    with TemporaryDirectory(prefix="workhold-") as folder:
+        path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
+        path.write_bytes(upload.content)
+        try:
+            yield path
+        except InputError as error:
+            raise InputError(without_path(str(error), path)) from error
+        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
+            raise InputError("The file is damaged, or holds what this program cannot read: save it anew.") from error
+
+
+def without_path(sentence: str, path: Path) -> str:
+    """A sentence about a file whose user knows it by another name."""
+    return sentence.replace(f"{path.name}: ", "", 1)
+
+
+def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
+    """A part as the page shows it, with the name of the file that was sent where it has none of its own.
+
+    Raises
+    ------
+    InputError
+        For more segments than this server takes.
+    """
     from workhold.web.answers import part_answer
     from workhold.web.forms import checked_part
 
-    stem, _, ending = upload.name.rpartition(".")
-    ending = f".{ending.lower()}" if f".{ending.lower()}" in ENDINGS else ""
-    with TemporaryDirectory(prefix="workhold-") as folder:
-        path = Path(folder) / f"part{ending}"
-        path.write_bytes(upload.content)
-        try:
-            loaded = read_workpiece(path, **upload.options, called=CALLED)
-        except InputError as error:
-            raise InputError(str(error).replace(f"{path.name}: ", "", 1)) from error
-        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
-            raise InputError("The file is damaged, or holds what this program cannot read: save it anew.") from error
-    part = loaded.workpiece
+    part, stem = loaded.workpiece, upload.name.rpartition(".")[0]
     checked_size = checked_part(part.name, part.loops, upload.most_segments)  # type: ignore[arg-type]
     name = stem or upload.name if part.name == path.stem else part.name
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
@@ -243,6 +285,7 @@ TASKS: Tasks = {
     "check_part": check_part,
     "builtin_part": builtin_part,
     "read_part": read_part,
+    "survey_part": survey_part,
     "loads": loads,
     "warnings": warnings,
     "resist": resist,

@@ -13,6 +13,12 @@ from walking import Walk
 
 AXE = Path(__file__).parent / "data" / "axe.min.js"
 STATIC = files("workhold.web") / "static"
+# Its unit, and which of its parts, are open.
+ASKING = {
+    "name": "two.svg",
+    "mimeType": "image/svg+xml",
+    "buffer": b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H20V10H0Z"/><path d="M50 0H60V5H50Z"/></svg>',
+}
 CHECK = """async () => {
   const found = await axe.run(document, { resultTypes: ["violations", "passes"] });
   const words = (rule) => `${rule.id} (${rule.impact}): ${rule.nodes.map((node) => node.html.slice(0, 120)).join(" | ")}`;
@@ -25,7 +31,7 @@ CHECK = """async () => {
 
 @pytest.mark.parametrize("look", ["light", "dark", "phone"])
 def test_nothing_serious_is_found(browser: Any, server: RunningServer, look: str) -> None:
-    """With the part, and with fixtures compared and pushed at."""
+    """Empty, with a file that leaves something open, with the part, and with fixtures compared and pushed at."""
     size = {"width": 390, "height": 800} if look == "phone" else {"width": 1440, "height": 900}
     scheme = "dark" if look == "dark" else "light"
     context = browser.new_context(viewport=size, color_scheme=scheme, reduced_motion="reduce")
@@ -34,24 +40,25 @@ def test_nothing_serious_is_found(browser: Any, server: RunningServer, look: str
     walk.open()
     sections = ("settings", "stage", "results") if look == "phone" else ()
 
-    def go(section: str) -> None:
-        if sections:
-            walk.page.click(f".sections [data-to={section}]")
-
     def check() -> None:
         for section in sections or ("all",):
-            go(section)
+            walk.go(section)
             passed, faults = walk.page.evaluate(CHECK)
             assert passed > 10
             assert faults == []
 
+    check()
+    walk.page.set_input_files("#file", ASKING)
+    walk.seen("#file-asks [data-unit=mm]").click()
+    walk.seen("#file-asks [data-part]")
+    check()
     walk.take()
     walk.page.click('#faces button[data-face="3"]')
     check()
-    go("settings")
+    walk.go("settings")
     walk.page.click("#search")
     walk.searched(shown=False)
-    go("stage")
+    walk.go("stage")
     for button in ("#push", "#pin", "#next"):
         walk.page.click(button)
     walk.seen("#board-title:has-text('Shown: 2')")

@@ -68,8 +68,15 @@ class Walk:
         element.wait_for(state="visible", timeout=patience)
         return element
 
+    def go(self, section: str) -> None:
+        """Show a section of the page where there is room for one only."""
+        tab = self.page.locator(f".sections [data-to={section}]")
+        if tab.is_visible():
+            tab.click()
+
     def take(self, part: str = "widget", pitch: str | None = "8") -> None:
         """Take a built-in part and a one-column gripper."""
+        self.go("settings")
         self.page.select_option("#builtin", part)
         self.seen("#faces button")
         self.page.select_option("#preset", "gripper-one-column")

@@ -76,14 +76,17 @@ export function send(path, body, options = {}) {
 }
 
 /**
- * Send a file to be read as a part.
+ * See what a file holds and leaves open, with the part if it can be read.
  * @param {File} file
- * @param {Object<string, string>} query unit, part, axis
+ * @param {Object<string, any>} how unit, part, layer (several), join, axis; those that are undefined are not sent
  */
-export function sendPart(file, query = {}) {
-  const search = new URLSearchParams(query).toString();
+export function surveyPart(file, how = {}) {
+  const query = new URLSearchParams();
+  for (const [name, value] of Object.entries(how)) {
+    for (const each of Array.isArray(value) ? value : [value]) if (each !== undefined) query.append(name, String(each));
+  }
   const headers = { "X-Filename": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" };
-  return ask(`parts${search ? `?${search}` : ""}`, { method: "POST", headers, body: file });
+  return ask(`parts/survey${query.size ? `?${query}` : ""}`, { method: "POST", headers, body: file });
 }
 
 /**

@@ -29,6 +29,7 @@ export class DrawingTool {
     this.refused = null;
     drawing.stray = "";
     drawing.trouble = null;
+    drawing.others = null;
     drawing.view.tool = this;
     drawing.svg.classList.add("tooled");
     drawing.lettering = () => this.letter();

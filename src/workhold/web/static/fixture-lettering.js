@@ -2,6 +2,7 @@
  * What keeps its size on the drawing of a fixture: names of holes and faces, the travel, arrows of forces.
  */
 import { draw } from "./dom.js";
+import { along, apart, isFree } from "./labels.js";
 import { columnLetters, place } from "./pose.js";
 import { length, number } from "./units.js";
 
@@ -17,10 +18,10 @@ export function drawLettering(drawing) {
   const closed = drawing.open === 0;
   const parts = [...columnNames(drawing), ...rowNames(drawing), ...travels(drawing)];
   if (closed) {
-    parts.push(...forceArrows(drawing), ...faceNames(drawing));
+    parts.push(...forces(drawing).map(({ tail, tip, kind }) => arrow(tail, tip, kind)));
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
-  parts.push(...holeNames(drawing));
+  parts.push(...labels(drawing, closed));
   overlay.replaceChildren(...parts);
 }
 
@@ -111,87 +112,102 @@ function travels(drawing) {
   });
 }
 
-/** Places for labels of some size near anchors, pushed apart until none lies on another or on a peg. */
-function apart(labels, pegs) {
-  for (let round = 0; round < 40; round += 1) {
-    let moved = false;
-    for (const a of labels) {
-      for (const b of [...labels, ...pegs]) {
-        if (a === b) continue;
-        const [ox, oy] = [a.w / 2 + b.w / 2 + 3 - Math.abs(a.x - b.x), a.h / 2 + b.h / 2 + 3 - Math.abs(a.y - b.y)];
-        if (ox <= 0 || oy <= 0) continue;
-        moved = true;
-        const share = b.fixed ? 1 : 0.5;
-        if (oy <= ox) a.y += share * oy * (a.y >= b.y ? 1 : -1);
-        else a.x += share * ox * (a.x >= b.x ? 1 : -1);
-      }
-    }
-    if (!moved) return;
-  }
-}
-
-/** The name of each peg's hole, on the side away from the part. */
-function holeNames(drawing) {
+/** Labels of the pegs' holes, on the side away from the part. */
+function holeLabels(drawing) {
   const { row, view, contacts } = drawing;
-  const shifts = new Map(row.carriers.flatMap((each) => each.pegs.map((k) => [k, drawing.shift(each)])));
-  const radius = Math.max(...row.carriers.map((each) => each.peg_radius * view.k), 4);
-  const centers = row.pegs.map(([x, y], k) => view.page([x + shifts.get(k)[0], y + shifts.get(k)[1]]));
-  const labels = centers.map(([x, y], k) => {
+  const radius = pegSize(drawing);
+  return pegCenters(drawing).map((center, k) => {
+    const [x, y] = center;
     const [nx, ny] = contacts[k].normal;
-    const w = 8.4 * row.holes[k].length + 12;
+    const size = { w: 8.4 * row.holes[k].length + 12, h: 20, center, text: row.holes[k] };
     const pushed = row.carriers.find((each) => each.clamp && each.pegs.includes(k));
-    if (pushed) {
-      // Beside the body and the arrow behind it, on the lower or the left side.
-      const [bx, by] = pushed.clamp.hole ? view.page(pushed.clamp.hole) : [x, y];
-      return pushed.clamping[0] ? { x: bx, y: by + radius + 20, w, h: 20 } : { x: bx - radius - 14 - w / 2, y: by, w, h: 20 };
-    }
-    return { x: x + nx * (radius + 8 + w / 2), y: y - ny * (radius + 18), w, h: 20 };
+    if (!pushed) return { ...size, x: x + nx * (radius + 8 + size.w / 2), y: y - ny * (radius + 18) };
+    // Beside the body and the arrow behind it, on the lower or the left side.
+    const [bx, by] = pushed.clamp.hole ? view.page(pushed.clamp.hole) : [x, y];
+    return pushed.clamping[0] ? { ...size, x: bx, y: by + radius + 20 } : { ...size, x: bx - radius - 14 - size.w / 2, y: by };
   });
-  apart(labels, centers.map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius, fixed: true })));
-  return labels.flatMap((label, k) => [
-    draw("line.label-lead", { x1: centers[k][0], y1: centers[k][1], x2: label.x, y2: label.y }),
-    draw("rect.hole-label", { x: label.x - label.w / 2, y: label.y - 10, width: label.w, height: 20, rx: 4 }),
-    word(row.holes[k], [label.x, label.y], "hole-name"),
-  ]);
 }
 
-/** The number of each touched face, beside the contact. */
-function faceNames({ row, view, contacts }) {
+/** Where the pegs are shown, in pixels. */
+function pegCenters(drawing) {
+  const { row, view } = drawing;
+  const shifts = new Map(row.carriers.flatMap((each) => each.pegs.map((k) => [k, drawing.shift(each)])));
+  return row.pegs.map(([x, y], k) => view.page([x + shifts.get(k)[0], y + shifts.get(k)[1]]));
+}
+
+/** How large the largest peg is shown, in pixels. */
+function pegSize({ row, view }) {
+  return Math.max(...row.carriers.map((each) => each.peg_radius * view.k), 4);
+}
+
+/** Pixels along a face from its contact at which its number may stand, those wanted most first. */
+const BESIDE = [20, -20, 34, -34, 50, -50, 68, -68];
+
+/** Labels of the numbers of touched faces, each with the places beside its contact where it may be, inside the part. */
+function faceLabels({ row, view, contacts }) {
   const seen = new Set();
-  return contacts.flatMap(({ at, normal }, k) => {
+  return contacts.flatMap(({ at, normal: [nx, ny] }, k) => {
     if (seen.has(row.faces[k])) return [];
     seen.add(row.faces[k]);
     const [x, y] = view.page(at);
-    // Inside the part, to the left of the arrow of the force.
-    const [px, py] = [x - 14 * normal[0] + 20 * normal[1], y + 14 * normal[1] + 20 * normal[0]];
-    return [draw("circle.face-label", { cx: px, cy: py, r: 9.5 }), word(String(row.faces[k]), [px, py], "face-name")];
+    const places = BESIDE.map((aside) => ({ x: x - 14 * nx + aside * ny, y: y + 14 * ny + aside * nx }));
+    return [{ ...places[0], places, w: 19, h: 19, text: String(row.faces[k]) }];
   });
+}
+
+/** Names of holes, numbers of faces and the size of the load, none on another, on a peg or on an arrow. */
+function labels(drawing, closed) {
+  const radius = pegSize(drawing);
+  const taken = pegCenters(drawing).map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius }));
+  const load = closed && drawing.load ? [loadLabel(drawing)] : [];
+  if (closed) taken.push(...forces(drawing).flatMap(({ tail, tip }) => along(tail, tip, 8)));
+  if (load.length) taken.push(...along(load[0].tail, load[0].tip, 10));
+  const faces = closed ? faceLabels(drawing) : [];
+  const holes = holeLabels(drawing);
+  apart([...holes, ...load], taken);
+  taken.push(...holes, ...load);
+  for (const face of faces) {
+    Object.assign(face, face.places.find((place) => isFree({ ...face, ...place }, taken)) ?? {});
+    taken.push(face);
+  }
+  return [
+    ...faces.flatMap(({ x, y, text }) => [draw("circle.face-label", { cx: x, cy: y, r: 9.5 }), word(text, [x, y], "face-name")]),
+    ...holes.flatMap(({ x, y, w, center, text }) => [
+      draw("line.label-lead", { x1: center[0], y1: center[1], x2: x, y2: y }),
+      draw("rect.hole-label", { x: x - w / 2, y: y - 10, width: w, height: 20, rx: 4 }),
+      word(text, [x, y], "hole-name"),
+    ]),
+    ...load.map(({ x, y, text }) => word(text, [x, y], "load-text")),
+  ];
 }
 
 /** The force of each peg on the part; with a load those that resist it, drawn outward where a peg would have to pull. */
-function forceArrows({ row, view, contacts, load }) {
-  const forces = load ? load.forces : row.forces;
-  const largest = Math.max(...forces.map(Math.abs), 1e-12);
+function forces({ row, view, contacts, load }) {
+  const sizes = load ? load.forces : row.forces;
+  const largest = Math.max(...sizes.map(Math.abs), 1e-12);
   return contacts.flatMap(({ at, normal }, k) => {
-    const share = Math.abs(forces[k]) / largest;
+    const share = Math.abs(sizes[k]) / largest;
     if (load && share < 0.004) return [];
     const long = SHORTEST + (LONGEST - SHORTEST) * share;
-    const way = forces[k] < 0 ? 1 : -1;
+    const way = sizes[k] < 0 ? 1 : -1;
     const tail = view.page(at);
     const tip = [tail[0] + way * long * normal[0], tail[1] - way * long * normal[1]];
-    return [arrow(tail, tip, forces[k] < 0 ? "pull" : "push")];
+    return [{ tail, tip, kind: sizes[k] < 0 ? "pull" : "push" }];
   });
 }
 
-/** The load itself. */
-function loadArrow({ view, load }) {
+/** The ends of the load's arrow in pixels, and its label beyond the tip. */
+function loadLabel({ view, load }) {
   const tail = view.page(load.at);
   const tip = view.page([load.at[0] + load.vector[0], load.at[1] + load.vector[1]]);
   const long = Math.hypot(tip[0] - tail[0], tip[1] - tail[1]);
   const [ux, uy] = long > 1 ? [(tip[0] - tail[0]) / long, (tip[1] - tail[1]) / long] : [0, -1];
-  return [
-    arrow(tail, tip, "load"),
-    draw("circle.load-handle", { cx: tail[0], cy: tail[1], r: 6 }),
-    word(`${number(load.size, 0)} N`, [tip[0] + 28 * ux, tip[1] + 14 * uy], "load-text"),
-  ];
+  const text = `${number(load.size, 0)} N`;
+  return { tail, tip, text, x: tip[0] + 28 * ux, y: tip[1] + 14 * uy, w: 8.4 * text.length, h: 16 };
+}
+
+/** The load itself. */
+function loadArrow(drawing) {
+  const { tail, tip } = loadLabel(drawing);
+  return [arrow(tail, tip, "load"), draw("circle.load-handle", { cx: tail[0], cy: tail[1], r: 6 })];
 }

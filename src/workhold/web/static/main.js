@@ -11,6 +11,7 @@ import { offerParts, partPanel } from "./part-panel.js";
 import { resultsPanel, want, writeFilters } from "./results-panel.js";
 import { rulesPanel, writeRules } from "./rules-panel.js";
 import { takeUp } from "./search.js";
+import { listenToSections } from "./sections.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { takePanel } from "./take-panel.js";
@@ -22,23 +23,6 @@ import { whyPanel } from "./why-panel.js";
 
 /** Distances of the drawing grid in the unit shown. */
 const GRIDS = { mm: [1, 2, 5, 10, 20], inch: [0.0625, 0.125, 0.25, 0.5, 1] };
-
-/** On a phone one section is shown at a time. */
-function listenToSections() {
-  const buttons = [...document.querySelectorAll(".sections button")];
-  const go = (name) => {
-    document.body.dataset.section = name;
-    for (const button of buttons) {
-      if (button.dataset.to === name) button.setAttribute("aria-current", "true");
-      else button.removeAttribute("aria-current");
-    }
-  };
-  for (const button of buttons) button.addEventListener("click", () => go(button.dataset.to));
-  byId("search").addEventListener("click", () => go("results"));
-  byId("draw-part").addEventListener("click", () => go("stage"));
-  byId("list").addEventListener("click", () => go("stage"));
-  for (const id of ["zone-circle", "zone-polygon"]) byId(id).addEventListener("click", () => go("stage"));
-}
 
 /** Offer grids in the unit shown. */
 function writeGrids() {

@@ -2,7 +2,8 @@
  * The drawing of the part as it was given: faces to forbid by a click, keep-out zones, and the places of errors.
  */
 import { draw } from "./dom.js";
-import { boundsOf, outlinePath, pointAt, normalAt, segmentPath, segmentsOf } from "./geometry.js";
+import { boundsOf, extend, outlinePath, pointAt, normalAt, segmentPath, segmentsOf } from "./geometry.js";
+import { apart } from "./labels.js";
 import { partSegments } from "./pose.js";
 import { change, state } from "./state.js";
 import { bareLength, unitWord } from "./units.js";
@@ -25,6 +26,8 @@ export class PartDrawing {
     this.stray = null;
     this.pointed = null;
     this.faces = new Map();
+    /** Other parts of the same file, which can be taken by a click. @type {null|{parts: any[], take: (number: number) => void, strokes?: number[][][], isChosen?: boolean}} */
+    this.others = null;
   }
 
   /** Draw the part of the state, seen whole. */
@@ -32,8 +35,21 @@ export class PartDrawing {
     this.trouble = null;
     this.stray = null;
     this.build();
-    if (state.part) this.view.fit([...state.part.bounds], MARGINS);
+    if (state.part) this.view.fit(this.extentOfAll(), MARGINS);
     else this.view.fit([0, 0, 120, 80], MARGINS);
+  }
+
+  /** The part's bounds, with those of all else in its file as long as nothing was chosen. */
+  extentOfAll() {
+    const box = [...state.part.bounds];
+    if (!this.others || this.others.isChosen) return box;
+    const { parts, strokes = [] } = this.others;
+    const drawn = strokes.length ? [boundsOf(strokes.flatMap((chain) => segmentsOf(chain).slice(0, -1)))] : [];
+    for (const [x0, y0, x1, y1] of [...parts.map(({ bounds }) => bounds), ...drawn]) {
+      extend(box, [x0, y0]);
+      extend(box, [x1, y1]);
+    }
+    return box;
   }
 
   /**
@@ -59,7 +75,9 @@ export class PartDrawing {
   build() {
     const { part } = state;
     this.faces.clear();
-    const shapes = [];
+    const shapes = (this.others?.parts ?? []).map((other) => this.other(other));
+    const { strokes = [] } = this.others ?? {};
+    if (strokes.length) shapes.push(draw("path.stray", { d: strokes.map((chain) => chainPath(chain)).join("") }));
     if (this.stray !== null) {
       shapes.push(draw("path.stray", { d: this.stray }));
     } else if (part) {
@@ -77,6 +95,17 @@ export class PartDrawing {
     this.view.world.replaceChildren(...shapes, this.sketch);
     this.paint();
     this.letter();
+  }
+
+  /** Another part of the file, to be taken by a click. */
+  other({ number, loops }) {
+    // Its holes can be clicked as well.
+    const whole = draw("path.other-hit", { d: outlinePath(loops.slice(0, 1)) });
+    const shape = draw("g.other-part", { "data-part": number }, draw("title", {}, `Part ${number}`), draw("path", { d: outlinePath(loops) }), whole);
+    shape.addEventListener("click", () => {
+      if (!this.view.tool) this.others?.take(number);
+    });
+    return shape;
   }
 
   /** A face that can be clicked. */
@@ -113,6 +142,12 @@ export class PartDrawing {
     const words = [];
     const { part } = state;
     if (part && this.stray === null && state.view !== "draw") words.push(...this.extent(part), ...this.numbers(part));
+    if (state.view !== "draw") {
+      for (const { number, bounds: [x0, y0, x1, y1] } of this.others?.parts ?? []) {
+        const [x, y] = this.view.page([(x0 + x1) / 2, (y0 + y1) / 2]);
+        words.push(draw("text.other-name", { x, y, dy: "0.36em", "text-anchor": "middle" }, String(number)));
+      }
+    }
     if (this.trouble) {
       const [x, y] = this.view.page([this.trouble.place.x, this.trouble.place.y]);
       words.push(draw("circle.trouble", { cx: x, cy: y, r: 13 }), draw("circle.trouble-dot", { cx: x, cy: y, r: 3 }));
@@ -120,23 +155,29 @@ export class PartDrawing {
     this.view.overlay.replaceChildren(...words, ...this.lettering());
   }
 
-  /** The number of each face, where there is room for it or it is asked for. */
+  /** The number of each face, where there is room for it or it is asked for; that of a round hole always. */
   numbers(part) {
     const seen = new Map();
     for (const { segment, face } of partSegments(part)) {
       const long = Math.hypot(segment.end[0] - segment.start[0], segment.end[1] - segment.start[1]) * this.view.k;
       if (!seen.has(face) || seen.get(face).long < long) seen.set(face, { segment, long });
     }
-    return [...seen].flatMap(([face, { segment, long }]) => {
-      const forbidden = state.avoid.includes(face);
-      if (long < 24 && !forbidden && face !== this.pointed) return [];
+    const loops = new Map();
+    for (const { loop, face } of part.segments) loops.set(loop, (loops.get(loop) ?? new Set()).add(face));
+    const alone = new Set([...loops.values()].filter((faces) => faces.size === 1).flatMap((faces) => [...faces]));
+    const labels = [...seen].flatMap(([face, { segment, long }]) => {
+      const asked = state.avoid.includes(face) || face === this.pointed;
+      if (long < 24 && !asked && !alone.has(face)) return [];
       const [x, y] = this.view.page(pointAt(segment, 0.5));
       const [nx, ny] = normalAt(segment, 0.5);
-      const [px, py] = [x - 16 * nx, y + 16 * ny];
-      const kind = `${forbidden ? " forbidden" : ""}${face === this.pointed ? " pointed" : ""}`;
+      return [{ face, x: x - 16 * nx, y: y + 16 * ny, w: 19, h: 19 }];
+    });
+    apart(labels);
+    return labels.flatMap(({ face, x, y }) => {
+      const kind = `${state.avoid.includes(face) ? " forbidden" : ""}${face === this.pointed ? " pointed" : ""}`;
       return [
-        draw(`circle`, { class: `face-label${kind}`, cx: px, cy: py, r: 10 }),
-        draw("text", { class: `face-name${kind}`, x: px, y: py, dy: "0.36em", "text-anchor": "middle" }, String(face)),
+        draw(`circle`, { class: `face-label${kind}`, cx: x, cy: y, r: 10 }),
+        draw("text", { class: `face-name${kind}`, x, y, dy: "0.36em", "text-anchor": "middle" }, String(face)),
       ];
     });
   }

@@ -1,73 +1,134 @@
 /**
  * Step 1: a part from a file, from those built in, or drawn by hand.
  */
-import { ApiError, ask, sendPart } from "./api.js";
+import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { previewOf } from "./file-preview.js";
+import { askQuestions, noQuestions } from "./file-questions.js";
+import { start } from "./search.js";
+import { showSection } from "./sections.js";
 import { change, on, state } from "./state.js";
+import { usePreset } from "./toolkit-panel.js";
 import { length } from "./units.js";
 
-/** The file read last, to be read again in another unit. */
+/** What holds the example. */
+const EXAMPLE_IN = "clamp-plate-20mm";
+
+/** The file read last, to be read again otherwise. @type {File|null} */
 let lastFile = null;
+/** What has been answered about it. @type {import("./file-questions.js").How} */
+let how = {};
 let reading = 0;
+/** @type {import("./part-drawing.js").PartDrawing} */
+let drawing;
+
+/** @returns {HTMLSelectElement} */
+const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
 
 /**
  * Set the panel up.
- * @param {{drawing: import("./part-drawing.js").PartDrawing, about: any, onDraw: () => void}} page
+ * @param {{drawing: import("./part-drawing.js").PartDrawing, onDraw: () => void}} page
  */
-export function partPanel({ drawing, onDraw }) {
+export function partPanel({ drawing: board, onDraw }) {
+  drawing = board;
   const file = /** @type {HTMLInputElement} */ (byId("file"));
-  const builtin = /** @type {HTMLSelectElement} */ (byId("builtin"));
-  const unit = /** @type {HTMLSelectElement} */ (byId("file-unit"));
-
-  const readFile = async (chosen) => {
-    lastFile = chosen;
-    builtin.value = "";
-    const mine = ++reading;
-    say(`Reading ${chosen.name} …`);
-    try {
-      const part = await sendPart(chosen, unit.value ? { unit: unit.value } : {});
-      if (mine === reading) usePart(part);
-    } catch (error) {
-      if (mine === reading) await trouble(error, chosen);
-    }
-  };
-
-  const trouble = async (error, chosen) => {
-    if (!(error instanceof ApiError)) throw error;
-    change({ part: null, avoid: [], zones: [], view: "part" });
-    say("");
-    const box = byId("part-trouble");
-    box.textContent = error.message;
-    show(box, true);
-    const strokes = await previewOf(chosen).catch(() => []);
-    show(byId("stage-empty"), !strokes.length && !error.place);
-    if (strokes.length || error.place) drawing.showTrouble(strokes, error.place, error.message);
-  };
-
   file.addEventListener("change", () => {
-    if (file.files?.length) readFile(file.files[0]);
+    if (file.files?.length) openFile(file.files[0]);
     file.value = "";
   });
-  unit.addEventListener("change", () => lastFile && readFile(lastFile));
-  builtin.addEventListener("change", async () => {
-    if (!builtin.value) return;
-    lastFile = null;
-    const mine = ++reading;
-    try {
-      const part = await ask(`parts/${encodeURIComponent(builtin.value)}`);
-      if (mine === reading) usePart(part, builtin.value);
-    } catch (error) {
-      if (mine === reading) await trouble(error, new File([], builtin.value));
-    }
-  });
+  choice("file-unit").addEventListener("change", () => lastFile && answered({ unit: choice("file-unit").value || undefined }));
+  choice("builtin").addEventListener("change", takeBuiltin);
   byId("draw-part").addEventListener("click", onDraw);
-  listenToDrops(readFile);
+  byId("example").addEventListener("click", takeExample);
+  listenToDrops(openFile);
   on(["part", "unit"], tell);
 }
 
+/** Read a file that was just chosen; what was answered about the one before is forgotten. */
+function openFile(chosen) {
+  if (lastFile) choice("file-unit").value = "";
+  lastFile = chosen;
+  how = choice("file-unit").value ? { unit: choice("file-unit").value } : {};
+  noQuestions();
+  readFile();
+}
+
+/** Read the file again, with a further answer. */
+function answered(more) {
+  how = { ...how, ...more };
+  choice("file-unit").value = how.unit ?? "";
+  readFile();
+}
+
+/** Read the file as answered, and ask what is open. */
+async function readFile() {
+  const chosen = /** @type {File} */ (lastFile);
+  choice("builtin").value = "";
+  const mine = ++reading;
+  say(`Reading ${chosen.name} …`);
+  try {
+    const survey = await surveyPart(chosen, how);
+    if (mine !== reading) return;
+    survey.solid = /\.ste?p$/i.test(chosen.name);
+    if (survey.part) {
+      usePart(survey.part, { ...survey, chosen: how.part ?? null });
+    } else await refuse(survey, chosen);
+    if (askQuestions(survey, how, answered)) showSection("stage");
+  } catch (error) {
+    if (mine === reading) await trouble(error, chosen);
+  }
+}
+
+/** Show what a refused file holds, and where it is wrong. */
+async function refuse({ error, place, strokes, parts, asked }, chosen) {
+  change({ part: null, avoid: [], zones: [], view: "part" });
+  say("");
+  // Where nothing is wrong but the unit is open, the question says it all.
+  const plain = asked.length === 1 && asked[0] === "unit";
+  byId("part-trouble").textContent = error.charAt(0).toUpperCase() + error.slice(1);
+  show(byId("part-trouble"), !plain);
+  const shown = strokes.length ? strokes : await previewOf(chosen).catch(() => []);
+  show(byId("stage-empty"), !shown.length && !place);
+  drawing.others = asked.includes("unit") ? null : { parts, take: (part) => answered({ part }) };
+  if (shown.length || place) drawing.showTrouble(shown, place, error);
+}
+
+/** Show what went wrong with a file that could not even be looked at. */
+function trouble(error, chosen) {
+  if (!(error instanceof ApiError)) throw error;
+  return refuse({ error: error.message, place: error.place, strokes: [], parts: [], asked: [] }, chosen);
+}
+
+/** Take a part that comes with the program. */
+async function takeBuiltin() {
+  const { value } = choice("builtin");
+  if (!value) return;
+  lastFile = null;
+  const mine = ++reading;
+  noQuestions();
+  try {
+    const part = await ask(`parts/${encodeURIComponent(value)}`);
+    if (mine === reading) usePart(part, { name: value });
+  } catch (error) {
+    if (mine === reading) await trouble(error, new File([], value));
+  }
+}
+
+/** A part and what holds it, and its search, in one click. */
+async function takeExample() {
+  lastFile = null;
+  const mine = ++reading;
+  noQuestions();
+  const example = await (await fetch("static/example.json")).json();
+  const part = await send("parts/check", example);
+  if (mine !== reading) return;
+  usePreset(EXAMPLE_IN);
+  usePart(part);
+  start();
+}
+
 /** Files may be dropped anywhere on the page. */
-function listenToDrops(readFile) {
+function listenToDrops(readDropped) {
   let depth = 0;
   const over = (delta) => {
     depth = Math.max(0, depth + delta);
@@ -80,18 +141,21 @@ function listenToDrops(readFile) {
     event.preventDefault();
     over(-depth);
     const dropped = event.dataTransfer?.files[0];
-    if (dropped) readFile(dropped);
+    if (dropped) readDropped(dropped);
   });
 }
 
 /**
  * Take a part: what was ruled out on another one is gone.
  * @param {any} part
- * @param {string} [name] of the built-in part that it is
+ * @param {{name?: string, parts?: any[], strokes?: number[][][], gaps?: number[], chosen?: number|null}} [from] the built-in part
+ *   that it is, or the parts of its file, the one chosen, and all that is drawn, which is shown where it has gaps
  */
-export function usePart(part, name = "") {
+export function usePart(part, { name = "", parts = [], strokes = [], gaps = [], chosen = null } = {}) {
   show(byId("part-trouble"), false);
-  /** @type {HTMLSelectElement} */ (byId("builtin")).value = name;
+  choice("builtin").value = name;
+  const others = parts.length > 1 ? parts.filter((each) => each.number !== (chosen ?? 1)) : [];
+  drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part: other }), isChosen: chosen !== null };
   change({ part, avoid: [], zones: [], force: null, loads: [], view: "part" });
 }
 
@@ -113,6 +177,6 @@ function tell() {
   const [x0, y0, x1, y1] = part.bounds;
   const holes = part.loops.length - 1;
   const size = `${length(x1 - x0, 2)} × ${length(y1 - y0, 2)}`;
-  const words = `${part.name}: ${size}, ${part.faces.length} faces${holes ? `, ${holes} hole${holes > 1 ? "s" : ""}` : ""}.`;
+  const words = `${part.name}: ${size}, ${part.faces.length} face${part.faces.length === 1 ? "" : "s"}${holes ? `, ${holes} hole${holes > 1 ? "s" : ""}` : ""}.`;
   say([words, ...(part.remarks ?? [])].join(" "));
 }

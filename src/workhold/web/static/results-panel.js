@@ -44,7 +44,7 @@ export function resultsPanel(figures) {
   choice("sort").append(
     make("option", { value: "rank" }, "rank"), ...known.map((figure) => make("option", { value: figure.key }, figure.words)),
   );
-  byId("search").addEventListener("click", start);
+  for (const id of ["search", "search-here"]) byId(id).addEventListener("click", start);
   byId("cancel").addEventListener("click", cancel);
   choice("sort").addEventListener("change", () => {
     const figure = known.find((each) => each.key === choice("sort").value);
@@ -73,6 +73,7 @@ export function resultsPanel(figures) {
   });
   on(["part", "job"], () => {
     byId("search").toggleAttribute("disabled", state.part === null);
+    show(byId("search-there"), state.part !== null && state.job === null);
     byId("search").textContent = state.job ? "Search again" : "Find every fixture";
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -1,0 +1,150 @@
+"""What a file holds and what it leaves open, for someone who is asked on the spot instead of refused.
+
+Glossary
+--------
+question : what a refusal leaves to the user, see ``files.questions``.
+gap : the distance from a loose end of a drawing to the nearest other loose end, in mm.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from math import hypot
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Chain, Drawing, cleaned
+from workhold.files.outline.joining import join
+from workhold.files.outline.nesting import Part, nest
+from workhold.files.part.load import Loaded, kind_of, read_bytes, read_workpiece
+from workhold.files.questions import MARK, UNIT, worded
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.segment import segment_from_bulge
+
+__all__ = ["Survey", "survey"]
+
+# A gap wider than this share of the drawing is none: the end was not meant to meet another.
+WIDEST_GAP = 0.1
+# The unit in which a drawing is looked at while it is not known.
+ANY_UNIT = "mm"
+
+
+@frozen
+class Survey:
+    """What a file holds and what it leaves open.
+
+    Parameters
+    ----------
+    loaded : the part, or None where it is refused.
+    refusal : why it is, in a sentence; empty where it is not.
+    asked : names of the questions that must be answered first, such as "unit".
+    size : width and height in mm of all that is drawn; None for files that hold no drawing, and while it cannot be read.
+        Where the unit is asked, one unit of the drawing stands for a millimetre in it and in all that follows.
+    chains : all that is drawn.
+    parts : the parts that the closed outlines make, by decreasing area.
+    gaps : between loose ends, each once, in increasing order.
+    """
+
+    loaded: Loaded | None
+    refusal: str
+    asked: tuple[str, ...]
+    size: tuple[float, float] | None
+    chains: tuple[Chain, ...]
+    parts: tuple[Part, ...]
+    gaps: tuple[float, ...]
+
+
+def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
+    """Read a part as far as it goes.
+
+    Parameters
+    ----------
+    path : of the file.
+    called : as in :func:`workhold.files.part.load.read_workpiece`.
+    options : the other arguments of that function.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be opened at all.
+    """
+    content = read_bytes(path)
+    loaded, sentence = None, ""
+    try:
+        # Questions keep their marks, so that they can be told from the sentence.
+        loaded = read_workpiece(path, **options, called=MARKS)
+    except InputError as error:
+        sentence = str(error)
+    asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
+    if loaded is not None:
+        loaded = Loaded(loaded.workpiece, tuple(worded(remark, called) for remark in loaded.remarks), loaded.parts)
+    unit = ANY_UNIT if UNIT in sentence else None
+    drawing = drawing_of(path, content, options if unit is None else {**options, "unit": unit})
+    chains = cleaned(drawing.chains).chains
+    size = size_of(chains)
+    gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
+    return Survey(loaded, worded(sentence, called), asked, size, chains, loaded.parts if loaded else parts, gaps)
+
+
+MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
+
+
+def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
+    """All that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
+    taken = {name: options[name] for name in ("unit", "layers", "fit") if options.get(name) is not None}
+    try:
+        kind = kind_of(path, content)
+        if kind == "dxf":
+            from workhold.files.dxf.reader import read_dxf
+
+            return read_dxf(path, content, **{"unit": None, "layers": None, **taken})
+        if kind == "svg":
+            from workhold.files.svg.reader import read_svg
+
+            return read_svg(content, **{"unit": None, **taken})
+    except InputError:
+        pass
+    return Drawing(())
+
+
+def size_of(chains: tuple[Chain, ...]) -> tuple[float, float] | None:
+    """Width and height in mm of the smallest upright rectangle around chains; None without any."""
+    boxes = [
+        bounding_box(segment_from_bulge(start, end, bulge))
+        for chain in chains
+        for start, end, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
+        if start != end
+    ]
+    if not boxes:
+        return None
+    all_boxes = np.array(boxes)
+    low, high = all_boxes[:, :2].min(axis=0), all_boxes[:, 2:].max(axis=0)
+    return float(high[0] - low[0]), float(high[1] - low[1])
+
+
+def gaps_and_parts(
+    chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
+) -> tuple[tuple[float, ...], tuple[Part, ...]]:
+    """The gaps between loose ends, and the parts that there are with those up to a tolerance (mm) closed."""
+    if size is None:
+        return (), ()
+    try:
+        strays = join(chains, 0.0).strays
+        joined = join(chains, tolerance)
+    except InputError:
+        # Ends that could go on in more than one way; the refusal tells where.
+        return (), ()
+    ends = np.array([end for stray in strays for end in (stray.chain.points[0], stray.chain.points[-1])]).reshape(-1, 2)
+    found = set()
+    # A file with more loose ends than this is no outline at all.
+    for k, (x, y) in enumerate(ends[:2000].tolist()):
+        away = np.hypot(ends[:, 0] - x, ends[:, 1] - y)
+        away[k] = np.inf
+        found.add(float(f"{away.min():.6g}"))
+    widest = WIDEST_GAP * hypot(*size)
+    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest(joined.loops)

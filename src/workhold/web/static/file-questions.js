@@ -1,0 +1,105 @@
+/**
+ * What a file leaves open, asked beside its drawing: the unit, which of its parts, which gaps are to be joined.
+ */
+import { byId, make, show } from "./dom.js";
+import { bareLength, countText, length, number, unitWord } from "./units.js";
+
+/** @typedef {{unit?: string, part?: number, join?: number, axis?: string}} How what has been answered so far */
+
+/** Gaps up to this many mm are joined without asking. */
+const JOINED = 0.001;
+const MM_PER_INCH = 25.4;
+/** A gap below this share of the drawing may be meant to be closed. */
+const SLIP = 0.01;
+/** Parts that are listed; all of them can be clicked. */
+const LISTED = 24;
+
+/** The size in its own unit of a drawing whose unit was asked. @type {number[]|null} */
+let bare = null;
+
+/** Nothing is asked. */
+export function noQuestions() {
+  bare = null;
+  show(byId("file-asks"), false);
+}
+
+/**
+ * Ask what a file leaves open.
+ * @param {any} survey as the server tells it
+ * @param {How} how
+ * @param {(more: How) => void} answer called with a further answer
+ * @returns {boolean} whether there is anything to ask
+ */
+export function askQuestions(survey, how, answer) {
+  if (survey.asked.includes("unit")) bare = survey.size;
+  if (!how.unit && !survey.asked.includes("unit")) bare = null;
+  const unit = unitQuestion(how, answer);
+  // Sizes of parts and gaps mean nothing before there is a unit.
+  const rest = unit && !how.unit ? [] : [partQuestion, gapQuestion, axisQuestion].map((each) => each(survey, how, answer));
+  const asked = [unit, ...rest].filter((question) => question !== null);
+  byId("file-asks").replaceChildren(...asked);
+  show(byId("file-asks"), asked.length > 0);
+  return asked.length > 0;
+}
+
+/** A question with its answers. */
+function question(words, ...children) {
+  return make("fieldset.plain.ask", {}, make("legend", {}, words), ...children);
+}
+
+/** The unit, with the size that the drawing has in each. */
+function unitQuestion(how, answer) {
+  if (!bare) return null;
+  const [wide, high] = bare;
+  const size = (factor, decimals) => `${number(wide * factor, decimals)} × ${number(high * factor, decimals)}`;
+  const choice = (unit, words) => make("button", {
+    type: "button", "data-unit": unit, "aria-pressed": String(how.unit === unit), click: () => answer({ unit }),
+  }, words);
+  return question("The drawing does not say its unit. Which size is right?", make("div.row-of-buttons", {},
+    choice("mm", `Drawn in mm: ${size(1, 2)} mm`),
+    choice("inch", `Drawn in inches: ${size(1, 3)} in = ${size(MM_PER_INCH, 0)} mm`),
+    choice("cm", `cm: ${size(10, 0)} mm`)));
+}
+
+/** Which of several parts. */
+function partQuestion({ parts, part }, how, answer) {
+  if (parts.length < 2) return null;
+  const used = how.part ?? 1;
+  const buttons = parts.slice(0, LISTED).map((each) => {
+    const [x0, y0, x1, y1] = each.bounds;
+    return make("button", {
+      type: "button", "data-part": each.number, "aria-pressed": String(part !== null && each.number === used), click: () => answer({ part: each.number }),
+    }, `${each.number}: ${bareLength(x1 - x0, 1)} × ${bareLength(y1 - y0, 1)} ${unitWord()}`);
+  });
+  const more = parts.length > LISTED ? [make("span.faint", {}, `and ${countText(parts.length - LISTED)} smaller ones`)] : [];
+  return question(`The file holds ${countText(parts.length)} parts. Which one? They can be clicked.`, make("div.row-of-buttons", {}, ...buttons, ...more));
+}
+
+/** Which gaps are to be joined, up to the largest; asked where one may be a slip of the drawing. */
+function gapQuestion({ asked, gaps, size }, how, answer) {
+  const open = gaps.filter((gap) => gap > JOINED);
+  const slip = open.length && open[0] < SLIP * Math.hypot(...size);
+  if (!slip && !(open.length && (asked.includes("join_tolerance") || how.join !== undefined))) return null;
+  const words = make("output", { for: "join" });
+  const at = open.filter((gap) => gap <= (how.join ?? JOINED)).length;
+  const slider = /** @type {HTMLInputElement} */ (make("input", { type: "range", id: "join", min: 0, max: open.length, step: 1, value: at, "aria-label": "Join gaps up to" }));
+  const tell = () => {
+    const count = Number(slider.value);
+    words.textContent = count ? `${length(open[count - 1], 3)} (${count} of ${open.length} widths)` : "none";
+    slider.setAttribute("aria-valuetext", words.textContent);
+  };
+  slider.addEventListener("input", tell);
+  // A little more than the gap, so that rounding leaves none open.
+  slider.addEventListener("change", () => answer({ join: Number(slider.value) ? open[Number(slider.value) - 1] * (1 + 1e-5) : JOINED }));
+  tell();
+  return question(`There are loose ends, with gaps from ${length(open[0], 3)} to ${length(open[open.length - 1], 3)}. Join gaps up to`, make("div.join", {}, slider, words));
+}
+
+/** Along which axis a solid is held. */
+function axisQuestion({ solid }, how, answer) {
+  if (!solid) return null;
+  const buttons = ["x", "y", "z"].map((axis) => make("button", {
+    type: "button", "aria-pressed": String((how.axis ?? "z") === axis), click: () => answer({ axis }),
+  }, axis));
+  return question("The pegs stand along", make("div.segmented", {}, ...buttons));
+}

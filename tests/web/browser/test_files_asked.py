@@ -1,0 +1,187 @@
+"""A file that leaves something open is asked about beside its drawing, not refused; and the example needs no file at all."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from math import dist
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import pytest
+from running_server import RunningServer
+from walking import EXAMPLES, Walk
+
+from workhold.files.part.load import load
+
+PHONE, DESK = {"width": 390, "height": 800}, {"width": 1280, "height": 800}
+OVERLAPS = """(svg) => {
+  const kinds = ["hole-label", "face-label", "load-text"].map((kind) => `${svg} .${kind}`).join();
+  const labels = [...document.querySelectorAll(kinds)].map((each) => each.getBoundingClientRect());
+  const over = (a, b) => Math.min(
+    Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
+  return labels.flatMap((a, k) => labels.slice(k + 1).filter((b) => over(a, b) > 1)).length;
+}"""
+
+
+def loops(walk: Walk) -> list[Any]:
+    """The outlines of the part that the page has."""
+    part = walk.page.evaluate("async () => (await import('/static/state.js')).state.part")
+    return [] if part is None else list(part["loops"])
+
+
+def sheet_of_parts(path: Path, units: int) -> Path:
+    """A plate with a hole, and two smaller ones beside it."""
+    document = ezdxf.new(units=units)
+    document.header["$INSUNITS"] = units
+    space = document.modelspace()
+    for x, y, wide, high in ((0, 0, 120.65, 80), (150, 0, 60, 40), (150, 60, 30, 20)):
+        space.add_lwpolyline([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)], close=True)
+    space.add_circle((20, 20), 5)
+    document.saveas(path)
+    return path
+
+
+def with_gaps(path: Path, gaps: tuple[float, ...]) -> Path:
+    """A plate of four lines, each as much too short as a gap says, around a hole."""
+    corners = [(0.0, 0.0), (100.0, 0.0), (100.0, 60.0), (0.0, 60.0)]
+    document = ezdxf.new(units=4)
+    for start, end, gap in zip(corners, corners[1:] + corners[:1], gaps, strict=True):
+        share = 1 - gap / dist(start, end)
+        document.modelspace().add_line(start, [a + share * (b - a) for a, b in zip(start, end, strict=True)])
+    document.modelspace().add_circle((30, 30), 8)
+    document.saveas(path)
+    return path
+
+
+@pytest.mark.parametrize(("unit", "wide"), [("mm", 120.65), ("inch", 120.65 * 25.4)])
+def test_the_unit_is_asked_with_both_sizes(walk: Walk, tmp_path: Path, unit: str, wide: float) -> None:
+    """The drawing is seen meanwhile; nothing is called an error; a click on a size leads to the part in that size."""
+    page = walk.page
+    page.set_input_files("#file", sheet_of_parts(tmp_path / "parts.dxf", 0))
+    words = walk.seen("#file-asks").inner_text()
+    assert "180.00 × 80.00" not in words and "210.00 × 80.00 mm" in words and "5334 × 2032 mm" in words
+    assert page.locator("#part-trouble").is_hidden() and page.is_disabled("#search")
+    assert page.locator("#drawing-part .stray").count() == 1
+    page.click(f"#file-asks [data-unit={unit}]")
+    walk.seen("#faces button")
+    assert loops(walk)[0][1][0] == pytest.approx(wide)
+    assert page.get_attribute(f"#file-asks [data-unit={unit}]", "aria-pressed") == "true"
+    # The answer can be changed, and the list of units is the same question.
+    page.select_option("#file-unit", "mm")
+    page.wait_for_selector("#file-asks [data-unit=mm][aria-pressed=true]")
+    assert loops(walk)[0][1][0] == pytest.approx(120.65)
+
+
+def test_another_part_of_the_file_is_taken_by_a_click(walk: Walk, tmp_path: Path) -> None:
+    """In the drawing or in the list; what was asked about a file is gone with the next."""
+    page = walk.page
+    page.set_input_files("#file", sheet_of_parts(tmp_path / "parts.dxf", 4))
+    walk.seen("#file-asks [data-part]")
+    assert page.locator("#drawing-part .other-part").count() == 2 and len(loops(walk)) == 2
+    page.click('#drawing-part .other-part[data-part="2"]')
+    page.wait_for_selector('#file-asks [data-part="2"][aria-pressed=true]')
+    assert loops(walk)[0][1][0] - loops(walk)[0][0][0] == 60
+    page.click('#file-asks [data-part="3"]')
+    page.wait_for_selector('#file-asks [data-part="3"][aria-pressed=true]')
+    assert loops(walk)[0][1][0] - loops(walk)[0][0][0] == 30
+    page.set_input_files("#file", EXAMPLES / "bracket.dxf")
+    page.wait_for_selector("#drawing-part .other-part", state="detached")
+    assert page.locator("#file-asks").is_hidden()
+
+
+def test_gaps_are_joined_up_to_the_largest(walk: Walk, tmp_path: Path) -> None:
+    """All that is drawn is seen, and the slider ends where the whole outline is closed."""
+    page = walk.page
+    page.set_input_files("#file", with_gaps(tmp_path / "gaps.dxf", (0.02, 0.3, 0.0, 1.1)))
+    slider = walk.seen("#join")
+    assert (slider.get_attribute("max"), slider.input_value()) == ("3", "0")
+    assert len(loops(walk)) == 1 and page.locator("#drawing-part .stray").count() == 1
+    page.focus("#join")
+    page.keyboard.press("End")
+    page.wait_for_function("async () => (await import('/static/state.js')).state.part.loops.length === 2")
+    assert "1.100 mm" in walk.seen("#file-asks output").inner_text() and page.input_value("#join") == "3"
+    page.focus("#join")
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_function("async () => (await import('/static/state.js')).state.part.loops.length === 1")
+    assert "0.300 mm" in page.inner_text("#file-asks output")
+
+
+def test_an_outline_that_is_open_says_so_beside_the_slider(walk: Walk, tmp_path: Path) -> None:
+    """The reader's sentence without a word of a command line, and the answer that it wants."""
+    page = walk.page
+    path = with_gaps(tmp_path / "open.dxf", (0.0, 0.5, 0.0, 0.0))
+    document = ezdxf.readfile(path)
+    for circle in document.modelspace().query("CIRCLE"):
+        document.modelspace().delete_entity(circle)
+    document.saveas(path)
+    page.set_input_files("#file", path)
+    words = walk.seen("#part-trouble").inner_text()
+    assert "Join gaps up to" in words and "--" not in words
+    page.focus("#join")
+    page.keyboard.press("End")
+    walk.seen("#faces button")
+    assert page.locator("#part-trouble").is_hidden()
+
+
+def test_the_example_is_one_click(walk: Walk) -> None:
+    """It is the drawing of the examples, on what people have, and its fixtures are shown."""
+    page = walk.page
+    page.click("#example")
+    walk.searched()
+    assert walk.count() > 1000
+    assert page.input_value("#preset") == "clamp-plate-20mm"
+    kept = json.loads((files("workhold.web") / "static" / "example.json").read_text(encoding="utf-8"))
+    assert kept["loops"] == [loop.tolist() for loop in load(EXAMPLES / "bracket.dxf").loops]
+
+
+def test_the_drawing_is_first_on_a_phone(browser: Any, server: RunningServer, tmp_path: Path) -> None:
+    """From an empty page to fixtures without a look at the settings; a question is asked where the drawing is."""
+    context = browser.new_context(viewport=PHONE, reduced_motion="reduce")
+    walk = Walk(context.new_page(), server)
+    walk.open()
+    page = walk.page
+    walk.seen("#example")
+    assert page.locator(".toolbar").first.is_hidden()
+    walk.go("settings")
+    page.set_input_files("#file", sheet_of_parts(tmp_path / "parts.dxf", 0))
+    walk.seen("#file-asks [data-unit=mm]").click()
+    walk.seen("#search-here").click()
+    walk.searched(shown=False)
+    page.click("#list .row >> nth=0")
+    walk.seen("#drawing-fixture .peg")
+    assert page.locator("#search-here").is_hidden()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.click("#push")
+    walk.seen("#bars .bar")
+    # Nothing scrolls the drawing away.
+    stage, tool = (page.locator(name).bounding_box() for name in ("#stage", "#view-fixture"))
+    assert tool["y"] >= stage["y"]
+    context.close()
+    assert walk.troubles == []
+
+
+@pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
+@pytest.mark.parametrize("preset", ["clamp-plate-20mm", "plate-20mm"])
+def test_no_label_lies_on_another(browser: Any, server: RunningServer, size: dict[str, int], preset: str) -> None:
+    """Holes, faces and the load, in the first fixtures, with and without a force."""
+    context = browser.new_context(viewport=size, reduced_motion="reduce")
+    walk = Walk(context.new_page(), server)
+    walk.open()
+    page = walk.page
+    page.click("#example")
+    walk.searched()
+    walk.go("settings")
+    page.select_option("#preset", preset)
+    walk.searched(shown=False)
+    walk.go("stage")
+    walk.seen("#drawing-fixture .hole-label")
+    for place in range(2, 14):
+        if place == 8:
+            page.click("#push")
+            walk.seen("#drawing-fixture .load-text")
+        page.click("#next")
+        walk.seen(f"#place:has-text('{place} of')")
+        assert page.evaluate(OVERLAPS, "#drawing-fixture") == 0, walk.holes()
+    context.close()
