@@ -45,7 +45,7 @@ CALLED = {
     "unit": '"File drawn in"',
     "drawing_unit": '"File drawn in"',
     "layers": '"Layers"',
-    "part_number": '"Part"',
+    "part_number": "the part number",
     "join_tolerance": '"Join gaps up to"',
     "axis": "axis",
     "section": "the height of a section",

@@ -151,7 +151,10 @@ def test_the_drawing_is_first_on_a_phone(browser: Any, server: RunningServer, tm
     walk.searched(shown=False)
     page.click("#list .row >> nth=0")
     walk.seen("#drawing-fixture .peg")
-    assert page.locator("#search-here").is_hidden()
+    assert page.locator("#search-here").is_hidden() and page.locator("#file-asks").is_hidden()
+    page.click("#view-part")
+    walk.seen("#file-asks")
+    page.click("#view-fixture")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.click("#push")
     walk.seen("#bars .bar")

@@ -2,6 +2,7 @@
  * What a file leaves open, asked beside its drawing: the unit, which of its parts, which gaps are to be joined.
  */
 import { byId, make, show } from "./dom.js";
+import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
 /** @typedef {{unit?: string, part?: number, join?: number, axis?: string}} How what has been answered so far */
@@ -17,10 +18,19 @@ const LISTED = 24;
 /** The size in its own unit of a drawing whose unit was asked. @type {number[]|null} */
 let bare = null;
 
+/** Whether anything is asked. */
+let any = false;
+
+/** Questions stand beside the part, not beside a fixture. */
+export function showQuestions() {
+  show(byId("file-asks"), any && state.view === "part");
+}
+
 /** Nothing is asked. */
 export function noQuestions() {
   bare = null;
-  show(byId("file-asks"), false);
+  any = false;
+  showQuestions();
 }
 
 /**
@@ -38,8 +48,9 @@ export function askQuestions(survey, how, answer) {
   const rest = unit && !how.unit ? [] : [partQuestion, gapQuestion, axisQuestion].map((each) => each(survey, how, answer));
   const asked = [unit, ...rest].filter((question) => question !== null);
   byId("file-asks").replaceChildren(...asked);
-  show(byId("file-asks"), asked.length > 0);
-  return asked.length > 0;
+  any = asked.length > 0;
+  showQuestions();
+  return any;
 }
 
 /** A question with its answers. */

@@ -4,13 +4,15 @@
 import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { previewOf } from "./file-preview.js";
-import { askQuestions, noQuestions } from "./file-questions.js";
+import { askQuestions, noQuestions, showQuestions } from "./file-questions.js";
 import { start } from "./search.js";
 import { showSection } from "./sections.js";
 import { change, on, state } from "./state.js";
 import { usePreset } from "./toolkit-panel.js";
 import { length } from "./units.js";
 
+/** Remarks of more letters than this are told when asked for. */
+const LONG = 160;
 /** What holds the example. */
 const EXAMPLE_IN = "clamp-plate-20mm";
 
@@ -42,6 +44,7 @@ export function partPanel({ drawing: board, onDraw }) {
   byId("example").addEventListener("click", takeExample);
   listenToDrops(openFile);
   on(["part", "unit"], tell);
+  on(["view"], showQuestions);
 }
 
 /** Read a file that was just chosen; what was answered about the one before is forgotten. */
@@ -166,8 +169,10 @@ export async function offerParts() {
 }
 
 /** Say something about the part. */
-function say(words) {
-  byId("part-words").textContent = words;
+function say(words, remarks = []) {
+  const more = remarks.join(" ");
+  const notes = make("details", { open: more.length < LONG }, make("summary", {}, "How it was read"), more);
+  byId("part-words").replaceChildren(words, ...(more ? [notes] : []));
 }
 
 /** Name, size and remarks of the part. */
@@ -178,5 +183,5 @@ function tell() {
   const holes = part.loops.length - 1;
   const size = `${length(x1 - x0, 2)} × ${length(y1 - y0, 2)}`;
   const words = `${part.name}: ${size}, ${part.faces.length} face${part.faces.length === 1 ? "" : "s"}${holes ? `, ${holes} hole${holes > 1 ? "s" : ""}` : ""}.`;
-  say([words, ...(part.remarks ?? [])].join(" "));
+  say(words, part.remarks ?? []);
 }

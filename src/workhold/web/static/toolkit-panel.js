@@ -65,6 +65,11 @@ export function usePreset(name) {
   change({ viseName: name, vise: { ...vise, ...given }, tolerance, types: typesOf({ kind }), unit: preset.unit ?? state.unit });
 }
 
+/** What a preset is, in words. @param {string} name */
+export function titleOf(name) {
+  return presets.find((each) => each.name === name)?.title ?? null;
+}
+
 /** Take a kind in own values, with what it has in common with the toolkit there was. */
 function useKind(name) {
   const kind = kinds.find((each) => each.name === name);

@@ -5,7 +5,7 @@ import { ApiError, ask, send } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { request, state } from "./state.js";
 import { countText, figureText } from "./units.js";
-import { usePreset } from "./toolkit-panel.js";
+import { titleOf, usePreset } from "./toolkit-panel.js";
 
 const POLL = 250;
 let latest = 0;
@@ -67,7 +67,7 @@ function write(table) {
       usePreset(name);
     };
     return make(total && !line.fit ? "tr.unfit" : "tr", {},
-      make("th", { scope: "row" }, name), make("td.number", {}, line.error ? "–" : countText(total)),
+      make("th", { scope: "row", title: titleOf(name) }, name), make("td.number", {}, line.error ? "–" : countText(total)),
       ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, first[figure.key]) : "–")),
       make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
   });
