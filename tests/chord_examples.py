@@ -24,12 +24,12 @@ TURN = 2 * pi
 
 def arc_row(x: float, y: float, radius: float, middle: float = 0.0, half: float = pi, sign: float = 1.0) -> Array:
     """A feature row of an arc."""
-    return np.array([1.0, x, y, cos(middle), sin(middle), half, radius, sign])
+    return np.array([1.0, x, y, cos(middle), sin(middle), half, radius, sign, 0.0, 0.0])
 
 
 def line_row(x: float, y: float, angle: float, half: float) -> Array:
     """A feature row of a line."""
-    return np.array([0.0, x, y, cos(angle), sin(angle), half, 0.0, 1.0])
+    return np.array([0.0, x, y, cos(angle), sin(angle), half, 0.0, 1.0, 0.0, 0.0])
 
 
 def random_chord(random: Random, kinds: tuple[str, str]) -> tuple[Array, Array, float]:

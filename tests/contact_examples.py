@@ -104,11 +104,11 @@ def held(random: Random, lines: bool | None = None, spread: float = 20.0) -> Hel
         if random.random() < 0.5 if lines is None else lines:
             tangent = normal * 1j
             start = place + tangent * random.uniform(-5, 5)
-            rows.append([0.0, start.real, start.imag, tangent.real, tangent.imag, 1e3, 0.0, 1.0, 0.0, 0.0])
+            rows.append([0.0, start.real, start.imag, tangent.real, tangent.imag, 1e3, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
         else:
             radius, sign = 10 ** random.uniform(0, 1.8), random.choice([1.0, -1.0])
             center = place - sign * radius * normal
             way = sign * normal
-            rows.append([1.0, center.real, center.imag, way.real, way.imag, pi, radius, sign, 0.0, 0.0])
+            rows.append([1.0, center.real, center.imag, way.real, way.imag, pi, radius, sign, 0.0, 0.0, 0.0, 0.0])
     length = max(hypot((a - b).real, (a - b).imag) for a in steps for b in steps) / 2
     return Held(np.array(rows), offsets, slides, [psi, x, y, separation], length)

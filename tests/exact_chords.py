@@ -50,7 +50,7 @@ def tangent(row: Row) -> Point:
 
 def middle(row: Row) -> Point:
     """Middle of a line or centre of an arc."""
-    return arb(float(row[1])), arb(float(row[2]))
+    return arb(float(row[1])) + float(row[8]), arb(float(row[2])) + float(row[9])
 
 
 def minus(a: Point, b: Point) -> Point:

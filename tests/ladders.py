@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Ten numbers of a feature: kind, middle, tangent, half length, radius, sign, and the slack of both ends. The outward normal
-# is the tangent turned right. Left pegs push towards (1, -1), right ones towards (-1, 1).
-LEFT_WALL = [0.0, 0.0, 0.0, 0.0, -1.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
-LEFT_FLOOR = [0.0, 0.0, 0.0, -1.0, 0.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
-RIGHT_WALL = [0.0, 0.0, 0.0, 0.0, 1.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
-RIGHT_FLOOR = [0.0, 0.0, 0.0, 1.0, 0.0, 40.0, 0.0, 1.0, -1e-9, -1e-9]
+# Twelve numbers of a feature: kind, middle, tangent, half length, radius, sign, rest, and the slack of both ends. The
+# outward normal is the tangent turned right. Left pegs push towards (1, -1), right ones towards (-1, 1).
+LEFT_WALL = [0.0, 0.0, 0.0, 0.0, -1.0, 40.0, 0.0, 1.0, 0.0, 0.0, -1e-9, -1e-9]
+LEFT_FLOOR = [0.0, 0.0, 0.0, -1.0, 0.0, 40.0, 0.0, 1.0, 0.0, 0.0, -1e-9, -1e-9]
+RIGHT_WALL = [0.0, 0.0, 0.0, 0.0, 1.0, 40.0, 0.0, 1.0, 0.0, 0.0, -1e-9, -1e-9]
+RIGHT_FLOOR = [0.0, 0.0, 0.0, 1.0, 0.0, 40.0, 0.0, 1.0, 0.0, 0.0, -1e-9, -1e-9]
 FEATURES = [LEFT_WALL, LEFT_FLOOR, RIGHT_WALL, RIGHT_FLOOR]
 SLIDING_PAIRS = [0.0, 0.0, 1.0, 1.0]
 

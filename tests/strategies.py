@@ -120,6 +120,7 @@ def random_row(random: Random, kind: str) -> tuple[float, ...]:
     """A random feature row (see ``segment_rows``) within some 20 mm of (0, 0); ``kind`` is line, arc or circle."""
     x, y, angle = random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-pi, pi)
     if kind == "line":
-        return (0.0, x, y, cos(angle), sin(angle), random.uniform(2.0, 25.0), 0.0, 1.0)
+        return (0.0, x, y, cos(angle), sin(angle), random.uniform(2.0, 25.0), 0.0, 1.0, 0.0, 0.0)
     half = pi if kind == "circle" else random.uniform(0.3, 3.1)
-    return (1.0, x, y, cos(angle), sin(angle), half, random.uniform(1.0, 20.0), random.choice([1.0, -1.0]))
+    radius, sign = random.uniform(1.0, 20.0), random.choice([1.0, -1.0])
+    return (1.0, x, y, cos(angle), sin(angle), half, radius, sign, 0.0, 0.0)

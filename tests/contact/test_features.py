@@ -6,15 +6,20 @@ from math import hypot, pi, tan
 
 import numpy as np
 import pytest
+from flint import arb
 from hypothesis import given, settings
 
 from exact_chords import exactly
 from strategies import outlines, vises
 from workhold.contact.features import contact_features, end_slacks, feature_rows
+from workhold.contact.problem import Problem
 from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.base.distance import outline_distance, segment_distance
+from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
 from workhold.model.diameter import outline_diameter, segments_diameter
+from workhold.model.query import Query
+from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
+from workhold.proof.interval_newton import contact_value
 from workhold.statics.wrenches import outward_normals
 from workhold.verification.outline import Outline
 
@@ -122,3 +127,24 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
     with exactly():
         smooth = Outline.of(half).smooth
     assert smooth[2] == (tangent, tangent)
+
+
+@pytest.mark.parametrize("bulge", [2e-6, -2.1e-6, 1e-5, -3e-4, 4e-3])
+@pytest.mark.parametrize("aside", [(0.0, 0.0), (-30.3, 1234.7)])
+def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
+    bulge: float, aside: tuple[float, float]
+) -> None:
+    """The middle of each crowned edge, moved out by the peg radius, is on the feature in doubles and in balls: wherever the
+    part is drawn, to the rounding of its own coordinates and not of a centre kilometres away."""
+    corners = [(aside[0] + x, aside[1] + y) for x, y in ((0.0, 0.1), (61.3, 0.0), (58.9, 41.7), (-1.2, 39.3))]
+    part = Workpiece.from_loops("crowned", [[[x, y, bulge] for x, y in corners]])
+    problem = Problem.of(Query(part, Vise(pitch=10, columns=2, peg_radius=3)))
+    size = 3e-14 * (100 + max(map(abs, aside)))
+    for row, (x, y), (to_x, to_y) in zip(problem.rows, corners, corners[1:] + corners[:1], strict=True):
+        dx, dy = to_x - x, to_y - y
+        out = 3.0 / np.hypot(dx, dy)
+        middle = ((x + to_x) / 2 + bulge * dy / 2 + out * dy, (y + to_y) / 2 - bulge * dx / 2 - out * dx)
+        place = np.array(middle) - part.center
+        assert outline_distances(place[None], row[None])[0] < size
+        with exactly():
+            assert abs(contact_value(row.tolist(), (arb(place[0]), arb(place[1])))) < size

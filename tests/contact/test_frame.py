@@ -159,5 +159,5 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
             off = (place[k, peg] - rows[:, 1] - 1j * rows[:, 2]) * (rows[:, 3] - 1j * rows[:, 4])
             assert np.where(rows[:, 0] == 0.0, np.abs(off.imag), np.abs(np.abs(off) - rows[:, 6])).min() < 1e-6
             point = np.array([place[k, peg].real, place[k, peg].imag])
-            own.append(end_distances(rows[:, :8], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max())
+            own.append(end_distances(rows[:, :10], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max())
         assert ends[k] == pytest.approx(min(own), abs=1e-9)

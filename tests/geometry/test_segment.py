@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import atan, cos, hypot, pi, sin, tan
 
 import pytest
@@ -99,10 +100,44 @@ def test_known_arcs():
 
 
 def test_rows_hold_the_segments():
-    """A row is kind, middle or centre, direction, largest parameter, radius, sign; rows cannot be written to."""
+    """A row is kind, middle or centre, direction, largest parameter, radius, sign, rest; rows cannot be written to."""
     rows = segment_rows([Line((0, 0), (6, 8)), Arc((1, 2), 5.0, pi / 2, 0.7, -1.0)])
-    assert rows[0] == pytest.approx([0, 3, 4, 0.6, 0.8, 5, 0, 1])
-    assert rows[1] == pytest.approx([1, 1, 2, 0, 1, 0.7, 5, -1])
+    assert rows[0] == pytest.approx([0, 3, 4, 0.6, 0.8, 5, 0, 1, 0, 0])
+    assert rows[1] == pytest.approx([1, 1, 2, 0, 1, 0.7, 5, -1, 0, 0])
     with pytest.raises(ValueError, match="read-only"):
         rows[0, 0] = 1.0
-    assert segment_rows([]).shape == (0, 8)
+    assert segment_rows([]).shape == (0, 10)
+
+
+def off_circle(arc: Arc, point: tuple[float, float]) -> float:
+    """How far in mm a point is from an arc's circle, from its very numbers: (d^2 - R^2) / 2R."""
+    x, y = (Fraction(p) - Fraction(c) - Fraction(rest) for p, c, rest in zip(point, arc.center, arc.rest, strict=True))
+    radius = Fraction(arc.radius)
+    return float((x * x + y * y - radius * radius) / (2 * radius))
+
+
+@given(
+    st.tuples(*[st.floats(-100, 100)] * 4).filter(lambda p: hypot(p[2] - p[0], p[3] - p[1]) > 1),
+    st.floats(-5.6, -2.4),
+    st.sampled_from([1, -1]),
+    st.floats(-5, 5),
+)
+def test_a_shallow_arc_is_where_it_is_drawn(points, size, sign, by):
+    """Its circle, which may be centred kilometres away, goes through its ends and its middle to the last digit or so, and
+    so does that of the arc moved out, and of a part of it."""
+    start, end, bulge = points[:2], points[2:], sign * 10**size
+    arc = segment_from_bulge(start, end, bulge)
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    middle = ((start[0] + end[0]) / 2 + bulge * dy / 2, (start[1] + end[1]) / 2 - bulge * dx / 2)
+    assert arc.at(0.0) == pytest.approx(middle, abs=1e-13)
+    assert (*arc.start, *arc.end) == pytest.approx(points, abs=3e-13)
+    for point in (start, middle, end):
+        assert abs(off_circle(arc, point)) < 3e-13
+    grown = arc.grown(by).part(-0.3 * arc.half_sweep, 0.9 * arc.half_sweep)
+    assert abs(off_circle(grown, grown.at(0.1 * arc.half_sweep))) < 3e-13
+    assert grown.half_sweep == pytest.approx(0.6 * arc.half_sweep)
+    for s in (-0.9, 0.0, 0.5):
+        (x, y), (nx, ny) = arc.at(s * arc.half_sweep), arc.normal(s * arc.half_sweep)
+        assert arc.parameter((x, y)) * arc.radius == pytest.approx(s * arc.half_sweep * arc.radius, abs=1e-11)
+        outer = (x + arc.sign * by * nx, y + arc.sign * by * ny)
+        assert abs(off_circle(grown, outer)) < 3e-13

@@ -77,7 +77,7 @@ def test_an_exact_double_root_is_discarded(reach: float) -> None:
 def large(half: float) -> Box:
     """Ladders of 25 and 50 mm, 12 mm apart in height: sin psi = 3/5 or 4/5 exactly, and the first peg 15 or 20 mm down the
     wall, which reaches ``half`` mm down and asks for no hair."""
-    wall = [*ladders.LEFT_WALL[:5], half, 0.0, 1.0, 0.0, 0.0]
+    wall = [*ladders.LEFT_WALL[:5], half, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
     floors = [[*row[:5], 90.0, *row[6:]] for row in ladders.FEATURES[1:]]
     places = [(0.0, 0.0), (25.0, 0.0), (0.0, -12.0), (50.0, -12.0)]
     return Box([wall, *floors], places, 2, (np.pi / 4, 0.0, -17.5, -12.0), (0.2, 5.0, 5.0, 9.0))

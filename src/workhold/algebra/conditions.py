@@ -16,7 +16,18 @@ from numpy.typing import NDArray
 from workhold.algebra.constraints import Complex
 from workhold.contact.frame import Frame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, X, Y
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SEGMENT_LENGTH,
+    X,
+    Y,
+)
 from workhold.kernels.contact import closure, record
 from workhold.statics.wrenches import outward_normals
 
@@ -66,7 +77,7 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 
     Parameters
     ----------
-    rows : (..., 10) feature rows, the last two entries how far in mm a contact may lie past the low and the high end.
+    rows : (..., 12) feature rows, the last two entries how far in mm a contact may lie past the low and the high end.
     center, radius : (...) peg centres and how far they may be off in mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
@@ -83,7 +94,7 @@ def records_of(held: Held, rows: Array, frame: Frame, margin: float, length: flo
 
     Parameters
     ----------
-    rows : (F, 10) features about the centre of the part with the slack of their ends.
+    rows : (F, 12) features about the centre of the part with the slack of their ends.
     margin : smallest distance in mm from a contact to the end of its feature.
     length : L of the wrenches in mm, half the part's size.
     """
@@ -95,7 +106,7 @@ def records_of(held: Held, rows: Array, frame: Frame, margin: float, length: flo
     clear = np.asarray(gap >= frame.gap - GAP_SLACK - 8.0 * length * held.reach)
     held, along = held.take(clear), along[clear]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
-    held_rows = rows[held.feature][..., :8]
+    held_rows = rows[held.feature][..., :SEGMENT_LENGTH]
     good = may_close(held, held_rows, outward_normals(held_rows, points), points, length, frame.toolkit.clamping)
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
     out[:, record.STANDING] = held.standing

@@ -51,7 +51,7 @@ class Contacts:
 
     Parameters
     ----------
-    rows : (N, K, 8) feature rows.
+    rows : (N, K, 10) feature rows.
     point : (N, K) pegs as complex numbers from the first peg, right pegs with the separation left out, in mm.
     """
 

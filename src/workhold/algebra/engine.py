@@ -32,6 +32,7 @@ from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_CENTER
 from workhold.errors import InputError
+from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.listing.listed import Work, listed_result
 from workhold.listing.ways import joined_ways
 from workhold.model.query import Query
@@ -58,7 +59,7 @@ class Solver:
 
     Parameters
     ----------
-    rows : (F, 10) features about the centre of the part, with the slack of their ends.
+    rows : (F, 12) features about the centre of the part, with the slack of their ends.
     frame : the toolkit as the search sees it.
     margin : smallest distance in mm from a contact to the end of its feature.
     diameter : largest distance in mm between two peg centres: lengths are measured in it.
@@ -83,8 +84,8 @@ class Solver:
 
     @property
     def scaled(self) -> Array:
-        """The features (F, 8) with lengths in parts of the diameter."""
-        scaled = np.array(self.rows[:, :8])
+        """The features (F, 10) with lengths in parts of the diameter."""
+        scaled = np.array(self.rows[:, :SEGMENT_LENGTH])
         scaled[:, 1:3] /= self.diameter
         scaled[:, 6] /= self.diameter
         scaled[scaled[:, 0] == 0.0, 5] /= self.diameter
@@ -189,14 +190,14 @@ def refuse_unlike(frame: Frame) -> None:
 def stages(solver: Solver, arrangements: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
     rows, frame = solver.rows, solver.frame
-    pairs = peg_pairs(rows[:, :8], frame, solver.diameter)
+    pairs = peg_pairs(rows[:, :SEGMENT_LENGTH], frame, solver.diameter)
     sliding_pairs = sliding_pairs_of(pairs, solver.scaled, frame, solver.diameter)
     for name in arrangements:
         systems, sliding = GENERATORS[frame.toolkit.arrangement(name).pegs]
         held = sliding(pairs, sliding_pairs, rows, frame)
         if held:
             yield solver.fixtures(together(held))
-        for batch, case in by_case(systems(pairs, rows[:, :8], frame), rows):
+        for batch, case in by_case(systems(pairs, rows[:, :SEGMENT_LENGTH], frame), rows):
             yield solver.fixtures(solver.solve(batch, case))
 
 

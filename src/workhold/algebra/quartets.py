@@ -66,7 +66,7 @@ class Facings:
 
     @classmethod
     def of(cls, rows: Array, clamping: int) -> Facings:
-        """The facings of feature rows (F, 8) for right pegs that clamp by pushing left (1) or right (-1)."""
+        """The facings of feature rows (F, 10) for right pegs that clamp by pushing left (1) or right (-1)."""
         right = facing(rows, pi / 2 + HALF_SECTOR)
         left, right = (np.roll(right, -SECTORS // 2, axis=1), right)[::clamping]
         return cls(left, right, facing(rows, pi / 2))

@@ -81,7 +81,7 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: flo
 
     Parameters
     ----------
-    scaled : (F, 8) feature rows with lengths in parts of the part's size.
+    scaled : (F, 10) feature rows with lengths in parts of the part's size.
     diameter : that size in mm.
     """
     step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter

@@ -17,7 +17,7 @@ from workhold.algebra.constraints import Contacts
 from workhold.algebra.poses import Poses, poses_at
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
 from workhold.algebra.roots import hard_roots
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
 
 __all__ = ["Row", "random_contacts", "table_two"]
 
@@ -67,7 +67,7 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
     arcs = np.array([1.0] * left + [0.0] * ((3 if right < 0 else 2) - left) + [1.0] * right + [0.0] * (2 - right))[
         :pegs
     ]
-    rows = np.zeros((count, pegs, 8))
+    rows = np.zeros((count, pegs, SEGMENT_LENGTH))
     angle = random.uniform(0.0, tau, (count, pegs))
     rows[..., IS_ARC], rows[..., HALF_EXTENT], rows[..., SIGN] = arcs, 1.0, 1.0
     rows[..., AXIS_X], rows[..., AXIS_Y] = np.cos(angle), np.sin(angle)

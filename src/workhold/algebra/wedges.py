@@ -50,7 +50,7 @@ def facing(rows: Array, spread: float) -> BoolArray:
 
     Parameters
     ----------
-    rows : (F, 8) feature rows.
+    rows : (F, 10) feature rows.
     """
     straight = rows[:, IS_ARC] == 0.0
     x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
@@ -178,7 +178,7 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
 
     Parameters
     ----------
-    rows : (F, 8) contact features about the centre of the part.
+    rows : (F, 10) contact features about the centre of the part.
     diameter : largest distance in mm between two peg centres.
 
     Raises

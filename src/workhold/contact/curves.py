@@ -74,7 +74,7 @@ class CurveTable:
 
 
 def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Feature rows (F, 8) with their ends moved out by a hair; whole circles have none."""
+    """Feature rows (F, 10) with their ends moved out by a hair; whole circles have none."""
     out = np.array(rows)
     lines, arcs = rows[:, IS_ARC] == 0.0, (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] < pi)
     out[lines, HALF_EXTENT] += LOOSE
@@ -83,7 +83,7 @@ def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def center_numbers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
-    """For (F, 8) rows the index of the first feature with the same centre, -1 for lines."""
+    """For (F, 10) rows the index of the first feature with the same centre, -1 for lines."""
     numbers = np.full(len(rows), -1, dtype=np.int64)
     arcs = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     for position, k in enumerate(arcs):
@@ -98,7 +98,7 @@ def curve_table(
     threads: int = 1,
     cancel: Event | None = None,
 ) -> CurveTable:
-    """Chord curves between (F, 8) loosened feature rows, or those with their tails on some features.
+    """Chord curves between (F, 10) loosened feature rows, or those with their tails on some features.
 
     Parameters
     ----------

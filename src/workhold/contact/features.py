@@ -105,7 +105,7 @@ def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[Co
 
 
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
-    """Kernel rows (N, 8) of contact features."""
+    """Kernel rows (N, 10) of contact features."""
     return segment_rows([feature.segment for feature in features])
 
 
@@ -117,7 +117,7 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
 
     Parameters
     ----------
-    rows : (..., 8 or more) kernel rows of the features.
+    rows : (..., 10 or more) kernel rows of the features.
     points : (..., 2) in mm.
     """
     dx, dy = points[..., 0] - rows[..., X], points[..., 1] - rows[..., Y]

@@ -13,7 +13,7 @@ from workhold.contact.features import ContactFeature, allowed_features, contact_
 from workhold.contact.frame import Frame
 from workhold.errors import InputError
 from workhold.geometry.segment import segment_rows
-from workhold.kernels.base.feature import RADIUS, X, Y
+from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Limits, Setting
 from workhold.limits import refuse_many_steps
 from workhold.model.diameter import outline_diameter
@@ -37,11 +37,11 @@ class Problem:
     ----------
     query : what is asked.
     loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out, ordered by face.
-    rows : (F, 10) contact features, with the slack of their ends (``contact.features.end_slacks``).
+    rows : (F, 12) contact features, with the slack of their ends (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the same for both
         where their pegs are alike, else those of the standing carrier come first.
-    outline : (S, 8) the part's faces.
+    outline : (S, 10) the part's faces.
     diameter : largest distance between two peg centres that touch the part.
     """
 
@@ -172,8 +172,12 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
 
 
 def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
-    """Rows (N, 8) of segments moved so that a point becomes the origin; read-only."""
-    out = np.array(rows)
-    out[:, [X, Y]] -= center
+    """Rows (N, 10) of segments moved so that a point becomes the origin; read-only."""
+    out, is_arc = np.array(rows), rows[:, IS_ARC] != 0.0
+    for column, rest, coordinate in ((X, REST_X, center[0]), (Y, REST_Y, center[1])):
+        out[:, column] -= coordinate
+        # What rounding takes from the difference (D. E. Knuth, The Art of Computer Programming 2, 4.2.2).
+        moved = out[:, column] - rows[:, column]
+        out[:, rest] += is_arc * ((rows[:, column] - (out[:, column] - moved)) - (coordinate + moved))
     out.setflags(write=False)
     return out

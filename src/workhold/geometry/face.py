@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import atan2, pi
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.conventions import WHOLE
 from workhold.geometry.loop import same_carrier
@@ -44,7 +44,7 @@ def merged(run: Sequence[Segment]) -> Segment:
     if half_sweep > pi - WHOLE:
         return Arc(first.center, first.radius, SEAM_ANGLE - pi, pi, first.sign)
     start = atan2(first.start[1] - first.center[1], first.start[0] - first.center[0])
-    return Arc(first.center, first.radius, start + first.sign * half_sweep, half_sweep, first.sign)
+    return evolve(first, mid_angle=start + first.sign * half_sweep, half_sweep=half_sweep)
 
 
 def faces_of_loop(segments: Sequence[Segment], first_number: int) -> list[Face]:

@@ -60,7 +60,7 @@ class LoopShape:
 
     @cached_property
     def rows(self) -> NDArray[np.float64]:
-        """Kernel rows of the segments, shape (N, 8)."""
+        """Kernel rows of the segments, shape (N, 10)."""
         return segment_rows(self.segments)
 
     @cached_property

@@ -32,10 +32,9 @@ def raw_offset(segment: Segment, radius: float) -> Segment | None:
         nx, ny = segment.normal()
         (x0, y0), (x1, y1) = segment.start, segment.end
         return Line((x0 + radius * nx, y0 + radius * ny), (x1 + radius * nx, y1 + radius * ny))
-    grown = segment.radius + segment.sign * radius
-    if grown <= CLEARANCE:
+    if segment.radius + segment.sign * radius <= CLEARANCE:
         return None
-    return Arc(segment.center, grown, segment.mid_angle, segment.half_sweep, segment.sign)
+    return segment.grown(segment.sign * radius)
 
 
 def cut_points(piece: Segment, others: Sequence[Segment], joints: Sequence[Point], radius: float) -> list[Point]:

@@ -6,20 +6,22 @@ parameter : position along a segment measured from its middle; millimetres on a 
 normal : unit vector pointing away from the material (to the right of a line's direction, away from the centre of a
     convex arc, towards the centre of a concave one).
 convex arc : an arc run through counter-clockwise, so that the material is on the centre's side; its ``sign`` is +1.
-row : the eight numbers that describe a segment to the compiled kernels, see :func:`segment_rows`.
+row : the ten numbers that describe a segment to the compiled kernels, see :func:`segment_rows`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from math import atan, atan2, cos, hypot, pi, sin
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
 from workhold.kernels.base.feature import SEGMENT_LENGTH
+from workhold.kernels.base.shallow import SHALLOW
 
 __all__ = ["Arc", "Line", "Point", "Segment", "segment_from_bulge", "segment_rows"]
 
@@ -76,7 +78,7 @@ class Line:
 
     def row(self) -> tuple[float, ...]:
         """The segment as a kernel row."""
-        return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0)
+        return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0, 0.0, 0.0)
 
     def part(self, low: float, high: float) -> Line:
         """The piece between two parameters in mm."""
@@ -94,6 +96,8 @@ class Arc:
     mid_angle : direction from the centre to the arc's middle, in radians.
     half_sweep : half the angle covered, in radians, in (0, pi]; pi is a full circle.
     sign : +1 for a convex arc (run counter-clockwise), -1 for a concave one (run clockwise).
+    rest : what rounding has left of the centre, (x, y) in mm; it counts where the arc is shallow, see
+        ``kernels.base.shallow``: its centre is so far away that the arc itself would be rounded.
     """
 
     center: Point
@@ -101,6 +105,7 @@ class Arc:
     mid_angle: float
     half_sweep: float
     sign: float
+    rest: Point = (0.0, 0.0)
 
     @property
     def length(self) -> float:
@@ -111,6 +116,13 @@ class Arc:
     def half_extent(self) -> float:
         """Largest parameter: half the sweep, in radians."""
         return self.half_sweep
+
+    @property
+    def middle(self) -> Point:
+        """The point of parameter 0, rounded once."""
+        x, y = to_middle(self.radius, self.mid_angle)
+        (cx, cy), (rest_x, rest_y) = self.center, self.rest
+        return (float(Fraction(cx) + Fraction(rest_x) + x), float(Fraction(cy) + Fraction(rest_y) + y))
 
     @property
     def is_full(self) -> bool:
@@ -129,6 +141,10 @@ class Arc:
 
     def at(self, parameter: float) -> Point:
         """Point at a parameter: the counter-clockwise angle in radians from the arc's middle."""
+        if self.half_sweep < SHALLOW:
+            (x, y), (tx, ty) = self.middle, (cos(self.mid_angle), sin(self.mid_angle))
+            beside, back = self.radius * sin(parameter), 2 * self.radius * sin(parameter / 2) ** 2
+            return (x - beside * ty - back * tx, y + beside * tx - back * ty)
         angle = self.mid_angle + parameter
         return (self.center[0] + self.radius * cos(angle), self.center[1] + self.radius * sin(angle))
 
@@ -139,20 +155,39 @@ class Arc:
 
     def parameter(self, point: Point) -> float:
         """Parameter in radians, in (-pi, pi], of the point of the circle nearest to a point."""
-        dx, dy = point[0] - self.center[0], point[1] - self.center[1]
+        (x, y), radius = (self.middle, self.radius) if self.half_sweep < SHALLOW else (self.center, 0.0)
+        dx, dy = point[0] - x, point[1] - y
         mx, my = cos(self.mid_angle), sin(self.mid_angle)
-        return atan2(mx * dy - my * dx, mx * dx + my * dy)
+        return atan2(mx * dy - my * dx, radius + mx * dx + my * dy)
 
     def row(self) -> tuple[float, ...]:
         """The segment as a kernel row."""
-        return (1.0, *self.center, cos(self.mid_angle), sin(self.mid_angle), self.half_sweep, self.radius, self.sign)
+        direction = (cos(self.mid_angle), sin(self.mid_angle))
+        return (1.0, *self.center, *direction, self.half_sweep, self.radius, self.sign, *self.rest)
 
     def part(self, low: float, high: float) -> Arc:
         """The piece between two parameters in radians."""
-        return Arc(self.center, self.radius, self.mid_angle + (low + high) / 2, (high - low) / 2, self.sign)
+        return evolve(self, mid_angle=self.mid_angle + (low + high) / 2, half_sweep=(high - low) / 2)
+
+    def grown(self, by: float) -> Arc:
+        """The arc moved away from its centre by a length in mm, less than its radius towards it."""
+        radius = self.radius + by
+        if self.half_sweep >= SHALLOW:
+            return evolve(self, radius=radius)
+        lost = float(Fraction(self.radius) + Fraction(by) - Fraction(radius))
+        rest = (self.rest[0] + lost * cos(self.mid_angle), self.rest[1] + lost * sin(self.mid_angle))
+        return evolve(self, radius=radius, rest=rest)
 
 
 Segment = Line | Arc
+
+
+def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
+    """The way in mm from an arc's centre to its middle: the direction's double numbers, brought to length 1 but for what is
+    of the fourth order in their roundings."""
+    x, y = Fraction(cos(mid_angle)), Fraction(sin(mid_angle))
+    scale = Fraction(radius) * (3 - x * x - y * y) / 2
+    return scale * x, scale * y
 
 
 def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
@@ -173,7 +208,14 @@ def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
     to_center = sign * radius * cos(half_sweep)
     center = ((start[0] + end[0]) / 2 - nx * to_center, (start[1] + end[1]) / 2 - ny * to_center)
     mid_angle = atan2(sign * ny, sign * nx)
-    return Arc(center, radius, mid_angle, half_sweep, sign)
+    if half_sweep >= SHALLOW:
+        return Arc(center, radius, mid_angle, half_sweep, sign)
+    x, y = to_middle(radius, mid_angle)
+    exact_x = Fraction((start[0] + end[0]) / 2 + bulge * dy / 2) - x
+    exact_y = Fraction((start[1] + end[1]) / 2 - bulge * dx / 2) - y
+    center = (float(exact_x), float(exact_y))
+    rest = (float(exact_x - Fraction(center[0])), float(exact_y - Fraction(center[1])))
+    return Arc(center, radius, mid_angle, half_sweep, sign, rest)
 
 
 def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
@@ -181,7 +223,7 @@ def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
 
     Returns
     -------
-    (N, 8) array, read-only, its columns as in ``kernels.base.feature``
+    (N, 10) array, read-only, its columns as in ``kernels.base.feature``
     """
     rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
     rows.setflags(write=False)

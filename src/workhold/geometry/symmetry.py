@@ -11,7 +11,7 @@ from functools import cached_property
 from math import gcd, tau
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_AFTER_TURN
@@ -180,4 +180,4 @@ def mirror_image(segment: Segment) -> Segment:
 
     if isinstance(segment, Line):
         return Line(over(segment.end), over(segment.start))
-    return Arc(over(segment.center), segment.radius, -segment.mid_angle, segment.half_sweep, segment.sign)
+    return evolve(segment, center=over(segment.center), mid_angle=-segment.mid_angle, rest=over(segment.rest))

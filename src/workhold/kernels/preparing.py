@@ -15,6 +15,7 @@ import numpy as np
 
 from workhold.kernels.base.capsule import piece_distances
 from workhold.kernels.base.distance import is_inside, outline_distances, turns_around
+from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Lattice, Limits, Setting
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
@@ -34,7 +35,6 @@ from workhold.kernels.statics.reactions import LOAD_LENGTH
 
 __all__ = ["KERNEL_COUNT", "PARTS", "prepared"]
 
-FEATURE_LENGTH, CHECKED_LENGTH = 8, 10
 LATTICE, LIMITS = Lattice(1.0, 1.0, 0.0), Limits(1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0)
 # A kernel and what it is called with.
 Calls = Iterator[tuple[Callable[..., Any], tuple[Any, ...]]]
@@ -43,7 +43,7 @@ Calls = Iterator[tuple[Callable[..., Any], tuple[Any, ...]]]
 def crossings_and_pairs() -> Calls:
     """The kernels of crossings and sliding pairs, which take longest."""
     none, integers = np.zeros(0, np.int64), np.zeros((0, CURVE_INTEGERS), np.int64)
-    features = Features(np.zeros((0, FEATURE_LENGTH)), np.zeros((0, CHECKED_LENGTH)), (0, 0), (0, 0))
+    features = Features(np.zeros((0, SEGMENT_LENGTH)), np.zeros((0, FEATURE_LENGTH)), (0, 0), (0, 0))
     curves = Curves(integers, np.zeros((0, CURVE_REALS)), np.zeros((0, STRETCH_LENGTH)))
     sliding_pairs = SlidingPairs(integers, np.zeros((0, SLIDING_PAIR_REALS)))
     given = (features, curves, LATTICE, LIMITS, False, np.zeros(STATISTICS, np.int64))
@@ -55,8 +55,8 @@ def crossings_and_pairs() -> Calls:
 
 def table_and_listing() -> Calls:
     """The kernels that come before and after the search."""
-    none, features = np.zeros(0, np.int64), np.zeros((1, FEATURE_LENGTH))
-    records, checked, outline = (np.zeros((0, width)) for width in (RECORD_LENGTH, CHECKED_LENGTH, FEATURE_LENGTH))
+    none, features = np.zeros(0, np.int64), np.zeros((1, SEGMENT_LENGTH))
+    records, checked, outline = (np.zeros((0, width)) for width in (RECORD_LENGTH, FEATURE_LENGTH, SEGMENT_LENGTH))
     outline.setflags(write=False)
     setting, whole = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0), np.zeros((0, 4), np.int64)
     yield tail_curves, (0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0))
@@ -75,7 +75,7 @@ def table_and_listing() -> Calls:
 
 def distances() -> Calls:
     """The kernels of reading a part."""
-    row, outline = np.zeros(FEATURE_LENGTH), np.zeros((0, FEATURE_LENGTH))
+    row, outline = np.zeros(SEGMENT_LENGTH), np.zeros((0, SEGMENT_LENGTH))
     outline.setflags(write=False)
     yield outline_distances, (np.zeros((0, 2)), outline)
     yield piece_distances, (np.zeros((0, 2)), np.zeros((0, 2)), outline, np.zeros(0))

@@ -22,7 +22,20 @@ from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    REST_X,
+    REST_Y,
+    SIGN,
+    X,
+    Y,
+)
 from workhold.kernels.base.given import Limits
 from workhold.model.proof import AT_AN_EDGE, NEARLY_DOUBLE
 
@@ -76,9 +89,14 @@ class Places:
     axis: tuple[arb, arb]
 
 
+def from_origin(row: Sequence[float], point: tuple[arb, arb]) -> tuple[arb, arb]:
+    """A point in mm from the middle of a line, or from the centre of an arc."""
+    return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
+
+
 def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
     """Contact equation of a peg's centre: its distance from a line, (distance² - R²) / 2R from an arc's centre, in mm."""
-    x, y = center[0] - row[X], center[1] - row[Y]
+    x, y = from_origin(row, center)
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y] * x - row[AXIS_X] * y) / (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
     return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
@@ -99,7 +117,8 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
             gradient = (row[AXIS_Y] / size, -row[AXIS_X] / size)
             normal = gradient
         else:
-            gradient = ((center[0] - row[X]) / row[RADIUS], (center[1] - row[Y]) / row[RADIUS])
+            ray = from_origin(row, center)
+            gradient = (ray[0] / row[RADIUS], ray[1] / row[RADIUS])
             normal = (row[SIGN] * gradient[0], row[SIGN] * gradient[1])
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
         slope.append((gradient[0] * cosine + gradient[1] * sine) * moves)
@@ -142,7 +161,7 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
 
 def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
     """How far in mm a contact is from breaking the rule of ends, at both ends of its feature; in balls, as no kernel is."""
-    dx, dy = center[0] - row[X], center[1] - row[Y]
+    dx, dy = from_origin(row, center)
     along, across = dx * row[AXIS_X] + dy * row[AXIS_Y], dy * row[AXIS_X] - dx * row[AXIS_Y]
     place, scale, half = along, 1.0, row[HALF_EXTENT]
     if row[IS_ARC] != 0.0:
@@ -164,8 +183,8 @@ def wrench_minors(here: Places, length: float) -> list[arb]:
             return n[i][0] * n[j][1] - n[i][1] * n[j][0]
         # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
         # where both pegs are on one carrier: parallel normals stay so wherever the part slides.
-        x = here.arms[j][0] - here.arms[i][0] - (arb(two[X]) - one[X])
-        y = here.arms[j][1] - here.arms[i][1] - (arb(two[Y]) - one[Y])
+        x = here.arms[j][0] - here.arms[i][0] - (arb(two[X]) - one[X]) - (arb(two[REST_X]) - one[REST_X])
+        y = here.arms[j][1] - here.arms[i][1] - (arb(two[Y]) - one[Y]) - (arb(two[REST_Y]) - one[REST_Y])
         return (n[i][0] * y - n[i][1] * x) * (two[SIGN] / arb(two[RADIUS]))
 
     out = []

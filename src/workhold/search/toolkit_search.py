@@ -151,7 +151,7 @@ class ToolkitSearch:
     Parameters
     ----------
     problem : what is searched.
-    loose : (F, 8) rows of the features with their ends moved out by a hair.
+    loose : (F, 10) rows of the features with their ends moved out by a hair.
     table : chord curves and sliding pairs between the loose features.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.

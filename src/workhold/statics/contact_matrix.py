@@ -57,7 +57,7 @@ class Touched:
     ----------
     center : (2,) of the part's bounding box, in the part's coordinates.
     length : L of the wrenches, half the diameter of the peg-centre locus.
-    features : (F, 10) rows of the contact features of each carrier's pegs with the slacks of their ends, one carrier after
+    features : (F, 12) rows of the contact features of each carrier's pegs with the slacks of their ends, one carrier after
         the other, ordered by face.
     starts : where the features of each face number begin in them, carrier after carrier, and where the last ones end.
     segments : how many face numbers there are.

@@ -17,7 +17,7 @@ def outward_normals(rows: Array, points: Array) -> Array:
 
     Parameters
     ----------
-    rows : (..., 8) feature rows, see ``geometry.segment.segment_rows``.
+    rows : (..., 10) feature rows, see ``geometry.segment.segment_rows``.
     points : (..., 2) in mm.
 
     Returns

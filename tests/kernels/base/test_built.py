@@ -20,7 +20,8 @@ from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.preparing import PARTS
 
 BUILDER = Path(workhold.__file__).parents[2] / "building" / "compile_kernels.py"
-SQUARE = np.array([[0.0, x, y, -y / 10, x / 10, 10.0, 0.0, 1.0] for x, y in ((0, -10), (10, 0), (0, 10), (-10, 0))])
+SIDES = ((0, -10), (10, 0), (0, 10), (-10, 0))
+SQUARE = np.array([[0.0, x, y, -y / 10, x / 10, 10.0, 0.0, 1.0, 0.0, 0.0] for x, y in SIDES])
 POINTS = np.random.default_rng(1).uniform(-20.0, 20.0, (200, 2))
 
 
@@ -60,7 +61,7 @@ def test_answers_are_the_same_to_the_last_bit(library):
         for kernel in (distance.turns_around, distance.is_inside):
             answer = door(library, kernel)(x, y, SQUARE)
             assert answer == kernel(x, y, SQUARE) and type(answer) is type(kernel(x, y, SQUARE))
-    circle = np.array([1.0, 0, 0, 1, 0, np.pi, 5, 1])
+    circle = np.array([1.0, 0, 0, 1, 0, np.pi, 5, 1, 0, 0])
     assert door(library, are_concentric)(circle, circle) is True
     assert door(library, are_concentric)(circle, SQUARE[0]) is False
 
@@ -89,8 +90,8 @@ def test_arrays_that_nobody_looks_at_are_given_back(library):
         ((0.0, 0.0, SQUARE, SQUARE), "takes 3 arguments, not 4"),
         ((0.0, "0", SQUARE), "y must be float64, not str"),
         ((0.0, 0.0, SQUARE.tolist()), "rows must be a C-contiguous array of float64 with 2 dimensions, not list"),
-        ((0.0, 0.0, SQUARE[0]), "not an array of float64 of shape (8,)"),
-        ((0.0, 0.0, SQUARE[:, ::2]), "not an array of float64 of shape (4, 4), not contiguous"),
+        ((0.0, 0.0, SQUARE[0]), "not an array of float64 of shape (10,)"),
+        ((0.0, 0.0, SQUARE[:, ::2]), "not an array of float64 of shape (4, 5), not contiguous"),
         ((0.0, 0.0, np.asfortranarray(SQUARE)), "not contiguous"),
         ((0.0, 0.0, SQUARE.astype(np.float32)), "not an array of float32"),
         ((0.0, 0.0, SQUARE.astype(np.int64)), "not an array of int64"),

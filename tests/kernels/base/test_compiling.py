@@ -19,7 +19,7 @@ BASE = ("__init__", "built", "compiling", "feature", "shallow", "sources", "stor
 PROGRAM = """
 import numpy as np
 from workhold.kernels.base.distance import outline_distance
-print(outline_distance(3.0, 4.0, np.array([[0.0, 0, 0, 1, 0, 1e-9, 0, 1]])))
+print(outline_distance(3.0, 4.0, np.array([[0.0, 0, 0, 1, 0, 1e-9, 0, 1, 0, 0]])))
 """
 
 

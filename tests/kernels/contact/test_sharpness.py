@@ -129,7 +129,7 @@ def past_the_end(random: Random, kernel: Kernel) -> float:
     off = radius * random.uniform(0.01, 0.7)
     half = random.uniform(0.3, 2.0)
     angle = half + random.choice([1.0, random.uniform(0, 1)]) * 2 * np.arcsin(off / 2 / radius)
-    row = np.array([1.0, 0.0, 0.0, 1.0, 0.0, half, radius, 1.0, 0.0, 0.0])
+    row = np.array([1.0, 0.0, 0.0, 1.0, 0.0, half, radius, 1.0, 0.0, 0.0, 0.0, 0.0])
     place = radius * cos(angle), radius * sin(angle)
 
     def keeps(part: float) -> bool:
@@ -145,10 +145,10 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
         radius, error = 10 ** random.uniform(0, 2), 10 ** random.uniform(-9, -2)
         tilt = random.uniform(-pi, pi)
         if lines:
-            row = np.array([0.0, 0.0, 0.0, cos(tilt), sin(tilt), 50.0, 0.0, 1.0])
+            row = np.array([0.0, 0.0, 0.0, cos(tilt), sin(tilt), 50.0, 0.0, 1.0, 0.0, 0.0])
             height = random.uniform(-20, 20)
         else:
-            row = np.array([1.0, 0.0, 0.0, 1.0, 0.0, pi, radius, 1.0])
+            row = np.array([1.0, 0.0, 0.0, 1.0, 0.0, pi, radius, 1.0, 0.0, 0.0])
             height = random.choice([-1, 1]) * radius * (1 - 10 ** random.uniform(-8, -0.1))
         ax, ay, side = 0.0, 1.0, random.choice([1.0, -1.0])
         meets, x, y, off = kernel(row, ax, ay, height, error, side)

@@ -16,6 +16,7 @@ from chord_examples import arc_row, line_row
 from contact_examples import limits
 from exact_chords import exactly
 from sharpness import Constant, changed, check_sharpness
+from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Lattice
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.crossing import roots, sliding_pairs, three_and_one
@@ -111,10 +112,10 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
             told.append(-given[7] - three_and_one.GAP_SLACK - three_and_one.HAIR)
             return False
 
-        rows = np.zeros((4, 10))
-        rows[:, :8] = line_row(0, 0, 1.0, length)
+        rows = np.zeros((4, FEATURE_LENGTH))
+        rows[:, :SEGMENT_LENGTH] = line_row(0, 0, 1.0, length)
         form = changed(kernel, row_meets=meets, may_close=closes)
-        features = Features(rows[:, :8], rows, (0, 4), (0, 4))
+        features = Features(rows[:, :SEGMENT_LENGTH], rows, (0, 4), (0, 4))
         space, stats, out = work_space(), np.zeros(STATISTICS, np.int64), np.zeros((16, RECORD_LENGTH))
         space.pegs[:] = 0.0
         form(out, 0, 0.0, reach, features, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False, space, stats)

@@ -61,11 +61,11 @@ def planted(random: Random, tilt: float) -> Planted:
         if random.random() < 0.5:
             tangent = normal * 1j
             middle = place + tangent * random.uniform(-5, 5)
-            rows.append([0.0, middle.real, middle.imag, tangent.real, tangent.imag, 20.0, 0.0, 1.0, 0.0, 0.0])
+            rows.append([0.0, middle.real, middle.imag, tangent.real, tangent.imag, 20.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
         else:
             radius = 10.0 ** random.uniform(0, 2)
             center = place + radius * normal
-            rows.append([1.0, center.real, center.imag, 1.0, 0.0, pi, radius, 1.0, 0.0, 0.0])
+            rows.append([1.0, center.real, center.imag, 1.0, 0.0, pi, radius, 1.0, 0.0, 0.0, 0.0, 0.0])
     work = np.zeros((WORK_LENGTH, 4))
     work[:4] = [psi, x, y, apart], slides, [o[0] for o in offsets], [o[1] for o in offsets]
     contacts = Planted(np.array(rows), offsets, slides, work, np.zeros((4, 2)))
@@ -82,7 +82,7 @@ def certified(contacts: Planted) -> tuple[float, float]:
 def away(contacts: Planted, start: list[float]) -> float:
     """Largest difference in mm of an unknown from the exact solution that Newton's method finds from a start, or inf."""
     with exactly():
-        z = exact_solution(contacts.features[:, :8].tolist(), contacts.offsets, contacts.slides, start)
+        z = exact_solution(contacts.features[:, :10].tolist(), contacts.offsets, contacts.slides, start)
         if z is None:
             return float("inf")
         off = [(v - w) * (LENGTH if k == 0 else 1) for k, (v, w) in enumerate(zip(z, contacts.unknowns(), strict=True))]

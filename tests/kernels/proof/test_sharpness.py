@@ -87,7 +87,7 @@ def from_aside(random: Random, kernel: Kernel) -> float:
     if not isfinite(radius):
         return 0.0
     with exactly():
-        solution = exact_solution(contacts.rows[:, :8].tolist(), contacts.offsets, contacts.slides, start.tolist())
+        solution = exact_solution(contacts.rows[:, :10].tolist(), contacts.offsets, contacts.slides, start.tolist())
         assert solution is not None
         away = [float(abs(v - float(w)).upper()) for v, w in zip(solution, work[UNKNOWNS], strict=True)]
     return max(away[0] * contacts.length, *away[1:]) / float(radius)

@@ -63,7 +63,7 @@ def piece_distance(start: Array, end: Array, row: Array) -> float:
 @compiled
 def piece_distances(starts: Array, ends: Array, rows: Array, distances: Array) -> None:
     """Distances in mm, which ``distances`` (M,) receives, from straight pieces, given by their ends (M, 2) each, to the
-    nearest of (N, 8) segments."""
+    nearest of (N, 10) segments."""
     for k in range(starts.shape[0]):
         best = inf
         for n in range(rows.shape[0]):

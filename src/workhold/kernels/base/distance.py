@@ -31,7 +31,7 @@ def segment_distance(x: float, y: float, row: Array) -> float:
 
 @inner
 def outline_distance(x: float, y: float, rows: Array) -> float:
-    """Distance in mm from a point to the nearest of (N, 8) segments."""
+    """Distance in mm from a point to the nearest of (N, 10) segments."""
     best = inf
     for k in range(rows.shape[0]):
         best = min(best, segment_distance(x, y, rows[k]))
@@ -40,7 +40,7 @@ def outline_distance(x: float, y: float, rows: Array) -> float:
 
 @compiled_making_arrays
 def outline_distances(points: Array, rows: Array) -> Array:
-    """Distances in mm from (M, 2) points to the nearest of (N, 8) segments, shape (M,)."""
+    """Distances in mm from (M, 2) points to the nearest of (N, 10) segments, shape (M,)."""
     out = np.empty(points.shape[0])
     for k in range(points.shape[0]):
         out[k] = outline_distance(points[k, 0], points[k, 1], rows)
@@ -73,7 +73,7 @@ def winding_angle(x: float, y: float, row: Array) -> float:
 
 @compiled
 def turns_around(x: float, y: float, rows: Array) -> float:
-    """Angle in radians that (N, 8) segments, run along their directions, turn around a point not on them."""
+    """Angle in radians that (N, 10) segments, run along their directions, turn around a point not on them."""
     total = 0.0
     for k in range(rows.shape[0]):
         total += winding_angle(x, y, rows[k])
@@ -82,5 +82,5 @@ def turns_around(x: float, y: float, rows: Array) -> float:
 
 @compiled
 def is_inside(x: float, y: float, rows: Array) -> bool:
-    """Whether a point not on the outline lies in the material bounded by (N, 8) segments, material on the left."""
+    """Whether a point not on the outline lies in the material bounded by (N, 10) segments, material on the left."""
     return turns_around(x, y, rows) > pi

@@ -6,10 +6,11 @@ AXIS_X, AXIS_Y : unit vector along a line, or from an arc's centre to its middle
 HALF_EXTENT : largest parameter, in mm on a line and in radians on an arc; pi or more on a whole circle.
 RADIUS : in mm, 0 for a line.
 SIGN : whether the outward normal points away from an arc's centre (1) or towards it (-1); 1 for a line.
+REST_X, REST_Y : what rounding has left of an arc's centre, in mm, which counts where the arc is shallow.
 LOW_SLACK, HIGH_SLACK : how far in mm a contact may lie past either end (of features alone).
 """
 
 from __future__ import annotations
 
-IS_ARC, X, Y, AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, LOW_SLACK, HIGH_SLACK = range(10)
-SEGMENT_LENGTH, FEATURE_LENGTH = 8, 10
+IS_ARC, X, Y, AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, REST_X, REST_Y, LOW_SLACK, HIGH_SLACK = range(12)
+SEGMENT_LENGTH, FEATURE_LENGTH = 10, 12

@@ -21,8 +21,8 @@ class Features(NamedTuple):
 
     Parameters
     ----------
-    loose : (F, 8) rows with ends moved out by a hair, to search.
-    rows : (F, 10) rows with the slack of their ends, to check.
+    loose : (F, 10) rows with ends moved out by a hair, to search.
+    rows : (F, 12) rows with the slack of their ends, to check.
     standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the same or apart.
     """
 

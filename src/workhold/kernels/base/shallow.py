@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 
 Array = NDArray[np.float64]
 
@@ -60,12 +60,12 @@ def exact_dot(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @inner
-def from_center(center: float, radius: float, along: float, excess: float) -> float:
+def from_center(center: float, center_rest: float, radius: float, along: float, excess: float) -> float:
     """A coordinate of an arc's middle, for a direction whose square is 1 + ``excess``, rounded once or so."""
     way, rest = exact_product(radius, along)
     total = center + way
     part = total - center
-    return total + ((center - (total - part)) + (way - part) + (rest - 0.5 * way * excess))
+    return total + ((center - (total - part)) + (way - part) + (rest - 0.5 * way * excess + center_rest))
 
 
 @inner
@@ -75,7 +75,10 @@ def middle_of(row: Array) -> tuple[float, float]:
     xx, xx_rest = exact_product(tx, tx)
     yy, yy_rest = exact_product(ty, ty)
     excess = ((max(xx, yy) - 1.0) + min(xx, yy)) + (xx_rest + yy_rest)
-    return (from_center(row[X], row[RADIUS], tx, excess), from_center(row[Y], row[RADIUS], ty, excess))
+    return (
+        from_center(row[X], row[REST_X], row[RADIUS], tx, excess),
+        from_center(row[Y], row[REST_Y], row[RADIUS], ty, excess),
+    )
 
 
 @inner

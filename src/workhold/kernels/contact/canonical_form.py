@@ -34,7 +34,7 @@ def contacts_of(
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``.
-    rows : (F, 10) of the features.
+    rows : (F, 12) of the features.
     points : (N, 4, 2) receives the pegs' centres in mm.
     gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
     nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where the wrenches do

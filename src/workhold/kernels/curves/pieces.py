@@ -420,7 +420,7 @@ def cell_pieces(
     ----------
     cell_low, cell_high : psi in radians, less than a turn apart.
     members : (M,) indices of the curves to consider, ascending.
-    features : (F, 8) rows.
+    features : (F, 10) rows.
     pitch_x : column pitch in mm.
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
         m / (1 - 3 m) of any other.

@@ -56,7 +56,7 @@ def tail_curves(
     Parameters
     ----------
     tail : index of the tail's feature.
-    features : (F, 8) rows.
+    features : (F, 10) rows.
     centers : (F,) number of each arc's centre, -1 for lines; concentric arcs share it.
     lengths : (D,) lengths of the lattice steps in mm.
     starts : (D + 1,) where the steps of each length begin.

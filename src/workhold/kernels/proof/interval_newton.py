@@ -311,7 +311,7 @@ def interval_newton(records: Array, features: Array, setting: Setting, frames: A
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``; where their contacts may be is finite.
-    features : (F, 10) rows with the slack of their ends.
+    features : (F, 12) rows with the slack of their ends.
     frames : (N, 2, 4, 4) U and V of each.
 
     Returns

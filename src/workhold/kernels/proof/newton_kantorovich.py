@@ -228,7 +228,7 @@ def judged(
 
 
 def discs_around(outline: Array, margin: float) -> Array:
-    """Centres and squared radii (S, 3) in mm of discs that hold (S, 8) segments and what is ``margin`` around them."""
+    """Centres and squared radii (S, 3) in mm of discs that hold (S, 10) segments and what is ``margin`` around them."""
     half, radius = outline[:, HALF_EXTENT], outline[:, RADIUS]
     # The disc on the chord, for an arc up to a half circle.
     short = np.where(outline[:, IS_ARC] == 0.0, 0.0, np.minimum(half, pi / 2.0))
@@ -241,7 +241,7 @@ def discs_around(outline: Array, margin: float) -> Array:
 
 @inner
 def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
-    """Whether four pegs, of which some move (4,), are clear of all of (S, 8) segments, to within ``TOUCHING``."""
+    """Whether four pegs, of which some move (4,), are clear of all of (S, 10) segments, to within ``TOUCHING``."""
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
         least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCHING
@@ -269,8 +269,8 @@ def certified(
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``; none of them given up.
-    features : (F, 10) rows with the slack of their ends.
-    outline, discs : (S, 8) the part's faces, and :func:`discs_around` these and the pegs that touch them.
+    features : (F, 12) rows with the slack of their ends.
+    outline, discs : (S, 10) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     solutions : (N, 4) receives the unknowns.
     verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
     w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.

@@ -69,7 +69,7 @@ def contact_matrices_of(
     moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
     axis : (2,) the unit vector x in the toolkit's frame.
     faces : (N, 4) number of the face each peg touches.
-    features : (F, 10) rows of contact features about c with the slacks of their ends, ordered by face.
+    features : (F, 12) rows of contact features about c with the slacks of their ends, ordered by face.
     starts : where the features of each face number begin, one more than there are numbers.
     center : (2,) c.
     length : L in mm.
