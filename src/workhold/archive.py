@@ -19,7 +19,7 @@ from __future__ import annotations
 import io
 import mmap
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "Column", "is_archive", "mapped_archive"]
+__all__ = ["ArchiveWriter", "Columns", "Column", "is_archive", "mapped_archive"]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64
@@ -65,6 +65,9 @@ class Column:
     def row_bytes(self) -> int:
         """Bytes of one row."""
         return int(np.dtype(self.kind).itemsize * np.prod(self.shape, dtype=np.int64))
+
+
+Columns = Mapping[str, Column]
 
 
 @define(eq=False)
@@ -194,7 +197,7 @@ class CarefulFile(io.FileIO):
 
 
 def mapped_archive(
-    path: Path, columns: Mapping[str, Column], name: str, whole: bool = False
+    path: Path, columns: Columns | Callable[[str], Columns], name: str, whole: bool = False
 ) -> tuple[str, dict[str, NDArray[Any]]]:
     """The text of an archive and its columns, which are read only where they are looked at.
 
@@ -203,7 +206,7 @@ def mapped_archive(
 
     Parameters
     ----------
-    columns : what each must hold, by name; further members are left alone.
+    columns : what each must hold, by name, or what tells it from the text; further members are left alone.
     name : of the text.
     whole : read the columns once, to compare their checksums.
 
@@ -214,18 +217,22 @@ def mapped_archive(
     OSError
         When it cannot be read.
     """
-    names = {f"{one}.npy" for one in columns} | {name}
     try:
         with CarefulFile(path) as stream:
             with ZipFile(stream) as archive:
-                members = [info for info in archive.infolist() if info.filename in names]
+                everything = archive.infolist()
             content = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
-        spans = {info.filename: span(info, content) for info in members}
-        refuse_unlike(names, members, list(spans.values()))
-        first, end = spans[name]
+        texts = [info for info in everything if info.filename == name]
+        refuse_unlike({name}, texts, [])
+        first, end = span(texts[0], content)
         if end - first > MOST_TEXT:
             raise BadZipFile(f"its {name} is too large")
         text = content[first:end].decode()
+        columns = columns if isinstance(columns, Mapping) else columns(text)
+        names = {f"{one}.npy" for one in columns} | {name}
+        members = [info for info in everything if info.filename in names]
+        spans = {info.filename: span(info, content) for info in members}
+        refuse_unlike(names, members, list(spans.values()))
         for info in members:
             if (whole or info.filename == name) and checksum(content, *spans[info.filename]) != info.CRC:
                 raise BadZipFile(f"{info.filename} is not what was written")

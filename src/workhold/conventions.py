@@ -34,6 +34,13 @@ LEAST_CLOSURE = 1e-9
 # No unit. The clamping force exceeds this (model: condition 5): 0 at an exact double root, where the rounding of a drawing
 # makes it up to 1e-7 or so.
 LEAST_CLAMPING = 1e-6
+# No unit. With two clamps each pushes with more than this part of the force on its face, and the wrenches of the locators
+# have a larger determinant than the second: with less the pose is a double root, which a rounded drawing leaves at 1e-7 or
+# so.
+LEAST_PUSH, LEAST_SEAT = 1e-9, 1e-6
+# No unit. A locator's force per unit of a clamp's this near to zero is zero: exact zeros are the rule in a square pose. A
+# clamp whose least such force, as a share of all, is above it holds the part without the other.
+NO_REACTION = 1e-9
 # No unit. The sizes of the four minors sum to more than this: with less, the lines of action meet in one point or are
 # parallel up to the rounding of the drawing, and the wrenches do not span the space.
 LEAST_SPAN = 1e-7

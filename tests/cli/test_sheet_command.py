@@ -33,7 +33,7 @@ def diamond_result() -> Result:
         position=np.array([[fixture.pose.x, fixture.pose.y]]),
         jaw_separation=np.array([fixture.jaw_separation]),
         force=np.array([[peg.force for peg in fixture.pegs]]),
-        quality=unknown_quality(null_vector),
+        quality=unknown_quality(null_vector.min(axis=1)),
     )
     counts = {"I": 2, "II": 0}
     return Result(Query(workpiece, vise), table.take(np.array([0, 0])), counts, counts)

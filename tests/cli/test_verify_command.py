@@ -110,7 +110,7 @@ def on_the_edge(hair: float) -> Result:
         position=np.array([[0.0, 20.0]]),
         jaw_separation=np.array([40.0]),
         force=force,
-        quality=unknown_quality(force / force.sum()),
+        quality=unknown_quality((force / force.sum()).min(axis=1)),
     )
     table = attrs.evolve(table, quality=quality_of(table, part, vise, Tolerance(), ()))
     counts, proof = {"I": 0, "II": 1}, Proof(96, 1, 0, 1, 0)

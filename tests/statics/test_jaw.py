@@ -111,8 +111,22 @@ def test_friction_never_asks_for_more() -> None:
 def test_what_is_no_load_stays() -> None:
     """The forces of closing do not depend on the jaw."""
     forces = np.random.default_rng(1).normal(size=(4, 4))
-    assert (shared_forces(forces, inf)[:, 3] == forces[:, 3]).all() and (shared_forces(forces, 0.0) == forces).all()
-    assert forces[:, 3] @ shared_forces(forces, inf)[:, :3] == pytest.approx(0, abs=1e-12)
+    closing = forces[:, 3:]
+    assert (shared_forces(forces, closing, inf)[:, 3] == forces[:, 3]).all()
+    assert (shared_forces(forces, closing, 0.0) == forces).all()
+    assert forces[:, 3] @ shared_forces(forces, closing, inf)[:, :3] == pytest.approx(0, abs=1e-12)
+
+
+def test_two_clamps_that_are_locked_share_as_springs_do() -> None:
+    """Of all forces that balance a load those with the least energy, found by least squares."""
+    random = np.random.default_rng(2)
+    forces, closing = random.normal(size=(5, 4)), random.normal(size=(5, 2))
+    out = shared_forces(forces, closing, 2.0)
+    for k in range(3):
+        # Contacts of stiffness 1, clamps of stiffness 2: minimize sum f^2 + sum k^2 / 2 over f = f0 + H k.
+        system = np.vstack([closing, np.eye(2) / np.sqrt(2.0)])
+        moves, *_ = np.linalg.lstsq(system, -np.append(forces[:, k], [0.0, 0.0]), rcond=None)
+        assert out[:, k] == pytest.approx(forces[:, k] + closing @ moves)
 
 
 @pytest.mark.parametrize("jaw", ["", "hydraulic", "-1", -1.0, "nan", float("nan")])

@@ -43,6 +43,7 @@ class Problem:
         where their pegs are alike, else those of the standing carrier come first.
     outline : (S, 10) the part's faces.
     diameter : largest distance between two peg centres that touch the part.
+    pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
     """
 
     query: Query
@@ -53,13 +54,14 @@ class Problem:
     moving: tuple[int, int]
     outline: NDArray[np.float64]
     diameter: float
+    pairing: bool = False
 
     def __attrs_post_init__(self) -> None:
         for carrier in self.toolkit.carriers:
             refuse_many_steps(carrier.pitch, carrier.columns, carrier.rows, self.diameter, len(self.rows))
 
     @classmethod
-    def of(cls, query: Query) -> Problem:
+    def of(cls, query: Query, pairing: bool = False) -> Problem:
         """Make a query ready.
 
         Raises
@@ -94,6 +96,7 @@ class Problem:
             moving=(len(features) - len(allowed[-1]), len(features)),
             outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
             diameter=diameter,
+            pairing=pairing,
         )
 
     @property
@@ -144,6 +147,7 @@ class Problem:
             clamping=float(self.toolkit.clamping),
             least_margin=0.0,
             most_listed=0.0,
+            pairing=float(self.pairing),
         )
 
     @property

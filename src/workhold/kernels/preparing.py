@@ -20,6 +20,14 @@ from workhold.kernels.base.given import Features, Lattice, Limits, Setting
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
+from workhold.kernels.contact.clamp_pairs import (
+    CLAMP_LENGTH,
+    HOLE_LENGTH,
+    Clamps,
+    Hardware,
+    closures_of,
+    pairs_of,
+)
 from workhold.kernels.contact.equations import WORK_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
@@ -71,6 +79,10 @@ def table_and_listing() -> Calls:
     yield contact_matrices_of, (pairs, pose, fours, two, whole, checked, none, two, 1.0, *contacts, np.zeros((4, 4)))
     rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 8, 3))
     yield figures, (*contacts, whole, 1.0, two, *rows)
+    clamps = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))
+    hardware = Hardware(np.full((4, 4), -1), 0.0, 0.0, 0.0, False)
+    yield pairs_of, (np.zeros((0, 2), np.int64), np.zeros(0, np.bool_), clamps, hardware, False)
+    yield closures_of, (np.zeros((0, 2, CLAMP_LENGTH)), np.zeros((0, 2)))
 
 
 def distances() -> Calls:

@@ -96,7 +96,7 @@ def gathered_result(gathering: Gathering, work: Work, progress: Progress | None 
     )
     return Result(
         query=query,
-        table=FixtureTable.empty(),
+        table=FixtureTable.empty(query.toolkit),
         found=found,
         distinct=distinct,
         complete=work.complete and account.left == 0 and whole,

@@ -22,7 +22,7 @@ from workhold.listing.canonical_form import Candidates
 from workhold.listing.written_out import written_out
 from workhold.model.result import FixtureTable
 
-__all__ = ["Bolted", "bolted", "placed_on_plate"]
+__all__ = ["Bolted", "bolted", "clear_holes", "placed_on_plate"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -58,29 +58,48 @@ def spans(frame: Frame) -> tuple[float, float]:
 
 def bolted(c: Candidates, problem: Problem) -> Bolted:
     """Find the hole of every fixture's clamp, the nearest that will do."""
+    tip, index, hole = clear_holes(c, problem, every=False)
+    column, fits = np.zeros(len(tip), np.int64), np.zeros(len(tip), np.bool_)
+    column[index], fits[index] = hole, True
+    return Bolted(tip, column, fits)
+
+
+def clear_holes(c: Candidates, problem: Problem, every: bool) -> tuple[Array, IntArray, IntArray]:
+    """The holes in which fixtures' clamps may be bolted, the nearest of each first.
+
+    Parameters
+    ----------
+    every : all of them, or of each fixture the nearest.
+
+    Returns
+    -------
+    (N,) places in mm of the tips along x from the locators' first column; numbers (M,) of fixtures, and (M,) the columns of
+    their holes counted from that one, 0 where a clamp is its tip alone
+    """
     frame = problem.frame
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
     most_columns, most_rows = spans(frame)
     last = c.column[:, LOCATORS].max(axis=1, initial=0)
     tip = last * pitch + c.gap
-    column, fits = np.zeros(len(tip), np.int64), (c.row.max(axis=1, initial=0) <= most_rows) & (last <= most_columns)
+    waiting = np.flatnonzero((c.row.max(axis=1, initial=0) <= most_rows) & (last <= most_columns))
     if travel.most is None:
-        fits[fits] = is_clear(c.take(fits), tip[fits], tip[fits], problem)
-        return Bolted(tip, column, fits)
+        waiting = waiting[is_clear(c.take(waiting), tip[waiting], tip[waiting], problem)]
+        return tip, waiting, np.zeros(len(waiting), np.int64)
     least, most = -travel.most, -travel.least
     first = np.ceil((tip + least - GAP_SLACK) / pitch).astype(np.int64)
-    waiting = np.flatnonzero(fits)
-    fits = np.zeros(len(tip), np.bool_)
+    found = [np.zeros((2, 0), np.int64)]
     for step in range(int((most - least) / pitch) + 2):
         hole = first[waiting] + step
         on_plate = np.maximum(hole, last[waiting]) - np.minimum(hole, 0) <= most_columns
         near = np.flatnonzero(on_plate & (hole * pitch - tip[waiting] <= most + GAP_SLACK))
         chosen = waiting[near]
         good = is_clear(c.take(chosen), tip[chosen], hole[near] * pitch, problem)
-        column[chosen[good]], fits[chosen[good]] = hole[near][good], True
-        waiting = waiting[~fits[waiting]]
-    return Bolted(tip, column, fits)
+        found.append(np.stack([chosen[good], hole[near][good]]))
+        waiting = waiting if every else np.setdiff1d(waiting, chosen[good], assume_unique=True)
+    index, column = np.concatenate(found, axis=1)
+    order = np.argsort(index, kind="stable")
+    return tip, index[order], column[order]
 
 
 def is_clear(c: Candidates, tip: Array, hole: Array, problem: Problem) -> BoolArray:

@@ -14,7 +14,7 @@ from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 
-__all__ = ["joined_ways"]
+__all__ = ["joined_ways", "summed"]
 
 
 def joined_ways(results: Sequence[Result], query: Query) -> Result:

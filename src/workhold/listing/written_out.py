@@ -32,5 +32,5 @@ def written_out(
         position=np.stack(hole, axis=1) - anchor,
         jaw_separation=travel,
         force=c.force,
-        quality=unknown_quality(c.null),
+        quality=unknown_quality(c.null.min(axis=1, initial=1.0)),
     )

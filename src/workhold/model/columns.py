@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from workhold.archive import Column
+import json
+
+from workhold.archive import Column, Columns
 from workhold.model.quality import FIGURES
 
-__all__ = ["COLUMNS", "HEAD"]
+__all__ = ["COLUMNS", "HEAD", "PAIR_COLUMNS", "columns_said"]
 
 HEAD = "result.json"
 # What each column holds, N fixtures: see docs/columns.md and ``model.result.FixtureTable``.
@@ -20,3 +22,21 @@ COLUMNS = {
     "force": Column("<f8", (4,)),
     "quality": Column("<f8", (len(FIGURES),)),
 }
+# The same of fixtures with two clamps.
+PAIR_COLUMNS = COLUMNS | {
+    "column": Column("<i4", (5,)),
+    "row": Column("<i4", (5,)),
+    "face": Column("<i4", (5,)),
+    "jaw_separation": Column("<f8", (2,)),
+    "force": Column("<f8", (5, 2)),
+    "pairs": Column("<i4"),
+}
+
+
+def columns_said(head: str) -> Columns:
+    """What the columns hold beside a head, which may be of any kind of file."""
+    try:
+        toolkit = json.loads(head).get("toolkit")
+        return PAIR_COLUMNS if toolkit is not None and toolkit.get("clamps") == 2 else COLUMNS
+    except (ValueError, AttributeError, RecursionError):
+        return COLUMNS

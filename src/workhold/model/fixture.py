@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import radians
+from math import atan, radians, tan
 from typing import Any
 
 from attrs import field, frozen
@@ -12,7 +12,7 @@ from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.holes import hole_name
 
-__all__ = ["Fixture", "Peg", "Pose"]
+__all__ = ["Fixture", "Pair", "Peg", "Pose"]
 
 
 @frozen
@@ -25,7 +25,7 @@ class Peg:
     column, row : the hole, counted from 0.
     x, y : the peg's centre in the vise frame, in mm.
     face : number of the face it touches.
-    force : contact force per unit of clamping force.
+    force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the working ratio.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     """
 
@@ -85,6 +85,30 @@ class Pose:
 
 
 @frozen
+class Pair:
+    """What is particular to a fixture with two clamps.
+
+    Parameters
+    ----------
+    travels : how far each clamp has travelled from its hole, in mm.
+    ratio : the open interval of the second clamp's force over the first's in which all locators are pressed; the upper end
+        may be infinite.
+    reactions : of each peg its force per unit of the force of the first clamp, and of the second.
+    count : how many pairs of clamps there are at this seat, of which this one is listed.
+    """
+
+    travels: tuple[float, float]
+    ratio: tuple[float, float]
+    reactions: tuple[tuple[float, float], ...]
+    count: int
+
+    @property
+    def working_ratio(self) -> float:
+        """The second clamp's force over the first's, in the middle of the interval as an angle."""
+        return tan((atan(self.ratio[0]) + atan(self.ratio[1])) / 2)
+
+
+@frozen
 class Fixture:
     """One way to hold the workpiece.
 
@@ -96,7 +120,8 @@ class Fixture:
     jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another toolkit the travel
         of what moves.
     quality : figures of merit by name.
-    direction : in which the clamp moves when it clamps, such as "-x"; None of a vise.
+    direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a vise.
+    pair : what is particular to two clamps; None of other fixtures.
     """
 
     type: str
@@ -105,3 +130,4 @@ class Fixture:
     jaw_separation: float
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
     direction: str | None = None
+    pair: Pair | None = None

@@ -11,6 +11,7 @@ __all__ = [
     "best_note",
     "kept_note",
     "no_fixture_notes",
+    "no_pair_note",
     "no_place_note",
     "stopped_note",
     "undecided_note",
@@ -31,6 +32,17 @@ def no_fixture_notes(wording: Wording) -> tuple[str, str, str, str]:
 def no_place_note(verified: int, wording: Wording) -> str:
     """Why a search finds no fixture though so many candidates are proven to hold the part."""
     return f"{verified} sets of four pegs would hold the part, but none of them can stand in {wording.within}."
+
+
+def no_pair_note(seats: int, contacts: int) -> str:
+    """Why no two clamps hold the part, at so many seats with so many clamps."""
+    if contacts == 0:
+        return "No three locators and a clamp can touch the part at the same time inside their faces."
+    if seats == 0:
+        return (
+            "Three locators and a clamp can touch the part, but nowhere where a second clamp is needed has one a place."
+        )
+    return f"No two clamps press the part against all three locators at any of the {seats} seats found."
 
 
 def best_note(best: int) -> str:

@@ -1,8 +1,13 @@
-"""A dowel plate: locators in its holes, and a clamp that pushes along a line of holes (Brost & Goldberg 1996)."""
+"""A dowel plate: locators in its holes, and one clamp or two that push along lines of holes.
+
+One clamp: Brost & Goldberg 1996. With two, five pegs hold the part (a shop's 3-2-1): the locators alone fix its pose, and
+the forces of both clamps together press it against them, those of neither alone.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import combinations_with_replacement, product
 from math import inf, isfinite, isnan, pi
 from typing import Any, ClassVar
 
@@ -34,24 +39,47 @@ def travel_pair(value: Iterable[float] | None) -> tuple[float, float] | None:
     return real(numbers[0]), real(numbers[1])
 
 
-def direction_names(value: str | Iterable[str] | None) -> tuple[str, ...]:
-    """Directions in the order in which they are listed; none for None, which the plate resolves."""
+def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
+    """Directions in the order in which they are listed, or pairs of them; none for None, which the plate resolves."""
     if value is None:
         return ()
     names = [value] if isinstance(value, str) else list(value)
-    for name in names:
-        if name not in DIRECTIONS:
-            raise InputError(
-                f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}."
-            )
     if not names:
         raise InputError(f"there is no direction for the clamp: choose among {', '.join(DIRECTIONS)}.")
-    return tuple(name for name in DIRECTIONS if name in names)
+    if any(isinstance(name, str) for name in names):
+        for name in names:
+            refuse_direction(name)
+        return tuple(name for name in DIRECTIONS if name in names)
+    pairs = [tuple(one) if isinstance(one, Iterable) else (one,) for one in names]
+    for two in pairs:
+        if len(two) != 2:
+            raise InputError(f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y').")
+        for name in two:
+            refuse_direction(name)
+    every = product(DIRECTIONS, repeat=2)
+    return tuple(one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs})
+
+
+def refuse_direction(name: Any) -> None:
+    """Refuse what is no direction of a clamp.
+
+    Raises
+    ------
+    InputError
+        Naming those that are.
+    """
+    if name not in DIRECTIONS:
+        raise InputError(f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}.")
+
+
+def turned_half(name: str) -> str:
+    """What half a turn makes of a direction."""
+    return f"{'-' if name[0] == '+' else '+'}{name[1]}"
 
 
 @frozen
 class Plate(Toolkit):
-    """A plate with a lattice of holes: three locators anywhere on it, and one clamp on a row or a column of holes.
+    """A plate with a lattice of holes: three locators anywhere on it, and clamps on rows and columns of holes.
 
     Parameters
     ----------
@@ -62,7 +90,9 @@ class Plate(Toolkit):
     travel : least and most in mm from the hole that the clamp is bolted in to its tip, or None: then the clamp is its tip
         alone, and nothing is asked of its body.
     directions : in which the clamp may move when it clamps: among "-x", "+x", "-y" and "+y". None means all that differ by
-        more than a turn of the plate.
+        more than a turn of the plate. Of two clamps pairs, such as [("-x", "-y")]; directions that are no pairs stand for
+        all pairs of them.
+    clamps : 1, or 2 that are needed together.
 
     Raises
     ------
@@ -74,6 +104,8 @@ class Plate(Toolkit):
     >>> from workhold import Plate
     >>> Plate(pitch=20, peg_radius=3).directions, Plate(pitch=20, peg_radius=3, columns=8, rows=6).directions
     (('-x',), ('-x', '-y'))
+    >>> Plate(pitch=20, peg_radius=3, clamps=2).directions
+    (('-x', '-y'),)
     """
 
     kind: ClassVar[str] = "translating-clamp"
@@ -97,9 +129,12 @@ class Plate(Toolkit):
     rows: int | None = field(default=None, converter=whole)
     clamp_radius: float = field(default=None, converter=optional_length)
     travel: tuple[float, float] | None = field(default=None, converter=travel_pair)
-    directions: tuple[str, ...] = field(default=None, converter=direction_names)
+    directions: tuple[Any, ...] = field(default=None, converter=direction_names)
+    clamps: int = field(default=1, converter=whole)
 
     def __attrs_post_init__(self) -> None:
+        if self.clamps not in (1, 2):
+            raise InputError(f"clamps {self.clamps} cannot be: a plate has 1 or 2.")
         if isnan(self.clamp_radius):
             object.__setattr__(self, "clamp_radius", self.peg_radius)
         refuse_lattice(self.pitch, self.columns, self.rows, self.peg_radius, self.noun, "locator")
@@ -110,8 +145,7 @@ class Plate(Toolkit):
                 f"travel {self.travel[0]:g} to {self.travel[1]:g} is none that a clamp has: give the least and the most "
                 "from its hole to its tip, in mm."
             )
-        if not self.directions:
-            object.__setattr__(self, "directions", ("-x",) if self.is_square else ("-x", "-y"))
+        object.__setattr__(self, "directions", self.resolved_directions())
         lengths = {"pitch": max(self.pitch), "peg radius": self.peg_radius, "clamp radius": self.clamp_radius}
         for name, value in (lengths | {"travel": self.travel[1] if self.travel else 0.0}).items():
             refuse_long(name, value)
@@ -122,16 +156,49 @@ class Plate(Toolkit):
         """Whether a quarter turn of the plate leaves it as it is."""
         return self.pitch[0] == self.pitch[1] and self.columns == self.rows
 
+    def resolved_directions(self) -> tuple[Any, ...]:
+        """The directions, or pairs of them, that are meant.
+
+        Raises
+        ------
+        InputError
+            For pairs where there is one clamp.
+        """
+        names = self.directions
+        if self.clamps == 1:
+            if any(not isinstance(name, str) for name in names):
+                raise InputError("the directions are pairs, but there is one clamp: give two clamps, or no pairs.")
+            return names or (("-x",) if self.is_square else ("-x", "-y"))
+        if not names:
+            return (("-x", "-y"),) if self.is_square else (("-x", "-y"), ("-x", "+y"))
+        return tuple(combinations_with_replacement(names, 2)) if isinstance(names[0], str) else names
+
     @property
     def distinct_directions(self) -> tuple[str, ...]:
-        """The directions without those that half a turn of the plate makes of another one."""
+        """The directions that clamps have, without those that half a turn of the plate makes of another one."""
+        if self.clamps == 2:
+            return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.distinct_pairs))
         return tuple(name for name in self.directions if not (name[0] == "+" and f"-{name[1]}" in self.directions))
 
     @property
+    def distinct_pairs(self) -> tuple[tuple[str, str], ...]:
+        """The pairs of directions without those that half a turn of the plate makes of another one."""
+        out: list[tuple[str, str]] = []
+        for one, other in self.directions:
+            if {(turned_half(one), turned_half(other)), (turned_half(other), turned_half(one))}.isdisjoint(out):
+                out.append((one, other))
+        return tuple(out)
+
+    @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """Three locators and a clamp, once for each direction."""
+        """Three locators and a clamp, once for each direction; or two clamps, once for each pair of directions."""
         names = self.distinct_directions
-        return tuple(Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names)
+        if self.clamps == 1:
+            return tuple(Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names)
+        return tuple(
+            Arrangement("clamp2", (3, *(pair.count(name) for name in names)), " ".join(pair))
+            for pair in self.distinct_pairs
+        )
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
@@ -151,8 +218,8 @@ class Plate(Toolkit):
 
     @property
     def ways(self) -> tuple[Plate, ...]:
-        """The plate with one direction each time."""
-        return tuple(evolve(self, directions=(name,)) for name in self.distinct_directions)
+        """The plate with one clamp in one direction each time."""
+        return tuple(evolve(self, clamps=1, directions=(name,)) for name in self.distinct_directions)
 
     @property
     def gap(self) -> None:
@@ -174,8 +241,10 @@ class Plate(Toolkit):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""
-        if len(self.distinct_directions) == 1:
-            yield Change("with the clamp along the columns as well", {"directions": ("-x", "-y")})
+        if self.clamps == 1:
+            yield Change("with a second clamp", {"clamps": 2, "directions": None})
+            if len(self.distinct_directions) == 1:
+                yield Change("with the clamp along the columns as well", {"directions": ("-x", "-y")})
         if min(self.pitch) >= 4 * self.peg_radius:
             half = (self.pitch[0] / 2, self.pitch[1] / 2)
             fields: dict[str, Any] = {"pitch": half}

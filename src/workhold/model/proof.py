@@ -15,7 +15,7 @@ AT_AN_EDGE = "a rule is met exactly at its edge"
 
 @frozen
 class Undecided:
-    """Four contacts, or a pair of chords, of which it is not decided whether they make a fixture.
+    """Four contacts, or a pair of chords, of which it is not decided whether they make a fixture; or five, with two clamps.
 
     Parameters
     ----------
@@ -30,9 +30,9 @@ class Undecided:
     """
 
     type: str
-    faces: tuple[int, int, int, int]
-    columns: tuple[int, int, int, int]
-    rows: tuple[int, int, int, int]
+    faces: tuple[int, ...]
+    columns: tuple[int, ...]
+    rows: tuple[int, ...]
     theta_deg: float
     reason: str
     reach_deg: float | None = None

@@ -9,6 +9,7 @@ from attrs import frozen
 
 __all__ = [
     "CLAMP_AMPLIFICATION",
+    "CLAMP_FREEDOM",
     "CLOSURE_MARGIN",
     "EDGE_DISTANCE",
     "END_DISTANCE",
@@ -93,9 +94,10 @@ FIGURES = (
     ),
     Figure("warnings", "", False, "How many things there are to beware of.", 0),
     Figure("penalty", "", False, "Points for location error, tilt, a strong peg and a small face.", 0),
+    Figure("clamp_freedom", "deg", True, "By how much the forces of two clamps may differ: 90 is any two forces.", 1),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
-EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY = range(6, 12)
+EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM = range(6, 13)
 
 
 def figure_number(name: str) -> int | None:

@@ -12,6 +12,7 @@ from workhold.errors import InputError
 from workhold.model.load import Load
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
+    CLAMP_FREEDOM,
     CLOSURE_MARGIN,
     FIGURES,
     JAW_FORCE_NEEDED,
@@ -30,6 +31,9 @@ T = TypeVar("T")
 
 # docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp amplification.
 DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
+# Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
+PAIR_RANKING = ("warnings", "penalty", "clamp_freedom", "clamp_amplification", "closure_margin", "edge_distance")
+LISTINGS = ("best", "all")
 # Orders by what a user wants most.
 PREFERENCES = {
     "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
@@ -115,6 +119,8 @@ class Query:
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
     jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where it is open.
+    listing : of a toolkit with two clamps "best", one fixture for each seat and pair of directions with the number of pairs
+        of clamps there, or "all" of them; None is "best", and of other toolkits nothing.
 
     Raises
     ------
@@ -132,12 +138,19 @@ class Query:
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     best: int | None = None
     jaw_force: float | None = None
+    listing: str | None = None
 
     def __attrs_post_init__(self) -> None:
         refuse_other_kinds(self)
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
-        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads))
+        pairs = self.toolkit.needs_pairs
+        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads, pairs))
+        if self.listing is not None and (not pairs or self.listing not in LISTINGS):
+            remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
+            raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
+        if pairs and self.listing is None:
+            object.__setattr__(self, "listing", LISTINGS[0])
         margin = self.contact_margin
         if not (isinstance(margin, int | float) and isfinite(real(margin)) and margin >= 0):
             raise InputError(f"contact margin {margin} is not a length: give 0 or more, in mm.")
@@ -171,16 +184,17 @@ def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tu
     return tuple(name for name in known if names is None or name in names)
 
 
-def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load]) -> tuple[str, ...]:
+def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load], pairs: bool = False) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
     Raises
     ------
     InputError
-        For a name that is no figure, one given twice, none at all, and a figure of loads without loads.
+        For a name that is no figure, one given twice, none at all, a figure of loads without loads, and one of two clamps
+        where there is one.
     """
     if names is None:
-        return for_loads(DEFAULT_RANKING, loads)
+        return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loads)
     keys = []
     for name in names:
         number = figure_number(name)
@@ -188,6 +202,8 @@ def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load]) -> tuple[
             raise InputError(f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in FIGURES)}.")
         if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
             raise InputError(f"there is no load to rank by the {FIGURES[number].words}: give at least one load.")
+        if number == CLAMP_FREEDOM and not pairs:
+            raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
         keys.append(FIGURES[number].key)
     if not keys:
         raise InputError("there is no figure to rank by: name at least one, such as closure-margin.")
@@ -196,16 +212,19 @@ def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load]) -> tuple[
     return tuple(keys)
 
 
-def asked_ranking(names: str | Sequence[str] | None, preference: str | None, loads: Sequence[Load]) -> tuple[str, ...]:
-    """The keys of figures named, of what is preferred, or of the default ranking where both are None.
+def asked_ranking(
+    names: str | Sequence[str] | None, preference: str | None, loads: Sequence[Load]
+) -> tuple[str, ...] | None:
+    """The names of figures, or the keys of those that stand for what is preferred; None, the default ranking, where both are
+    None.
 
     Raises
     ------
     InputError
-        For both together, and as :func:`chosen_ranking` and :func:`preferred_ranking`.
+        For both together, and as :func:`preferred_ranking`.
     """
     if preference is None:
-        return chosen_ranking(words(names), loads)
+        return words(names)
     if names is not None:
         raise InputError("figures to rank by and a preference are two orders: give one of them.")
     return preferred_ranking(preference, loads)

@@ -9,7 +9,8 @@ import numpy as np
 from attrs import define, field, fields
 from numpy.typing import NDArray
 
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.force_ratio import ratios, working_forces
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
@@ -32,13 +33,14 @@ class FixtureTable:
     Parameters
     ----------
     arrangement : (N,) int8, index into the toolkit's arrangements.
-    column, row : (N, 4) int32, the hole.
-    face : (N, 4) int32, number of the face touched.
+    column, row : (N, P) int32, the hole; P is 4, of a toolkit with two clamps 5.
+    face : (N, P) int32, number of the face touched.
     theta : (N,) orientation of the workpiece in radians, in [0, 2 pi).
     position : (N, 2) translation of the pose in mm.
-    jaw_separation : (N,) in mm.
-    force : (N, 4) contact force per unit of clamping force.
-    quality : (N, 12) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
+    jaw_separation : (N,) in mm; of two clamps (N, 2), the travel of each.
+    force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of each.
+    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
+    pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each is listed.
     """
 
     arrangement: NDArray[np.int8]
@@ -50,6 +52,12 @@ class FixtureTable:
     jaw_separation: NDArray[np.float64]
     force: NDArray[np.float64]
     quality: NDArray[np.float64]
+    pairs: NDArray[np.int32] = field()
+
+    @pairs.default
+    def each_by_itself(self) -> NDArray[np.int32]:
+        """One for each fixture."""
+        return np.ones(len(self.arrangement), np.int32)
 
     def __attrs_post_init__(self) -> None:
         for column in self.columns:
@@ -81,8 +89,10 @@ class FixtureTable:
 
     @property
     def null_vector(self) -> NDArray[np.float64]:
-        """The positive null vectors (N, 4) of the wrenches, scaled to sum 1; forces are proportional to them."""
-        return np.asarray(self.force / self.force.sum(axis=1, keepdims=True))
+        """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them, those of two
+        clamps at their working ratio."""
+        forces = self.force if self.force.ndim == 2 else working_forces(self.force)
+        return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
         """The fixtures of an index array or slice, in its order."""
@@ -94,9 +104,10 @@ class FixtureTable:
         return cls(*map(np.concatenate, zip(*(table.columns for table in tables), strict=True)))
 
     @classmethod
-    def empty(cls) -> FixtureTable:
-        """A table of no fixtures."""
-        ints, floats = np.zeros((0, 4), np.int32), np.zeros((0, 4))
+    def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
+        """A table of no fixtures of a toolkit; None is one with four pegs."""
+        count, several = (5, (2,)) if toolkit is not None and toolkit.needs_pairs else (4, ())
+        ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
         return cls(
             arrangement=np.zeros(0, np.int8),
             column=ints,
@@ -104,16 +115,16 @@ class FixtureTable:
             face=ints.copy(),
             theta=np.zeros(0),
             position=np.zeros((0, 2)),
-            jaw_separation=np.zeros(0),
+            jaw_separation=np.zeros((0, *several)),
             force=floats,
-            quality=unknown_quality(floats),
+            quality=unknown_quality(np.zeros(0)),
         )
 
 
-def unknown_quality(null_vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Figures of quality (N, 12) of which only the closure margin is known, from null vectors (N, 4) of sum 1."""
-    quality = np.full((len(null_vector), len(FIGURES)), np.nan)
-    quality[:, CLOSURE_MARGIN] = null_vector.min(axis=1, initial=1.0)
+def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Figures of quality (N, Q) of which only the closure margin (N,) is known."""
+    quality = np.full((len(closure_margin), len(FIGURES)), np.nan)
+    quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
 
 
@@ -137,6 +148,8 @@ class Result:
     statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
+    pairs, seats : of a toolkit with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
+        directions; None of others.
     """
 
     query: Query
@@ -147,6 +160,8 @@ class Result:
     notes: tuple[str, ...] = ()
     statistics: Mapping[str, int] = field(factory=dict, hash=False)
     proof: Proof | None = None
+    pairs: int | None = None
+    seats: int | None = None
 
     @property
     def workpiece(self) -> Workpiece:
@@ -194,26 +209,38 @@ def whole_turn_degrees(theta: float) -> float:
 
 def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int) -> Fixture:
     """Make the :class:`Fixture` of one row of a table."""
-    separation = float(table.jaw_separation[index])
-    arrangement, carriers = toolkit.arrangements[table.arrangement[index]], toolkit.carriers
+    one = table.take(slice(index, index + 1))
+    arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
+    across, along = toolkit.places(one.arrangement, one.column, one.row, one.jaw_separation)
+    pairs = one.force.ndim == 3
+    forces = (working_forces(one.force) if pairs else one.force)[0].tolist()
     pegs = []
     for k, number in enumerate(arrangement.carriers):
-        carrier, column, row = carriers[number], int(table.column[index, k]), int(table.row[index, k])
-        x, y = carrier.place(column, row, separation)
+        carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
         place = None if carrier.on is None else carrier.place_name(column, row)
-        pegs.append(
-            Peg(carrier.name, column, row, x, y, int(table.face[index, k]), float(table.force[index, k]), place)
+        peg = Peg(
+            carrier.name, column, row, float(across[0, k]), float(along[0, k]), int(one.face[0, k]), forces[k], place
         )
+        pegs.append(peg)
     x, y = (float(v) for v in table.position[index])
     return Fixture(
         type=arrangement.name,
         pegs=tuple(pegs),
         pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
-        jaw_separation=separation,
+        jaw_separation=float(np.ravel(one.jaw_separation)[0]),
         quality={
             figure.key: float(value)
             for figure, value in zip(FIGURES, table.quality[index], strict=True)
             if not np.isnan(value)
         },
         direction=arrangement.direction,
+        pair=pair_at(one) if pairs else None,
     )
+
+
+def pair_at(one: FixtureTable) -> Pair:
+    """What is particular to the two clamps of the only fixture of a table."""
+    low, high = (float(values[0]) for values in ratios(one.force))
+    first, second = one.jaw_separation[0].tolist()
+    reactions = tuple((a, b) for a, b in one.force[0].tolist())
+    return Pair((first, second), (low, high), reactions, int(one.pairs[0]))

@@ -27,6 +27,8 @@ from workhold.model.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
+# Contacts that fix the pose and the travel of what moves.
+MOST_OF_A_WAY = 4
 TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}
 
 
@@ -180,8 +182,8 @@ class Arrangement:
 
     @property
     def towards(self) -> str:
-        """Its direction in words, on a plan whose y runs up."""
-        return TOWARDS.get(self.direction or "", "")
+        """Its direction, or those of two clamps, in words, on a plan whose y runs up."""
+        return " and ".join(dict.fromkeys(TOWARDS[name] for name in (self.direction or "").split()))
 
     @property
     def carriers(self) -> tuple[int, ...]:
@@ -293,6 +295,16 @@ class Toolkit:
         return (self,)
 
     @property
+    def needs_pairs(self) -> bool:
+        """Whether two of its ways are needed together: their contacts share what stands still, and close together."""
+        return len(self.arrangements[0].carriers) > MOST_OF_A_WAY
+
+    @property
+    def peg_count(self) -> int:
+        """How many pegs hold the part."""
+        return len(self.arrangements[0].carriers)
+
+    @property
     def types(self) -> tuple[str, ...]:
         """The names of the arrangements."""
         return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
@@ -373,10 +385,14 @@ class Toolkit:
     def places(
         self, arrangement: NDArray[Any], column: NDArray[Any], row: NDArray[Any], travelled: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement and travelled (N,)."""
+        """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement (N,), and travelled (N,),
+        or (N, M) of each of the last M pegs."""
         carrier = self.peg_carriers(arrangement)
         x, y = np.zeros(column.shape), np.zeros(column.shape)
+        moved = np.broadcast_to(travelled[:, None], column.shape) if travelled.ndim == 1 else np.zeros(column.shape)
+        if travelled.ndim > 1:
+            moved[:, -travelled.shape[1] :] = travelled
         for number, one in enumerate(self.carriers):
-            across, along = one.place(column, row, travelled[:, None])
+            across, along = one.place(column, row, moved)
             x, y = np.where(carrier == number, across, x), np.where(carrier == number, along, y)
         return x, y

@@ -197,7 +197,8 @@ def has_three_parallels(records: Array, problem: Problem) -> NDArray[np.bool_]:
     rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
     x, y, is_line = rows[..., AXIS_X], rows[..., AXIS_Y], rows[..., IS_ARC] == 0.0
     out = np.zeros(len(records), np.bool_)
-    for triple in combinations(range(4), 3):
+    # Of one of two clamps it is the standing pegs that must fix the pose.
+    for triple in combinations(range(3 if problem.pairing else 4), 3):
         parallel = is_line[:, triple].all(axis=1)
         for i, j in combinations(triple, 2):
             parallel &= np.abs(x[:, i] * y[:, j] - y[:, i] * x[:, j]) <= PARALLEL

@@ -21,7 +21,7 @@ from attrs import frozen
 from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -131,7 +131,8 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
 
 
 def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> list[arb]:
-    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign)."""
+    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign); of
+    one of two clamps ends, the determinant of the standing pegs' wrenches, and its push."""
     out = [
         slack
         for row, center in zip(box.features, here.centers, strict=True)
@@ -141,6 +142,10 @@ def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> lis
     if isfinite(limits.gap):
         for one in along[: box.standing]:
             out += [other - one - (arb(limits.gap) - GAP_SLACK) for other in along[box.standing :]]
+    if limits.pairing:
+        x, y = here.normals[3]
+        facing = int(limits.clamping) * (x * here.axis[0] + y * here.axis[1])
+        return [*out, abs(minors[3]) - LEAST_SEAT, facing - LEAST_PUSH]
     size = sum((abs(minor) for minor in minors), arb(0))
     out.append(size - LEAST_SPAN)
     sign = 1 if sum(float(minor.mid()) for minor in minors) >= 0 else -1
@@ -311,7 +316,7 @@ def is_empty(box: Box, here: Places, limits: Limits) -> bool:
     if any(value > 0 or value < 0 for value in here.values):
         return True
     minors = wrench_minors(here, limits.wrench_length)
-    if any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
+    if not limits.pairing and any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
         # Of opposite signs, so that nothing closes.
         return True
     return any(slack < 0 for slack in slacks(box, here, minors, limits))

@@ -8,14 +8,12 @@ from pathlib import Path
 from threading import Event
 from typing import Protocol
 
-import numpy as np
 from attrs import evolve
-from numpy.typing import NDArray
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS, CROSSED, PAIRS
+from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
 from workhold.listing.best import BestFixtures
 from workhold.listing.gathering import Gathering
 from workhold.listing.listed import MEASURED, Work, best_result, gathered_result, listed_result, stage
@@ -30,6 +28,7 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks, thread_count
+from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
@@ -68,6 +67,7 @@ def design(
     loads: Sequence[Load] = (),
     best: int | None = None,
     jaw_force: float | None = None,
+    listing: str | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -77,7 +77,7 @@ def design(
 
     Parameters
     ----------
-    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force : see
+    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, listing : see
         :class:`workhold.model.query.Query`.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None is all.
     rank_by : the query's ranking.
@@ -106,7 +106,8 @@ def design(
     ['L-A1', 'L-A2', 'R-A1', 'R-A2']
     """
     ranking = asked_ranking(rank_by, prefer, loads)
-    query = Query(workpiece, toolkit, types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force)
+    asked = types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force, listing
+    query = Query(workpiece, toolkit, *asked)
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
 
 
@@ -150,6 +151,8 @@ def answer(
     (3, True)
     """
     workers = thread_count(counting_number("threads", threads))
+    if query.toolkit.needs_pairs:
+        return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
     ways = query.toolkit.ways
     if len(ways) == 1:
         return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
@@ -206,7 +209,7 @@ def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block
     """How a search went."""
     return Work(
         complete=len(done) == len(blocks),
-        statistics=statistics(search, search.totals),
+        statistics=search.statistics,
         cells=sum(block.cells for block in done),
         examined=int(search.totals[CANDIDATES]),
     )
@@ -234,15 +237,3 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
         return apart
     return no_place_note(proven, wording) if proven else loose
-
-
-def statistics(search: ToolkitSearch, totals: NDArray[np.int64]) -> dict[str, int]:
-    """Counts that tell how much work a search was (see ``Result.statistics``)."""
-    return {
-        "features": len(search.problem.rows),
-        "chord_curves": len(search.table),
-        "sliding_pairs": len(search.table.sliding_pairs.integers),
-        "curve_pairs": int(totals[PAIRS]),
-        "crossings_sought": int(totals[CROSSED]),
-        "contacts_examined": int(totals[CONTACTS]),
-    }

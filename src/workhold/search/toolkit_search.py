@@ -25,7 +25,14 @@ from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
 from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.crossing.three_and_one import three_and_one_cells
-from workhold.kernels.crossing.two_and_two import STATISTICS, STOPPED, two_and_two_cells
+from workhold.kernels.crossing.two_and_two import (
+    CONTACTS,
+    CROSSED,
+    PAIRS,
+    STATISTICS,
+    STOPPED,
+    two_and_two_cells,
+)
 from workhold.kernels.curves.columns import FROM, ORIENTATION, TO
 from workhold.model.toolkit import Arrangement, Carrier
 from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, member_counts, members_of_cell
@@ -197,13 +204,28 @@ class ToolkitSearch:
         return np.asarray(np.array(self.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0))
 
     @property
+    def statistics(self) -> dict[str, int]:
+        """Counts that tell how much work the search was (see ``Result.statistics``)."""
+        totals = self.totals
+        return {
+            "features": len(self.problem.rows),
+            "chord_curves": len(self.table),
+            "sliding_pairs": len(self.table.sliding_pairs.integers),
+            "curve_pairs": int(totals[PAIRS]),
+            "crossings_sought": int(totals[CROSSED]),
+            "contacts_examined": int(totals[CONTACTS]),
+        }
+
+    @property
     def alive(self) -> float:
         """How many chord curves exist at an orientation, on average."""
         return float((self.table.curves.reals[:, TO] - self.table.curves.reals[:, FROM]).sum()) / tau
 
-    def blocks(self, types: Collection[str], least: int = LEAST_BLOCKS) -> list[Block]:
+    def blocks(
+        self, types: Collection[str], least: int = LEAST_BLOCKS, within: tuple[float, float] | None = None
+    ) -> list[Block]:
         """Blocks of work that together find all fixtures of the arrangements of given names, about ``least`` or more for a
-        half turn."""
+        half turn; or all those ``within`` a range of orientations of the workpiece, in degrees, and some near it."""
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
         cells = int(
             min(
@@ -219,6 +241,8 @@ class ToolkitSearch:
             half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
             edges = cell_edges(half_turns, half_turns * cells)
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
+            if within is not None:
+                wanted &= may_lie_at(edges, [within], half_turns, 90.0 * frame.quarters)
             ranges = np.array(list(neighbours(wanted, together)), np.int64).reshape(-1, 2)
             counts = member_counts(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
             for (first, last), count in zip(ranges.tolist(), counts.tolist(), strict=True):

@@ -16,16 +16,20 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
+from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH, X, Y
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
+from workhold.model.force_ratio import working_forces
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ContactMatrices", "Touched"]
 
 Array = NDArray[np.float64]
+# Pegs of a fixture whose contact matrix has one inverse; with two clamps there is one more.
+PEGS, LOCATORS = 4, 3
 
 
 @define(frozen=True, eq=False)
@@ -34,12 +38,14 @@ class ContactMatrices:
 
     Parameters
     ----------
-    points : (N, 4, 2) peg centres about the centre of the part.
-    normals : (N, 4, 2) outward unit normals.
-    ends : (N, 4) distances along the contact features to their nearer ends.
-    edges : (N, 4) the same to their nearer edges, ends that are no tangent joints; infinite
+    points : (N, P, 2) peg centres about the centre of the part.
+    normals : (N, P, 2) outward unit normals.
+    ends : (N, P) distances along the contact features to their nearer ends.
+    edges : (N, P) the same to their nearer edges, ends that are no tangent joints; infinite
         where there is none.
-    inverses : (N, 4, 4) inverses of the contact matrices, NaN where there is none.
+    inverses : (N, 4, P) inverses of the contact matrices, NaN where there is none. With two clamps, P is 5: the locators
+        alone say how the part moves, and the last row are the forces at the working ratio of the clamps' forces.
+    closing : (N, P, M) forces of all pegs per unit of the force of each thing that moves.
     """
 
     points: Array
@@ -47,6 +53,7 @@ class ContactMatrices:
     ends: Array
     edges: Array
     inverses: Array
+    closing: Array
 
 
 @define(frozen=True, eq=False)
@@ -63,6 +70,7 @@ class Touched:
     segments : how many face numbers there are.
     moving : (C,) 1 for a carrier that moves, 0 for others.
     axis : (2,) unit vector against which the moving pegs clamp, in the toolkit's frame.
+    directions : (C, 2) unit vector along which each carrier clamps, zero for one that stands still.
     """
 
     center: Array
@@ -72,6 +80,7 @@ class Touched:
     segments: int
     moving: Array
     axis: Array
+    directions: Array
 
     @classmethod
     def of(
@@ -108,6 +117,8 @@ class Touched:
             segments=segments,
             moving=np.array([carrier.travel is not None for carrier in carriers], np.float64),
             axis=toolkit.clamping * np.array(toolkit.moving_axis, np.float64),
+            directions=np.array([(0.0, 0.0) if c.travel is None else c.travel.unit for c in carriers], np.float64)
+            * -toolkit.clamping,
         )
 
     def contact_matrices(
@@ -117,13 +128,14 @@ class Touched:
 
         Parameters
         ----------
-        pegs : (N, 4, 2) peg centres in the toolkit's frame, in mm.
+        pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
         pose : (N, 3) orientation in radians and translation in mm.
-        carriers : (N, 4) numbers of the pegs' carriers.
-        faces : (N, 4) numbers of the faces touched.
+        carriers : (N, P) numbers of the pegs' carriers.
+        faces : (N, P) numbers of the faces touched.
         """
-        count = len(pegs)
-        out = ContactMatrices(*(np.empty((count, 4, *shape)) for shape in ((2,), (2,), (), (), (4,))))
+        count, each = pegs.shape[:2]
+        points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
+        inverses = np.zeros((count, 4, each))
         # Copies, because a kernel is compiled anew for arrays that are read-only or laid out otherwise.
         contact_matrices_of(
             np.array(pegs, np.float64, order="C"),
@@ -135,14 +147,23 @@ class Touched:
             self.starts,
             self.center,
             self.length,
-            out.points,
-            out.normals,
-            out.ends,
-            out.edges,
-            out.inverses,
-            np.empty((4, 4)),
+            points,
+            normals,
+            ends,
+            edges,
+            inverses,
+            np.empty((each, 4)),
         )
-        return out
+        if each == PEGS:
+            return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
+        reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
+        inverses += pair_inverses(points, normals, reactions, self.length)
+        return ContactMatrices(points, normals, ends, edges, inverses, reactions)
+
+    def pushes(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
+        """The unit vectors (N, 2, 2) along which the two clamps of fixtures push, in the part's frame."""
+        along = self.directions[np.asarray(carriers)[:, -2:]]
+        return np.stack(rotated(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
 
     def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
         """The contact matrix of one fixture in a toolkit."""
@@ -153,3 +174,44 @@ class Touched:
             np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)]),
             np.array([[peg.face for peg in fixture.pegs]]),
         )
+
+
+def pair_wrenches(points: Array, normals: Array, length: float) -> Array:
+    """Wrenches (N, P, 3) of contacts: normal, and moment over L."""
+    moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
+    return np.concatenate([normals, moments[..., None]], axis=-1)
+
+
+def locators_inverse(wrenches: Array) -> Array:
+    """Inverses (N, 3, 3) of the matrices whose rows are the locators' wrenches; NaN where there is none."""
+    matrix = wrenches[:, :LOCATORS]
+    usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(np.linalg.det(matrix)) > 0.0)
+    inverse = np.full(matrix.shape, np.nan)
+    inverse[usable] = np.linalg.inv(matrix[usable])
+    return inverse
+
+
+def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) -> Array:
+    """Forces (N, 5, 2) of three locators and two clamps per unit of the force of each clamp.
+
+    Parameters
+    ----------
+    points, normals : (N, 5, 2) about the centre of the part.
+    pushes : (N, 2, 2) unit vectors along which the clamps push, in the part's frame.
+    length : L in mm.
+    """
+    wrenches = pair_wrenches(points, normals, length)
+    push = -(normals[:, LOCATORS:] * pushes).sum(axis=-1)
+    taken = -np.einsum("nij,nki->njk", locators_inverse(wrenches), wrenches[:, LOCATORS:])
+    out = np.zeros((len(points), 5, 2))
+    out[:, :LOCATORS] = taken / push[:, None]
+    out[:, LOCATORS, 0], out[:, LOCATORS + 1, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
+    return out
+
+
+def pair_inverses(points: Array, normals: Array, reactions: Array, length: float) -> Array:
+    """What stands for the inverses (N, 4, 5) of contact matrices with two clamps, see :class:`ContactMatrices`."""
+    out = np.zeros((len(points), 4, 5))
+    out[:, :LOCATORS, :LOCATORS] = locators_inverse(pair_wrenches(points, normals, length))
+    out[:, 3] = working_forces(reactions)
+    return out

@@ -28,14 +28,14 @@ Array = NDArray[np.float64]
 def cone_edges(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> tuple[Array, Array]:
-    """Wrenches (8, 3) of the edges of four friction cones, and how much each pushes the moving carrier back (8,).
+    """Wrenches (2 P, 3) of the edges of friction cones, and how much each pushes what moves back (2 P,).
 
     Parameters
     ----------
-    contacts : (4, 2) contact points about c in mm (with friction they are not the peg centres).
-    normals : (4, 2) outward unit normals.
-    moving : (4,) 1 for pegs on the carrier that moves, 0 for others.
-    against : (2,) unit vector in the part's frame against which that carrier clamps.
+    contacts : (P, 2) contact points about c in mm (with friction they are not the peg centres).
+    normals : (P, 2) outward unit normals.
+    moving : (P,) 1 for pegs on the carrier that moves, 0 for others.
+    against : (2,) unit vector in the part's frame against which that carrier clamps, or (P, 2) for each peg.
     friction : the coefficient mu.
     length : L in mm, which moments are divided by.
     """
@@ -43,7 +43,8 @@ def cone_edges(
     edges = np.concatenate([-normals + friction * tangents, -normals - friction * tangents])
     at = np.concatenate([contacts, contacts])
     moments = (at[:, 0] * edges[:, 1] - at[:, 1] * edges[:, 0]) / length
-    share = -(edges @ against) * np.concatenate([moving, moving])
+    against = np.broadcast_to(against, normals.shape)
+    share = -(edges * np.concatenate([against, against])).sum(axis=1) * np.concatenate([moving, moving])
     return np.column_stack([edges, moments]), share
 
 

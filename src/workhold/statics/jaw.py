@@ -14,6 +14,7 @@ manipulation forces in multiple whole-limb manipulation*, Robotics and Autonomou
     f = f0 - h (h . f0) / (1 / s + h . h),
 
 which is f0 for s = 0, and the part of f0 at right angles to h for a rigid jaw. It holds while every peg stays in contact.
+Two clamps have a column each in H, the forces are f0 + H k, and f = f0 - H (1 / s + H'H)^-1 H'f0.
 """
 
 from __future__ import annotations
@@ -78,38 +79,46 @@ def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
     return f"{toolkit.locked} " + ("locked" if stiffness == inf else f"{stiffness:g} times as stiff as a contact")
 
 
-def shared_forces(forces: Array, stiffness: float) -> Array:
+def shared_forces(forces: Array, closing: Array, stiffness: float) -> Array:
     """Peg forces per unit of g_x, g_y, moment and jaw force behind a jaw of a stiffness.
 
     Parameters
     ----------
-    forces : (4, 4) the same for a jaw that keeps its force; the last column is h.
+    forces : (P, 4) the same for a jaw that keeps its force.
+    closing : (P, M) peg forces per unit of the force of each jaw or clamp, H.
 
     Returns
     -------
-    (4, 4) array, whose last column is h still: the jaw was closed before the load came.
+    (P, 4) array, whose last column is h still: the jaw was closed before the load came.
     """
     if stiffness == 0:
         return forces
-    out, closing = forces.copy(), forces[:, 3]
-    out[:, :3] -= np.outer(closing, closing @ forces[:, :3]) / (1 / stiffness + closing @ closing)
+    out = forces.copy()
+    springs = np.eye(closing.shape[1]) / stiffness + closing.T @ closing
+    out[:, :3] -= closing @ np.linalg.solve(springs, closing.T @ forces[:, :3])
     return out
 
 
-def jaw_forces_needed(inverses: Array, length: float, loads: Array) -> Array:
+def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
     """Jaw forces (N,) in N above which no peg of a screw vise lets go under any load; never negative.
 
-    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0.
+    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of their forces, at
+    the working ratio, and what is taken from f0 is its part in the plane of both.
 
     Parameters
     ----------
-    inverses : (N, 4, 4) of the contact matrices; their last rows are h.
+    inverses : (N, 4, P) of the contact matrices; their last rows are h.
+    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
     length : L in mm.
     loads : (M, 11) rows, see ``kernels.statics.reactions``.
     """
-    closing = inverses[:, 3]
-    shares = inverses[:, :3] @ closing[:, :, None] / (closing * closing).sum(axis=1)[:, None, None]
-    a, b, c = np.moveaxis(shares - inverses[:, :3] / closing[:, None], 1, 0)
+    held = inverses[:, 3]
+    if closing.shape[2] == 1:
+        shares = inverses[:, :3] @ held[:, :, None] / (held * held).sum(axis=1)[:, None, None]
+    else:
+        frame, _ = np.linalg.qr(np.nan_to_num(closing))
+        shares = (inverses[:, :3] @ frame) @ np.swapaxes(frame, 1, 2) / held[:, None]
+    a, b, c = np.moveaxis(shares - inverses[:, :3] / held[:, None], 1, 0)
     most = np.zeros(len(inverses))
     for load in loads:
         force, px, py, moment = load[0], load[1] / length, load[2] / length, load[3] / length

@@ -9,6 +9,7 @@ without pushing that carrier. That is for a jaw that keeps its force; a screw vi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import permutations
 from math import atan2, cos, degrees, hypot, isfinite, radians, sin
 
 import numpy as np
@@ -29,7 +30,6 @@ from workhold.statics.jaw import jaw_stiffness, shared_forces
 __all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
 
 Array = NDArray[np.float64]
-FourForces = tuple[float, float, float, float]
 
 
 @frozen
@@ -72,8 +72,8 @@ class LoadCase:
     load: Load
     jaw_stiffness: float
     jaw_force: float
-    smallest: FourForces
-    largest: FourForces
+    smallest: tuple[float, ...]
+    largest: tuple[float, ...]
     reaction: Worst
     needed: Worst
     needed_with_friction: float | None
@@ -114,13 +114,14 @@ def load_cases(
     stiffness, touched = jaw_stiffness(jaw), Touched.of(workpiece, toolkit)
     contact_matrices = touched.of_fixture(fixture, toolkit)
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.statics.contact_matrix.
-    forces = shared_forces(contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0]), stiffness)
+    forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
+    forces = shared_forces(forces, contact_matrices.closing[0], stiffness)
     motions = None
     if friction is not None:
         carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
         radii = np.array([toolkit.carriers[number].peg_radius for number in carriers])
         contacts = contact_matrices.points[0] - radii[:, None] * contact_matrices.normals[0]
-        against = np.array(fixture.pose.inverse.turn(*touched.axis))
+        against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
         moving = touched.moving[carriers]
         motions = possible_motions(contacts, contact_matrices.normals[0], moving, against, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
@@ -133,8 +134,12 @@ def load_cases(
             load=load,
             jaw_stiffness=stiffness,
             jaw_force=jaw_force,
-            smallest=four(-largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
-            largest=four(largest_of(forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(4)),
+            smallest=forces_of(
+                -largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(len(forces))
+            ),
+            largest=forces_of(
+                largest_of(forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(len(forces))
+            ),
             reaction=reaction(forces, load, center),
             needed=need,
             needed_with_friction=None if motions is None else with_friction(motions, load, center, need, stiffness),
@@ -143,10 +148,9 @@ def load_cases(
     )
 
 
-def four(values: Iterator[float]) -> FourForces:
-    """Four numbers as a tuple."""
-    a, b, c, d = (float(value) for value in values)
-    return a, b, c, d
+def forces_of(values: Iterator[float]) -> tuple[float, ...]:
+    """Numbers as a tuple of floats."""
+    return tuple(float(value) for value in values)
 
 
 def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
@@ -174,13 +178,15 @@ def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> 
 
 def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """The jaw force needed so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
-    worst = max((of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(4)), key=lambda worst: worst.value)
+    worst = max(
+        (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces))), key=lambda worst: worst.value
+    )
     return Worst(max(worst.value, 0.0), worst.peg, worst.point, worst.direction)
 
 
 def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.statics.reactions``)."""
-    pairs = [(j, i) for j in range(4) for i in range(4) if i != j]
+    pairs = permutations(range(len(forces)), 2)
     return max(
         (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),
         key=lambda worst: worst.value,

@@ -12,11 +12,21 @@ from numpy.typing import NDArray
 
 from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Arc
+from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
 from workhold.kernels.statics.quality import figures
 from workhold.kernels.statics.reactions import LOAD_LENGTH
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, PENALTY, SMALLEST_FACE, TILT, WARNINGS
+from workhold.model.quality import (
+    CLAMP_FREEDOM,
+    CLOSURE_MARGIN,
+    FIGURES,
+    JAW_FORCE_NEEDED,
+    PENALTY,
+    SMALLEST_FACE,
+    TILT,
+    WARNINGS,
+)
 from workhold.model.result import FixtureTable, Result, fixture_at
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
@@ -90,11 +100,16 @@ def quality_of(
             arcs,
             rows,
             filled := out[start : start + BLOCK],
-            np.empty((8, 3)),
+            np.empty((10, 3)),
         )
         filled[:, JAW_FORCE_NEEDED] = (
-            jaw_forces_needed(contact_matrices.inverses, known.length, rows) if loads else np.nan
+            jaw_forces_needed(contact_matrices.inverses, contact_matrices.closing, known.length, rows)
+            if loads
+            else np.nan
         )
+        filled[:, CLAMP_FREEDOM] = np.nan
+        if toolkit.needs_pairs:
+            filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
         filled[:, TILT] = tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = sizes[faces].min(axis=1, initial=np.inf)
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
@@ -107,6 +122,18 @@ def quality_of(
     else:
         for start in starts:
             fill(start)
+    return out
+
+
+def closures(reactions: Array) -> Array:
+    """Closure margins and clamp freedoms (N, 2) of fixtures with two clamps, from the forces (N, 5, 2) per unit of each."""
+    clamps = np.zeros((len(reactions), 2, CLAMP_LENGTH))
+    for k in range(2):
+        clamps[:, k, PUSH] = 1.0 / reactions[:, 3 + k, k]
+        clamps[:, k, :3] = reactions[:, :3, k] * clamps[:, k, PUSH, None]
+    out = np.empty((len(reactions), 2))
+    closures_of(clamps, out)
+    out[np.isnan(reactions).any(axis=(1, 2))] = np.nan
     return out
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from workhold.archive import mapped_archive
 from workhold.errors import InputError
-from workhold.model.columns import COLUMNS, HEAD
+from workhold.model.columns import HEAD, columns_said
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.quality import FIGURES
 from workhold.model.toolkit import Toolkit
@@ -39,7 +39,7 @@ def columns_of(path: Path) -> tuple[str, Columns]:
     OSError
         When it cannot be read.
     """
-    return mapped_archive(path, COLUMNS, HEAD, whole=True)
+    return mapped_archive(path, columns_said, HEAD, whole=True)
 
 
 @frozen(eq=False)

@@ -24,6 +24,7 @@ MAKERS = {
     "cell_pieces",
     "chord_intervals",
     "grown",
+    "pairs_of",
     "interval_newton",
     "jacobians",
     "outline_distances",

@@ -63,8 +63,9 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
             refuse(beyond, f"has a peg in a {what} beyond the {most} of the {carrier.title}")
     faces = [face.number for face in query.workpiece.faces]
     refuse(~np.isin(table.face, faces), "has a peg on a segment that does not name a face of the workpiece")
-    numbers = [table.theta[:, None], table.position, table.jaw_separation[:, None], table.force]
-    for values in numbers:
-        refuse(~(np.abs(values) <= LARGEST_LENGTH), NOT_FINITE)
+    for values in (table.theta, table.position, table.jaw_separation, table.force):
+        refuse(~(np.abs(values.reshape(len(table), -1)) <= LARGEST_LENGTH), NOT_FINITE)
     refuse(np.isinf(table.quality), NOT_FINITE)
-    refuse(table.force <= 0, "has a peg whose force is not positive")
+    # Of two clamps either may lift a locator; both together press all.
+    refuse(table.null_vector <= 0, "has a peg whose force is not positive")
+    refuse((table.pairs < 1) | (table.pairs > LARGEST_NUMBER), "stands for no pair of clamps")

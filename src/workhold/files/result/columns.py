@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import define, frozen
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import ArchiveWriter, mapped_archive
@@ -25,7 +25,7 @@ from workhold.files.result.checks import refuse_faulty, refuse_unknown_types
 from workhold.files.result.head import checked_head, checked_query, result_with
 from workhold.files.result.writer import ANGLE_STEPS, FORMAT, LENGTH_STEPS, head, rounded
 from workhold.files.text import json_value
-from workhold.model.columns import COLUMNS, HEAD
+from workhold.model.columns import COLUMNS, HEAD, PAIR_COLUMNS, columns_said
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 
@@ -59,7 +59,7 @@ class ColumnsReceiver:
         """
         counts = Counter[str]()
         with binary_file(self.path) as stream:
-            archive = ArchiveWriter(stream, COLUMNS, listed)
+            archive = ArchiveWriter(stream, PAIR_COLUMNS if result.toolkit.needs_pairs else COLUMNS, listed)
             for table in tables:
                 counts.update(result.toolkit.arrangements_counted(table.arrangement))
                 for start in range(0, len(table), BLOCK):
@@ -120,6 +120,7 @@ def as_written(table: FixtureTable) -> tuple[NDArray[Any], ...]:
         rounded(table.jaw_separation, LENGTH_STEPS),
         significant(table.force),
         significant(table.quality),
+        *([table.pairs] if table.force.ndim == 3 else []),
     )
 
 
@@ -154,8 +155,8 @@ class MappedTable(FixtureTable):
     path : of the file.
     """
 
-    query: Query
-    path: Path
+    query: Query = field(kw_only=True)
+    path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
         """The fixtures of an index array or slice, in its order.
@@ -179,7 +180,7 @@ def read_columns(path: Path) -> Result:
     InputError
         See :func:`read_result`.
     """
-    text, columns = mapped_archive(path, COLUMNS, HEAD)
+    text, columns = mapped_archive(path, columns_said, HEAD)
     try:
         data = json_value(text)
     except InputError as error:

@@ -13,7 +13,9 @@ from workhold.model.result import Result
 __all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
-POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y", "jaw_separation")
+POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
+# How far what moves has travelled, of a fixture with one thing that moves and with two.
+TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
 def write_result_csv(result: Result, path: str | Path) -> None:
@@ -39,19 +41,19 @@ def write_result_csv_to(result: Result, stream: IO[str]) -> None:
 def result_csv_text(result: Result) -> Iterator[str]:
     """The comma-separated values, piece by piece."""
     figures = known_figures(result.table)
-    pegs = [f"peg{peg}_{name}" for peg in (1, 2, 3, 4) for name in PEG_COLUMNS]
-    yield ",".join([*POSE_COLUMNS, *(figure.key for figure in figures), *pegs]) + "\n"
-    carriers = result.toolkit.carriers
-    arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in result.toolkit.arrangements]
+    toolkit, carriers = result.toolkit, result.toolkit.carriers
+    pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
+    moved = TRAVEL_COLUMNS[2 if toolkit.needs_pairs else 1]
+    yield ",".join([*POSE_COLUMNS, *moved, *(figure.key for figure in figures), *pegs]) + "\n"
+    arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number = 0
-    for kinds, rows in fixture_rows(result.table, result.toolkit):
+    for kinds, rows in fixture_rows(result.table, toolkit):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
             name, jaws = arrangements[kind]
-            theta, x, y, separation, *quality = row[24:]
-            fields = [str(number), name, repr(theta), repr(x), repr(y), repr(separation)]
-            fields += [f"{value:.12g}" for value in quality]
+            pose, quality = row[6 * len(jaws) :][: 3 + len(moved)], row[6 * len(jaws) + 3 + len(moved) :]
+            fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
                 hole = jaw.place_name(column, hole_row)

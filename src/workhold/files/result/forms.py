@@ -82,7 +82,8 @@ class PlatePart(Part):
     peg_radius: float
     clamp_radius: float | None = None
     travel: Pair | None = None
-    directions: list[str] | None = None
+    directions: list[str | list[str]] | None = None
+    clamps: int = 1
 
 
 # What tells the parts of a toolkit apart; they are no keys of a file.
@@ -180,16 +181,16 @@ class UndecidedPart(Part):
     """One entry of the proof's list of what is not decided; columns and rows may be negative."""
 
     type: str
-    segments: list[int] = Field(min_length=4, max_length=4)
-    columns: list[int] = Field(min_length=4, max_length=4)
-    rows: list[int] = Field(min_length=4, max_length=4)
+    segments: list[int] = Field(min_length=4, max_length=5)
+    columns: list[int] = Field(min_length=4, max_length=5)
+    rows: list[int] = Field(min_length=4, max_length=5)
     theta_deg: float = Field(ge=0, lt=360)
     reach_deg: float | None = Field(default=None, ge=0)
     reason: str = Field(min_length=1)
 
     def undecided(self) -> Undecided:
         """The entry as the model has it."""
-        faces, columns, rows = ((v[0], v[1], v[2], v[3]) for v in (self.segments, self.columns, self.rows))
+        faces, columns, rows = (tuple(v) for v in (self.segments, self.columns, self.rows))
         return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
 
@@ -231,6 +232,9 @@ class Head(Part):
     loads: list[LoadPart] = []
     best: int | None = None
     jaw_force: float | None = None
+    listing: str | None = None
+    pairs: Annotated[int, Field(ge=0)] | None = None
+    seats: Annotated[int, Field(ge=0)] | None = None
 
     def asked_toolkit(self) -> Toolkit:
         """The toolkit.
@@ -267,4 +271,5 @@ class Head(Part):
             loads=(part.load() for part in self.loads),
             best=self.best,
             jaw_force=self.jaw_force,
+            listing=self.listing,
         )

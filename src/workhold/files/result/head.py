@@ -88,6 +88,8 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
         notes=tuple(head.notes),
         statistics=head.statistics,
         proof=None if head.proof is None else checked_proof(head.proof, query, path),
+        pairs=head.pairs,
+        seats=head.seats,
     )
 
 
@@ -109,6 +111,12 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
     for number, item in enumerate(part.undecided, 1):
         if item.type not in types:
             raise InputError(f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}.")
+        pegs = (4, query.toolkit.peg_count)
+        for key in ("columns", "rows", "segments"):
+            if len(getattr(item, key)) not in pegs:
+                raise InputError(
+                    f"{path}: proof.undecided.{number - 1}.{key} cannot be used: it needs one for each peg."
+                )
         if not faces.issuperset(item.segments):
             raise InputError(f"{path}: undecided candidate {number} of the proof names a segment that is no face.")
     return part.proof()

@@ -35,8 +35,9 @@ BLOCK = 4096
 
 @frozen
 class Columns:
-    """The fixtures of a file as arrays: (N,) types and (N, 4) jaws by name, (N, 4, 3) holes and faces, (N, 4, 3) x, y and
-    forces, (N, 4) pose in degrees and mm and jaw separation, (N, 12) figures of quality (NaN where the file gives none)."""
+    """The fixtures of a file as arrays: (N,) types and (N, P) jaws by name, (N, P, 3) holes and faces, (N, P, 4) x, y and
+    forces (per unit of each of two clamps' forces; the second is 0 where there is one), (N, 5) pose in degrees and mm, jaw
+    separation and number of pairs, (N, Q) figures of quality (NaN where the file gives none)."""
 
     types: NDArray[np.str_]
     jaws: NDArray[np.str_]
@@ -75,7 +76,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
     """
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
-    number = 1
+    number, pegs = 1, 0
     while True:
         rows = []
         for fixture in islice(iterator, BLOCK):
@@ -87,7 +88,11 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
             number += 1
         kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
-        shapes = ((), (4,), (4, 3), (4, 3), (4,), (len(FIGURES),))
+        pegs = pegs or len(rows[0][1]) if rows else pegs or 4
+        if other := next((k for k, row in enumerate(rows) if len(row[1]) != pegs), None):
+            wrong = number - len(rows) + other
+            raise InputError(f"{path}: fixture {wrong} cannot be used: it does not have as many pegs as the first.")
+        shapes = ((), (pegs,), (pegs, 3), (pegs, 4), (5,), (len(FIGURES),))
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
@@ -100,23 +105,27 @@ def fixture_row(
     """The numbers of one fixture, for one row of each array of :class:`Columns`."""
     name = fixture["type"]
     pegs, pose = fixture["pegs"], fixture["pose"]
-    if not isinstance(pegs, list) or len(pegs) != 4:
-        raise ValueError("it does not have four pegs")
-    direction = fixture.get("direction")
+    pair = fixture.get("directions")
+    if not isinstance(pegs, list) or len(pegs) != (4 if pair is None else 5):
+        raise ValueError(f"it does not have {'four' if pair is None else 'five'} pegs")
+    direction = fixture.get("direction") if pair is None else " ".join(pair)
     name = name if direction is None else f"{name} {direction}"
     jaws, holes = [], []
     for peg in pegs:
-        carrier, column, row = peg_place(peg, direction)
+        carrier, column, row = peg_place(peg, direction if pair is None else peg.get("direction"))
         jaws.append(carrier)
         holes.append([column, row, peg["segment"]])
     if not all(isinstance(word, str) for word in (fixture["type"], *jaws)):
         raise ValueError("its type or a peg's jaw is not text")
-    contacts = [[peg["x"], peg["y"], peg["force"]] for peg in pegs]
+    forces = [[peg["force"], 0.0] if pair is None else [*peg["force"]] for peg in pegs]
+    if any(len(force) != 2 for force in forces):
+        raise ValueError("a peg does not have a force for each clamp")
+    contacts = [[peg["x"], peg["y"], *force] for peg, force in zip(pegs, forces, strict=True)]
     figures = fixture.get("quality", {})
     known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
     # The travel of a clamp follows from its place.
     travel = fixture["jaw_separation"] if direction is None else 0.0
-    placing = [pose["theta_deg"], pose["x"], pose["y"], travel]
+    placing = [pose["theta_deg"], pose["x"], pose["y"], travel, 1 if pair is None else fixture.get("pairs", 1)]
     if {type(value) for hole in holes for value in hole} != {int}:
         raise ValueError("a peg's column, row or segment is not a whole number")
     if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
@@ -163,6 +172,10 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         Naming the first fixture that contradicts the vise, the workpiece or itself.
     """
     toolkit = query.toolkit
+    if len(columns.types) == 0:
+        return FixtureTable.empty(toolkit)
+    if columns.jaws.shape[1] != toolkit.peg_count:
+        raise InputError(f"{path}: its fixtures do not have the {toolkit.peg_count} pegs of the {toolkit.noun}.")
     arrangements, carriers = [one.title for one in toolkit.arrangements], [one.name for one in toolkit.carriers]
     arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
     order = np.argsort(jaw, axis=1, kind="stable")
@@ -170,9 +183,11 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     hole = np.take_along_axis(columns.holes, order[:, :, None], axis=1)
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
-    theta_deg, x, y, separation = columns.placing.T
-    if toolkit.moving.on is not None:
-        separation = clamp_travel(toolkit, arrangement, hole[:, -1], contact[:, -1])
+    theta_deg, x, y, separation, pairs = columns.placing.T
+    if toolkit.needs_pairs:
+        separation = np.stack([clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in (-2, -1)], axis=1)
+    elif toolkit.moving.on is not None:
+        separation = clamp_travel(toolkit, jaw[:, -1], hole[:, -1], contact[:, -1])
     table = FixtureTable(
         arrangement=arrangement,
         column=column,
@@ -181,8 +196,9 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         theta=np.radians(theta_deg) % (2 * np.pi),
         position=np.stack([x, y], axis=1),
         jaw_separation=separation.copy(),
-        force=np.ascontiguousarray(contact[:, :, 2]),
+        force=np.ascontiguousarray(contact[:, :, 2:] if toolkit.needs_pairs else contact[:, :, 2]),
         quality=columns.quality,
+        pairs=pairs.astype(np.int32),
     )
 
     def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
@@ -201,15 +217,16 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
 
 
 def clamp_travel(
-    toolkit: Toolkit, arrangement: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
+    toolkit: Toolkit, numbers: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """How far (N,) clamps have travelled from their holes (N, 2 or more) to their tips (N, 2 or more), in mm."""
+    """How far (N,) clamps, carriers of some numbers (N,), have travelled from their holes (N, 2 or more) to their tips (N, 2
+    or more), in mm."""
     out = np.zeros(len(tip))
-    for number, carrier in enumerate(toolkit.carriers[1:]):
+    for number, carrier in enumerate(toolkit.carriers[1:], 1):
         assert carrier.travel is not None
         x, y = carrier.place(hole[:, 0], hole[:, 1])
         along, across = carrier.travel.unit
-        out = np.where(arrangement == number, (tip[:, 0] - x) * along + (tip[:, 1] - y) * across, out)
+        out = np.where(numbers == number, (tip[:, 0] - x) * along + (tip[:, 1] - y) * across, out)
     return out
 
 

@@ -18,9 +18,11 @@ from typing import IO, Any
 
 import numpy as np
 from attrs import asdict
-from numpy.typing import NDArray
 
 from workhold.files.atomic import text_file
+from workhold.files.result.pairs import pair_lines
+from workhold.files.result.rounding import ANGLE_STEPS, LENGTH_STEPS, known_figures, rounded
+from workhold.model.force_ratio import working_forces
 from workhold.model.holes import Holes
 from workhold.model.kinds import USUAL
 from workhold.model.load import Load
@@ -49,8 +51,6 @@ __all__ = [
 
 FORMAT = "workhold-result/1"
 BLOCK = 4096
-LENGTH_STEPS = 1e9
-ANGLE_STEPS = 1e10
 
 CONTACT = '"x": %r, "y": %r, "segment": %d, "force": %.12g'
 POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
@@ -107,6 +107,11 @@ def result_text(result: Result) -> Iterator[str]:
 def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
+    if toolkit.needs_pairs:
+        for lines in pair_lines(table, toolkit):
+            yield separator + ",\n".join(lines)
+            separator = ",\n"
+        return
     figures = known_figures(table)
     templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
     for kind, numbers in fixture_rows(table, toolkit):
@@ -143,12 +148,14 @@ def head(result: Result) -> dict[str, Any]:
         "tolerance": tolerance_entry(query.tolerance),
         "loads": [load_entry(load) for load in query.loads],
         "best": query.best,
+        **({} if query.listing is None else {"listing": query.listing}),
         "jaw_force": query.jaw_force,
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
         "notes": list(result.notes),
+        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
 
@@ -218,18 +225,14 @@ def rounded_degrees(angle: float) -> float:
     return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
 
 
-def known_figures(table: FixtureTable) -> list[Figure]:
-    """The figures of quality that all fixtures of a table have."""
-    return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
-
-
 def fixture_rows(table: FixtureTable, toolkit: Toolkit) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
     """Blocks of fixtures as plain numbers, rounded as they are written.
 
     Yields
     ------
-    The indices of the arrangements, and for every fixture a tuple of 28 numbers: for each peg column, row, x, y, face,
-    force; then theta in degrees, x and y of the pose, jaw separation; and after them the figures of :func:`known_figures`.
+    The indices of the arrangements, and for every fixture a tuple of numbers: for each peg column, row, x, y, face, force
+    (of two clamps at their working ratio); then theta in degrees, x and y of the pose, jaw separation or the travel of each
+    clamp; and after them the figures of :func:`known_figures`.
     """
     known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
@@ -238,17 +241,13 @@ def fixture_rows(table: FixtureTable, toolkit: Toolkit) -> Iterator[tuple[list[i
         holes = toolkit.places(block.arrangement, block.column, block.row, separation)
         x, y = (rounded(places, LENGTH_STEPS) for places in holes)
         columns: list[list[Any]] = []
-        for peg in range(4):
-            numbers = (block.column, block.row, x, y, block.face, block.force)
+        force = working_forces(block.force) if toolkit.needs_pairs else block.force
+        for peg in range(toolkit.peg_count):
+            numbers = (block.column, block.row, x, y, block.face, force)
             columns += [array[:, peg].tolist() for array in numbers]
         theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
         theta[theta >= 360.0] = 0.0
         position = rounded(block.position, LENGTH_STEPS)
         figures = [block.quality[:, number] for number in known]
-        columns += [array.tolist() for array in (theta, position[:, 0], position[:, 1], separation, *figures)]
+        columns += [array.tolist() for array in (theta, *position.T, *np.atleast_2d(separation.T), *figures)]
         yield block.arrangement.tolist(), zip(*columns, strict=True)
-
-
-def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
-    """The nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
-    return np.rint(values.astype(np.float64) * steps) / steps + 0.0

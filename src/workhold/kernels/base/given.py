@@ -53,6 +53,8 @@ class Limits(NamedTuple):
     clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards +x.
     least_margin : smallest closure margin of interest.
     most_listed : how many contacts a block lists when it counts them.
+    pairing : 1 when the peg that moves is one of two clamps: nothing need close yet, but the standing pegs alone must fix
+        the pose, and the clamp must push. Else 0.
     """
 
     gap: float
@@ -62,6 +64,7 @@ class Limits(NamedTuple):
     clamping: float
     least_margin: float
     most_listed: float
+    pairing: float = 0.0
 
 
 class Setting(NamedTuple):

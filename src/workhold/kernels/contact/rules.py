@@ -2,7 +2,8 @@
 
 Four pegs at simultaneous contact are a fixture when every contact lies inside its feature, the pegs of the moving carrier
 stand the smallest gap to the right of the standing ones, and the wrenches close with the standing pegs pushing to the right,
-or to the left where opening clamps (model: conditions 1, 3, 4 and 5).
+or to the left where opening clamps (model: conditions 1, 3, 4 and 5). Where the moving peg is one of two clamps, instead of
+closing, the three standing pegs must fix the pose, which the last of the four minors tells, and the clamp must push.
 
 Every rule is decided by bounds: the exact contact is within a radius of the computed one, and only what breaks a rule
 everywhere within that radius is discarded.
@@ -15,7 +16,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.given import Features, Limits
@@ -82,6 +83,10 @@ def is_fixture(
         return (1, separation)
     size = minors(points, normals, length, null)
     band = minor_band(swing, radius, length)
+    if limits.pairing != 0.0:
+        push = limits.clamping * (normals[3, 0] * cx + normals[3, 1] * cy)
+        sure = abs(null[3]) + band > LEAST_SEAT and push + swing + reach > LEAST_PUSH
+        return (2 if sure else 1, separation)
     low, high = min(null[0], null[1], null[2], null[3]), max(null[0], null[1], null[2], null[3])
     sign = 1.0 if high >= -low else -1.0
     smallest = low if sign > 0.0 else -high

@@ -250,6 +250,7 @@ def add_moving_pegs(
     slack = 1e-9 + error / pitch_y
     gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
     write_triple(triple, pegs, psi, rows, length)
+    asks_closure = not counting and limits.pairing == 0.0
     for e in range(features.moving[0], features.moving[1]):
         row = rows[e]
         if not counting and faces_away(row, cx, cy, limits.clamping, reach):
@@ -265,7 +266,7 @@ def add_moving_pegs(
                 meets, x, y, radius = row_meets(row, -cy, cx, base + line * pitch_y, error, 1.0 - 2.0 * k)
                 if not meets:
                     continue
-                if not counting and not may_close(triple, row, x, y, radius, cx, cy, gap, limits):
+                if asks_closure and not may_close(triple, row, x, y, radius, cx, cy, gap, limits):
                     continue
                 place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
                 verdict, separation = is_fixture(pegs, 3.0, psi, reach, features, limits, space.contacts, space.null)

@@ -27,7 +27,15 @@ from math import cos, inf, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, TOUCHING
+from workhold.conventions import (
+    GAP_SLACK,
+    LEAST_CLAMPING,
+    LEAST_CLOSURE,
+    LEAST_PUSH,
+    LEAST_SEAT,
+    LEAST_SPAN,
+    TOUCHING,
+)
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
@@ -201,7 +209,7 @@ def judged(
     null: Array,
 ) -> int:
     """Decide contacts in place by the signs of enclosures of five numbers that must all be positive: ends, gap, span,
-    closure, clamping.
+    closure, clamping; of one of two clamps ends, the determinant of the standing pegs' wrenches, and its push.
 
     Parameters
     ----------
@@ -214,10 +222,14 @@ def judged(
     reach = 4.5 * radius
     swing = reach / smallest
     band = minor_band(swing, reach, length)
+    verdict = sign_of(nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12)
+    if setting.limits.pairing != 0.0:
+        verdict = min(verdict, sign_of(abs(null[3]) - LEAST_SEAT, band))
+        facing = pairs[1, 3, 0] * cos(w[UNKNOWNS, 0]) + pairs[1, 3, 1] * sin(w[UNKNOWNS, 0])
+        return min(verdict, sign_of(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length))
     low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
-    verdict = sign_of(nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12)
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
     verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))

@@ -12,7 +12,7 @@ from math import cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.given import Setting
@@ -165,6 +165,9 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
                 if a != i and a != j:
                     moment = b[MOMENT_BAND, a] + ROUNDINGS * b[MOMENT, a]
                     b[MINOR_BAND, 6 - i - j - a] += b[MOMENT, a] * band + cross * moment + band * moment
+    if setting.limits.pairing != 0.0:
+        pushes = setting.limits.clamping * b[ALONG_X, 3] + b[FORCE_BAND, 3] >= LEAST_PUSH
+        return not (pushes and abs(null[3]) + b[MINOR_BAND, 3] >= LEAST_SEAT)
     doubt = b[MINOR_BAND, 0] + b[MINOR_BAND, 1] + b[MINOR_BAND, 2] + b[MINOR_BAND, 3]
     if size + doubt < LEAST_SPAN:
         return True

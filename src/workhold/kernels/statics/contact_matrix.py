@@ -64,26 +64,27 @@ def contact_matrices_of(
 
     Parameters
     ----------
-    pegs : (N, 4, 2) peg centres in the toolkit's frame, in mm.
+    pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
     pose : (N, 3) orientation in radians and translation in mm.
-    moves : (N, 4) 1 for a peg on the moving carrier, 0 for others.
+    moves : (N, P) 1 for a peg on the moving carrier, 0 for others.
     axis : (2,) the unit vector x in the toolkit's frame.
-    faces : (N, 4) number of the face each peg touches.
+    faces : (N, P) number of the face each peg touches.
     features : (F, 12) rows of contact features about c with the slacks of their ends, ordered by face.
     starts : where the features of each face number begin, one more than there are numbers.
     center : (2,) c.
     length : L in mm.
-    points : (N, 4, 2) receives the peg centres in the part's frame about c, in mm.
-    normals : (N, 4, 2) receives the outward unit normals in the part's frame.
-    ends : (N, 4) receives the distances in mm along the features to their nearer ends.
-    edges : (N, 4) receives the distances in mm along them to their nearer edges, see :func:`distance_to_edge`.
-    inverses : (N, 4, 4) receives the inverses; NaN where there is none, or a face has no feature.
-    matrix : (4, 4) work space.
+    points : (N, P, 2) receives the peg centres in the part's frame about c, in mm.
+    normals : (N, P, 2) receives the outward unit normals in the part's frame.
+    ends : (N, P) receives the distances in mm along the features to their nearer ends.
+    edges : (N, P) receives the distances in mm along them to their nearer edges, see :func:`distance_to_edge`.
+    inverses : (N, 4, P) receives the inverses where P is 4; NaN where there is none, or a face has no feature.
+    matrix : (P, 4) work space.
     """
+    count = pegs.shape[1]
     for k in range(len(pegs)):
         cosine, sine = cos(pose[k, 0]), sin(pose[k, 0])
         known = True
-        for i in range(4):
+        for i in range(count):
             px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
             x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
             # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
@@ -104,8 +105,8 @@ def contact_matrices_of(
             ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter_on(row, x, y))
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
             matrix[i, 3] = moves[k, i] * ((nx * cosine - ny * sine) * axis[0] + (nx * sine + ny * cosine) * axis[1])
-        if not (eliminate(matrix, inverses[k]) > 0.0 and known):
-            for i in range(4):
+        if not known or (count == 4 and not eliminate(matrix, inverses[k]) > 0.0):
+            for i in range(count):
                 ends[k, i] = edges[k, i] = nan
                 for j in range(4):
-                    inverses[k, i, j] = nan
+                    inverses[k, j, i] = nan

@@ -14,6 +14,45 @@ from workhold.kernels.statics.reactions import largest_reaction
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a line.
+FLAT = 1e-12
+
+
+@inner
+def moment(points: Array, normals: Array, k: int, length: float) -> float:
+    """Third component of a wrench: the moment over L."""
+    return (points[k, 0] * normals[k, 1] - points[k, 1] * normals[k, 0]) / length
+
+
+@inner
+def plane_distance(points: Array, normals: Array, length: float, a: int, b: int, c: int) -> float:
+    """Distance from the origin to the plane of three of five wrenches where it is a facet of their hull, else infinite."""
+    ax, ay, az = normals[a, 0], normals[a, 1], moment(points, normals, a, length)
+    ux, uy, uz = normals[b, 0] - ax, normals[b, 1] - ay, moment(points, normals, b, length) - az
+    vx, vy, vz = normals[c, 0] - ax, normals[c, 1] - ay, moment(points, normals, c, length) - az
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    size = sqrt(nx * nx + ny * ny + nz * nz)
+    if size < FLAT:
+        return inf
+    low, high = 0.0, 0.0
+    for k in range(5):
+        if k != a and k != b and k != c:
+            dx, dy, dz = normals[k, 0] - ax, normals[k, 1] - ay, moment(points, normals, k, length) - az
+            side = (nx * dx + ny * dy + nz * dz) / size
+            low, high = min(low, side), max(high, side)
+    return abs(nx * ax + ny * ay + nz * az) / size if low > -FLAT or high < FLAT else inf
+
+
+@inner
+def wrench_radius_of_five(points: Array, normals: Array, length: float) -> float:
+    """As :func:`wrench_radius` of five wrenches, whose hull has up to six facets."""
+    least = inf
+    for a in range(5):
+        for b in range(a + 1, 5):
+            for c in range(b + 1, 5):
+                least = min(least, plane_distance(points, normals, length, a, b, c))
+    return least
+
 
 @inner
 def wrench_radius(points: Array, normals: Array, length: float) -> float:
@@ -44,21 +83,22 @@ def wrench_radius(points: Array, normals: Array, length: float) -> float:
 
 @inner
 def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
-    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (8, 3) and their number.
+    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (10, 3) and their number.
 
     A face that one peg touches adds its error to the peg's; one that several pegs touch moves them all alike.
     """
     count = 0
-    for i in range(4):
+    pegs = inverse.shape[1]
+    for i in range(pegs):
         sharing, first = 0, True
-        for j in range(4):
+        for j in range(pegs):
             if faces[j] == faces[i]:
                 sharing += 1
                 first = first and j >= i
         if sharing > 1 and first:
             for m in range(3):
                 out[count, m] = 0.0
-                for j in range(4):
+                for j in range(pegs):
                     if faces[j] == faces[i]:
                         out[count, m] += face * inverse[m, j]
             count += 1
@@ -117,12 +157,12 @@ def location_error(
 
     Parameters
     ----------
-    inverse : (4, 4) of the contact matrix.
-    faces : (4,) touched.
+    inverse : (4, P) of the contact matrix.
+    faces : (P,) touched.
     length : L in mm.
     tolerances : (2,) of a peg and of a face, in mm.
     corners, arcs : see :func:`farthest_movement`.
-    work : (8, 3) work space.
+    work : (10, 3) work space.
     """
     count = generators(inverse, faces, tolerances[0], tolerances[1], work)
     worst = 0.0
@@ -159,19 +199,19 @@ def figures(
     Parameters
     ----------
     points, normals, ends, edges, inverses : see ``kernels.statics.contact_matrix.contact_matrices_of``.
-    faces : (N, 4) touched.
+    faces : (N, P) touched.
     length, tolerances, corners, arcs : see :func:`location_error`. No edge is told to be farther than the length.
     loads : (M, 11) rows, see ``kernels.statics.reactions``.
     out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the contact
         matrix has no inverse.
-    work : (8, 3) work space.
+    work : (10, 3) work space.
     """
     for k in range(len(points)):
         inverse = inverses[k]
         # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null vector.
         total, least, most = 0.0, inf, 0.0
         nearest, edge = inf, length
-        for i in range(4):
+        for i in range(inverse.shape[1]):
             force = inverse[3, i]
             total += force
             least, most = min(least, force), max(most, force)
@@ -179,7 +219,11 @@ def figures(
         known = total == total
         out[k, 0] = least / total if known else np.nan
         out[k, 1] = most if known else np.nan
-        out[k, 2] = wrench_radius(points[k], normals[k], length) if known else np.nan
+        out[k, 2] = np.nan
+        if known and inverse.shape[1] == 4:
+            out[k, 2] = wrench_radius(points[k], normals[k], length)
+        elif known:
+            out[k, 2] = wrench_radius_of_five(points[k], normals[k], length)
         out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, work) if known else np.nan
         out[k, 4] = nearest if known else np.nan
         out[k, 5] = largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan

@@ -42,7 +42,7 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
 
     Parameters
     ----------
-    inverse : (4, 4) of the contact matrix, see ``kernels.statics.contact_matrix``.
+    inverse : (4, P) of the contact matrix, see ``kernels.statics.contact_matrix``.
     length : L in mm.
     loads : (M, 11) rows.
     """
@@ -50,8 +50,8 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
     for m in range(len(loads)):
         load = loads[m]
         force, px, py, moment = load[FORCE], load[POINT_X] / length, load[POINT_Y] / length, load[MOMENT] / length
-        for j in range(4):
-            for i in range(4):
+        for j in range(inverse.shape[1]):
+            for i in range(inverse.shape[1]):
                 if i != j:
                     ratio = inverse[3, j] / inverse[3, i]
                     a = inverse[0, j] - ratio * inverse[0, i]

@@ -1,0 +1,88 @@
+"""Fixtures with two clamps as lines of JSON, and such objects back as numbers (MODEL, "Result file").
+
+The forces of a peg are those per unit of the first clamp's force and of the second's.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from workhold.files.result.rounding import ANGLE_STEPS, LENGTH_STEPS, known_figures, rounded
+from workhold.model.force_ratio import ratios
+from workhold.model.quality import FIGURES
+from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Toolkit
+
+__all__ = ["pair_lines"]
+
+BLOCK = 4096
+LOCATORS = 3
+
+
+def pair_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[list[str]]:
+    """The lines of fixtures with two clamps, block by block; ``pairs`` is given where a fixture stands for its seat."""
+    figures = [(figure.key, FIGURES.index(figure)) for figure in known_figures(table)]
+    for start in range(0, len(table), BLOCK):
+        block = table.take(slice(start, start + BLOCK))
+        travel = rounded(block.jaw_separation, LENGTH_STEPS)
+        x, y = toolkit.places(block.arrangement, block.column, block.row, travel)
+        places = rounded(np.stack([x, y], axis=2), LENGTH_STEPS).tolist()
+        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
+        theta[theta >= 360.0] = 0.0
+        poses = np.column_stack([theta, rounded(block.position, LENGTH_STEPS)]).tolist()
+        ends = zip(*(values.tolist() for values in ratios(block.force)), strict=True)
+        holes, faces = np.stack([block.column, block.row], axis=2).tolist(), block.face.tolist()
+        forces, quality = block.force.tolist(), block.quality.tolist()
+        kinds, pairs = block.arrangement.tolist(), block.pairs.tolist()
+        each = zip(kinds, places, poses, ends, holes, faces, forces, quality, pairs, strict=True)
+        yield [json.dumps(fixture_entry(toolkit, figures, *numbers)) for numbers in each]
+
+
+def fixture_entry(
+    toolkit: Toolkit,
+    figures: list[tuple[str, int]],
+    kind: int,
+    places: list[list[float]],
+    pose: list[float],
+    ends: tuple[float, float],
+    holes: list[list[int]],
+    faces: list[int],
+    forces: list[list[float]],
+    quality: list[float],
+    pairs: int,
+) -> dict[str, Any]:
+    """One fixture as it is written."""
+    arrangement = toolkit.arrangements[kind]
+    pegs = []
+    for number, hole, (x, y), face, (one, other) in zip(
+        arrangement.carriers, holes, places, faces, forces, strict=True
+    ):
+        carrier = toolkit.carriers[number]
+        contact = {"x": x, "y": y, "segment": face, "force": [significant(one), significant(other)]}
+        if carrier.on is None:
+            pegs.append({"role": "locator", "column": hole[0], "row": hole[1], **contact})
+            continue
+        line = {"row": hole[1]} if carrier.is_along_x else {"column": hole[0]}
+        bolted = hole if carrier.has_a_hole else None
+        direction = carrier.name.rpartition(" ")[2]
+        pegs.append({"role": "clamp", "direction": direction, "hole": bolted, **line, **contact})
+    low, high = ends
+    return {
+        "type": arrangement.name,
+        "directions": (arrangement.direction or "").split(),
+        "ratio": [significant(low), None if high == inf else significant(high)],
+        "pegs": pegs,
+        "pose": {"theta_deg": pose[0], "x": pose[1], "y": pose[2]},
+        "pairs": pairs,
+        "quality": {key: significant(quality[number]) for key, number in figures},
+    }
+
+
+def significant(value: float) -> float:
+    """A number to twelve significant digits, without a negative zero."""
+    return float(f"{value:.12g}") + 0.0

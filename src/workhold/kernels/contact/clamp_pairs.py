@@ -1,0 +1,333 @@
+r"""Two clamps at one seat: which pairs close, in which ratio their forces may be, and which pair is the best.
+
+With the wrenches w_i of three locators, W = [w1 w2 w3], and w_k of clamp k, the locators take up a_k = -W^-1 w_k per unit of
+its force on the face. The null vectors of all five wrenches are u (a_1, 1, 0) + v (a_2, 0, 1): scaled to sum 1 a line, on
+which each entry is linear. So the largest least entry, the closure margin, is where two of the five are equal, at one of ten
+points. Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis of multifinger positive grips*,
+Algorithmica 2 (1987), for closure; the rest is linear algebra.
+"""
+
+from __future__ import annotations
+
+from math import atan, degrees, hypot, inf
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
+from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
+from workhold.kernels.base.growing import grown
+
+__all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closures_of", "pairs_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own force, how far
+# the former may be off, and the place of its tip in mm.
+TAKEN, PUSH, DOUBT, TIP = 0, 3, 4, 5
+CLAMP_LENGTH = 7
+# Whole numbers of a clamp: direction, the number of its line, first and past-the-last of its holes.
+DIRECTION, LINE, FIRST_HOLE, END_HOLE = range(4)
+# Columns of a hole: column and row, place in mm, travel in mm.
+HOLE_COLUMN, HOLE_ROW, HOLE_X, HOLE_Y, TRAVEL = range(5)
+HOLE_LENGTH = 5
+# Columns of a pair: seat, kind, clamps (2), holes (2), how many pairs it stands for, clamp freedom in degrees, closure
+# margin, and 1 where it is not decided whether it closes.
+SEAT, KIND, CLAMPS, HOLES, COUNT, FREEDOM, MARGIN, OPEN = 0, 1, 2, 4, 6, 7, 8, 9
+PAIR_LENGTH = 10
+# Of pairs whose freedom (in degrees) and then margin differ by less, the first is taken.
+SAME_FREEDOM, SAME_MARGIN = 1e-4, 1e-9
+ALONG_X = 2
+
+
+class Clamps(NamedTuple):
+    """The clamps of some seats, one seat after the other and each seat's in the order of directions.
+
+    Parameters
+    ----------
+    starts : (S + 1,) where those of each seat begin.
+    integers, reals : (M, 4) and (M, 7), see above.
+    holes : (H, 5) in which they may be bolted, each clamp's nearest first.
+    """
+
+    starts: IntArray
+    integers: IntArray
+    reals: Array
+    holes: Array
+
+
+class Hardware(NamedTuple):
+    """What bounds pairs.
+
+    Parameters
+    ----------
+    kinds : (4, 4) number of each pair of directions, -1 where it is not asked for.
+    apart : least distance in mm between the centre lines of two clamps.
+    columns, rows : most columns and rows of holes less one, infinite where there is no end.
+    bolted : whether clamps stand in holes.
+    """
+
+    kinds: IntArray
+    apart: float
+    columns: float
+    rows: float
+    bolted: bool
+
+
+@inner
+def entry(clamp: Array, k: int, own: int) -> float:
+    """Entry k of a clamp's null vector (a, 1, 0) or (a, 0, 1); its own is entry ``own``."""
+    return clamp[TAKEN + k] if k < 3 else (1.0 if k == own else 0.0)
+
+
+@inner
+def closure_margin(one: Array, other: Array) -> float:
+    """The largest least entry of null vectors that sum to 1 of three locators and two clamps; -1 where none is positive."""
+    best = -1.0
+    for i in range(5):
+        for j in range(i):
+            at_one = entry(one, i, 3) - entry(one, j, 3)
+            at_other = entry(other, i, 4) - entry(other, j, 4)
+            if at_one == at_other:
+                continue
+            share = at_one / (at_one - at_other)
+            if not 0.0 <= share <= 1.0:
+                continue
+            total, least = 0.0, inf
+            for k in range(5):
+                value = (1.0 - share) * entry(one, k, 3) + share * entry(other, k, 4)
+                total, least = total + value, min(least, value)
+            if total > 0.0:
+                best = max(best, least / total)
+    return best
+
+
+@inner
+def ratio_range(one: Array, other: Array) -> tuple[float, float]:
+    """The ends of the open interval of f2 / f1 in which all locators are pressed."""
+    low, high = 0.0, inf
+    for k in range(3):
+        a, b = one[TAKEN + k] / one[PUSH], other[TAKEN + k] / other[PUSH]
+        a, b = (0.0 if abs(a) < NO_REACTION else a), (0.0 if abs(b) < NO_REACTION else b)
+        if b > 0.0:
+            low = max(low, -a / b)
+        elif b < 0.0:
+            high = min(high, -a / b)
+        elif a <= 0.0:
+            high = 0.0
+    return (low, high)
+
+
+@inner
+def boxes_apart(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float) -> float:
+    """Distance in mm between two pieces along the axes, from (ax, ay) to (bx, by) and from (cx, cy) to (dx, dy)."""
+    across = max(min(ax, bx) - max(cx, dx), min(cx, dx) - max(ax, bx), 0.0)
+    along = max(min(ay, by) - max(cy, dy), min(cy, dy) - max(ay, by), 0.0)
+    return hypot(across, along)
+
+
+@inner
+def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
+    """Widen ``out``, the least and largest column and row of what stands on the plate, by a clamp in a hole."""
+    line = clamps.integers[m, LINE]
+    if clamps.integers[m, DIRECTION] < ALONG_X:
+        out[2], out[3] = min(out[2], line), max(out[3], line)
+        if bolted:
+            out[0], out[1] = min(out[0], int(hole[HOLE_COLUMN])), max(out[1], int(hole[HOLE_COLUMN]))
+    else:
+        out[0], out[1] = min(out[0], line), max(out[1], line)
+        if bolted:
+            out[2], out[3] = min(out[2], int(hole[HOLE_ROW])), max(out[3], int(hole[HOLE_ROW]))
+
+
+@inner
+def best_holes(seat: IntArray, clamps: Clamps, i: int, j: int, hardware: Hardware, spread: IntArray) -> tuple[int, int]:
+    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for none.
+
+    Parameters
+    ----------
+    seat : (2,) the largest column and row of its locators, whose lowest are 0.
+    spread : (4,) work space.
+    """
+    best, one, other = inf, -1, -1
+    holes, tips = clamps.holes, clamps.reals
+    for a in range(clamps.integers[i, FIRST_HOLE], clamps.integers[i, END_HOLE]):
+        for b in range(clamps.integers[j, FIRST_HOLE], clamps.integers[j, END_HOLE]):
+            travel = holes[a, TRAVEL] + holes[b, TRAVEL]
+            if travel >= best:
+                continue
+            spread[0], spread[1], spread[2], spread[3] = 0, seat[0], 0, seat[1]
+            spread_of(seat, clamps, i, holes[a], hardware.bolted, spread)
+            spread_of(seat, clamps, j, holes[b], hardware.bolted, spread)
+            if spread[1] - spread[0] > hardware.columns or spread[3] - spread[2] > hardware.rows:
+                continue
+            apart = boxes_apart(
+                tips[i, TIP],
+                tips[i, TIP + 1],
+                holes[a, HOLE_X],
+                holes[a, HOLE_Y],
+                tips[j, TIP],
+                tips[j, TIP + 1],
+                holes[b, HOLE_X],
+                holes[b, HOLE_Y],
+            )
+            if apart >= hardware.apart - GAP_SLACK:
+                best, one, other = travel, a, b
+    return (one, other)
+
+
+@inner
+def add_pair(
+    out: Array,
+    count: int,
+    number: int,
+    kind: int,
+    i: int,
+    j: int,
+    seat: IntArray,
+    clamps: Clamps,
+    hardware: Hardware,
+    spread: IntArray,
+) -> int:
+    """Append a pair of clamps of a seat if it closes and has a place; how many rows there are."""
+    one, other = clamps.reals[i], clamps.reals[j]
+    margin = closure_margin(one, other)
+    doubt = 2.0 * (one[DOUBT] + other[DOUBT])
+    if margin + doubt <= LEAST_CLOSURE:
+        return count
+    low, high = ratio_range(one, other)
+    if low >= high and margin - doubt > LEAST_CLOSURE:
+        # Reactions that are zero to rounding.
+        return count
+    first, second = best_holes(seat, clamps, i, j, hardware, spread)
+    if first < 0:
+        return count
+    row = out[count]
+    row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = number, kind, i, j, first, second
+    row[COUNT], row[FREEDOM], row[MARGIN] = 1.0, max(degrees(atan(high) - atan(low)), 0.0), margin
+    row[OPEN] = 1.0 if margin - doubt <= LEAST_CLOSURE else 0.0
+    return count + 1
+
+
+@inner
+def keep_best(out: Array, first: int, count: int) -> int:
+    """Keep of the rows from ``first`` on, pairs of one seat and kind, the best one, which stands for all, and those that are
+    not decided; how many rows there are then."""
+    pairs = 0
+    freest, widest = -inf, -inf
+    for k in range(first, count):
+        if out[k, OPEN] == 0.0:
+            pairs += 1
+            freest = max(freest, out[k, FREEDOM])
+    for k in range(first, count):
+        if out[k, OPEN] == 0.0 and out[k, FREEDOM] > freest - SAME_FREEDOM:
+            widest = max(widest, out[k, MARGIN])
+    kept, chosen = first, False
+    for k in range(first, count):
+        is_open = out[k, OPEN] != 0.0
+        is_best = out[k, FREEDOM] > freest - SAME_FREEDOM and out[k, MARGIN] > widest - SAME_MARGIN
+        if is_open or (is_best and not chosen):
+            chosen = chosen or not is_open
+            for n in range(PAIR_LENGTH):
+                out[kept, n] = out[k, n]
+            if not is_open:
+                out[kept, COUNT] = pairs
+            kept += 1
+    return kept
+
+
+@inner
+def add_pairs_of_kind(
+    out: Array,
+    count: int,
+    number: int,
+    one: int,
+    two: int,
+    seat: IntArray,
+    clamps: Clamps,
+    hardware: Hardware,
+    spread: IntArray,
+) -> int:
+    """Append the pairs of two directions at a seat; how many rows there are, -1 when there is no room for more."""
+    kind = hardware.kinds[one, two]
+    for i in range(clamps.starts[number], clamps.starts[number + 1]):
+        if clamps.integers[i, DIRECTION] != one:
+            continue
+        for j in range(i + 1, clamps.starts[number + 1]):
+            if clamps.integers[j, DIRECTION] != two:
+                continue
+            if count == out.shape[0]:
+                return -1
+            count = add_pair(out, count, number, kind, i, j, seat, clamps, hardware, spread)
+    return count
+
+
+@inner
+def add_pairs(
+    out: Array,
+    count: int,
+    number: int,
+    half: bool,
+    seat: IntArray,
+    clamps: Clamps,
+    hardware: Hardware,
+    every: bool,
+    spread: IntArray,
+) -> int:
+    """Append the pairs of a seat, see :func:`pairs_of`; how many rows there are, -1 when there is no room for more."""
+    for one in range(4):
+        for two in range(one, 4):
+            # Opposite directions: half a turn makes such a pair one of the same kind.
+            opposed = two == one + 1 and one % 2 == 0
+            if hardware.kinds[one, two] < 0 or (opposed and not half):
+                continue
+            first = count
+            count = add_pairs_of_kind(out, count, number, one, two, seat, clamps, hardware, spread)
+            if count < 0:
+                return -1
+            if not every:
+                count = keep_best(out, first, count)
+    return count
+
+
+@compiled_making_arrays
+def pairs_of(seats: IntArray, halves: NDArray[np.bool_], clamps: Clamps, hardware: Hardware, every: bool) -> Array:
+    """The pairs of clamps that close and have a place, seat by seat.
+
+    Parameters
+    ----------
+    seats : (S, 2) the largest column and row of their locators, whose lowest are 0.
+    halves : (S,) whether the orientation is in the first half turn.
+    every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then of the largest
+        closure margin, then the first.
+
+    Returns
+    -------
+    (N, 10) rows, see above
+    """
+    out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
+    count, number = int(np.int64(0)), int(np.int64(0))
+    while number < seats.shape[0]:
+        more = add_pairs(out, count, number, halves[number], seats[number], clamps, hardware, every, spread)
+        if more < 0:
+            out = grown(out)
+            continue
+        count, number = more, number + 1
+    return out[:count].copy()
+
+
+@compiled
+def closures_of(clamps: Array, out: Array) -> None:
+    """Closure margins and clamp freedoms in degrees of N fixtures with two clamps.
+
+    Parameters
+    ----------
+    clamps : (N, 2, 7) rows of both clamps, of which only the first four columns count.
+    out : (N, 2) receives margins and freedoms.
+    """
+    for n in range(clamps.shape[0]):
+        out[n, 0] = closure_margin(clamps[n, 0], clamps[n, 1])
+        low, high = ratio_range(clamps[n, 0], clamps[n, 1])
+        out[n, 1] = max(degrees(atan(high) - atan(low)), 0.0)

@@ -1,0 +1,332 @@
+"""Fixtures with two clamps gathered while a search goes on: paired, written out, measured, counted and ranked."""
+
+from __future__ import annotations
+
+from math import cos, inf, pi, sin, tau
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import SAME_POSE
+from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import Rotation, rotations_onto_itself
+from workhold.kernels.contact.clamp_pairs import (
+    CLAMPS,
+    COUNT,
+    DIRECTION,
+    DOUBT,
+    FREEDOM,
+    HOLES,
+    KIND,
+    LINE,
+    MARGIN,
+    OPEN,
+    PUSH,
+    SEAT,
+    TAKEN,
+    TIP,
+    Hardware,
+    pairs_of,
+)
+from workhold.listing.canonical_form import changes, packed
+from workhold.listing.listed import Work, proof_of
+from workhold.listing.ranking import best_marked, rank
+from workhold.listing.seats import NAMES, Seats
+from workhold.model.notes import undecided_note
+from workhold.model.plate import DIRECTIONS, Plate
+from workhold.model.proof import AT_AN_EDGE, Undecided
+from workhold.model.quality import CLAMP_FREEDOM, CLOSURE_MARGIN
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.proof.deciding import BALLS, Account
+from workhold.statics.contact_matrix import Touched
+from workhold.statics.quality import quality_of
+
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import Box
+
+__all__ = ["PairedFixtures"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+FAR = 1 << 30
+# mm. Proven contacts are this near to where they are said to be.
+BESIDE = 1e-8
+
+
+@define(eq=False)
+class PairedFixtures:
+    """The fixtures with two clamps found so far, or the best of them.
+
+    Parameters
+    ----------
+    query : what is asked, in a toolkit with two clamps.
+    problem : the search of one of its directions, for what all have in common.
+    """
+
+    query: Query
+    problem: Problem
+    toolkit: Plate = field(init=False)
+    hardware: Hardware = field(init=False)
+    touched: Touched = field(init=False)
+    rotations: tuple[Rotation, ...] = field(init=False)
+    table: FixtureTable = field(init=False)
+    has_dropped: bool = field(default=False, init=False)
+    seats_looked_at: int = field(default=0, init=False)
+    pairs: int = field(default=0, init=False)
+    found: IntArray = field(init=False)
+    keys: list[tuple[IntArray, Array]] = field(factory=list, init=False)
+    undecided: list[Undecided] = field(factory=list, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        toolkit = self.query.toolkit
+        assert isinstance(toolkit, Plate)
+        part = self.query.workpiece
+        self.toolkit, self.table = toolkit, FixtureTable.empty(toolkit)
+        kinds = np.full((len(NAMES), len(NAMES)), -1, np.int64)
+        for number, pair in enumerate(toolkit.distinct_pairs):
+            kinds[NAMES.index(pair[0]), NAMES.index(pair[1])] = number
+        columns, rows = (inf if count is None else count - 1.0 for count in (toolkit.columns, toolkit.rows))
+        self.hardware = Hardware(kinds, 2 * toolkit.clamp_radius, columns, rows, toolkit.travel is not None)
+        self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
+        self.rotations = tuple(rotations_onto_itself([face.segment for face in part.faces]))
+        self.found = np.zeros(len(toolkit.arrangements), np.int64)
+
+    def __len__(self) -> int:
+        return int(self.found.sum())
+
+    def add(self, seats: Seats) -> None:
+        """Pair the clamps of further seats."""
+        self.seats_looked_at += len(seats)
+        spans = np.stack([seats.column.max(axis=1, initial=0), seats.row.max(axis=1, initial=0)], axis=1)
+        every = self.query.listing == "all"
+        rows = pairs_of(spans, seats.theta < pi - SAME_POSE, seats.clamps, self.hardware, every)
+        if (rows[:, OPEN] != 0.0).any():
+            seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
+            rows = pairs_of(spans, seats.theta < pi - SAME_POSE, seats.clamps, self.hardware, every)
+        is_open = rows[:, OPEN] != 0.0
+        self.undecided += self.named(self.written_out(rows[is_open], seats))
+        rows = rows[~is_open]
+        table = self.written_out(rows, seats)
+        self.pairs += int(rows[:, COUNT].sum())
+        self.found += np.bincount(table.arrangement, minlength=len(self.found))
+        if len(self.rotations) > 1:
+            self.keys.append(self.smallest(table))
+        self.keep(self.measured(table))
+
+    def sharpened(self, seats: Seats, rows: Array) -> Seats:
+        """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
+        from workhold.proof.clamp_reactions import sharp_reactions
+
+        reals = seats.clamps.reals.copy()
+        with BALLS:
+            for seat, clamp in sorted({(int(row[SEAT]), int(row[CLAMPS + k])) for row in rows for k in range(2)}):
+                sharp = sharp_reactions(self.box(seats, seat, clamp), self.problem.limits)
+                if sharp is not None:
+                    reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
+        return evolve(seats, clamps=seats.clamps._replace(reals=reals))
+
+    def box(self, seats: Seats, seat: int, clamp: int) -> Box:
+        """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along x."""
+        from workhold.proof.interval_newton import Box
+
+        pitch, integers = np.array(self.toolkit.pitch), seats.clamps.integers[clamp]
+        carrier = self.toolkit.carrier(f"clamp {NAMES[integers[DIRECTION]]}")
+        assert carrier.travel is not None
+        cosine, sine = carrier.travel.unit
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        holes = np.stack([seats.column[seat], seats.row[seat]], axis=1) * pitch
+        places, tip = (holes - holes[0]) @ turn.T, turn @ (seats.clamps.reals[clamp, TIP : TIP + 2] - holes[0])
+        x, y = seats.point[seat, 0].tolist()
+        features = [*seats.feature[seat], seats.clamp_feature[clamp]]
+        return Box(
+            features=self.problem.rows[features].tolist(),
+            offsets=[*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))],
+            standing=3,
+            middle=(carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])),
+            reach=(BESIDE / self.problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE),
+        )
+
+    def written_out(self, rows: Array, seats: Seats) -> FixtureTable:
+        """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are known."""
+        whole = rows[:, [SEAT, KIND, CLAMPS, CLAMPS + 1, HOLES, HOLES + 1]].astype(np.int64)
+        seat, kind, chosen, bolted = whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:6]
+        clamps, toolkit = seats.clamps, self.toolkit
+        upright = clamps.integers[chosen, DIRECTION] >= NAMES.index("-y")
+        line, hole = clamps.integers[chosen, LINE], clamps.holes[bolted, :2].astype(np.int64)
+        in_hole = toolkit.travel is not None
+        column = np.where(upright, line, hole[..., 0] if in_hole else FAR)
+        row = np.where(upright, hole[..., 1] if in_hole else FAR, line)
+        column, row = np.hstack([seats.column[seat], column]), np.hstack([seats.row[seat], row])
+        lowest = np.stack([column.min(axis=1, initial=FAR), row.min(axis=1, initial=FAR)], axis=1)
+        column, row = column - lowest[:, :1], row - lowest[:, 1:]
+        tip = clamps.reals[chosen, TIP : TIP + 2] - (lowest * np.array(toolkit.pitch))[:, None]
+        if not in_hole:
+            column[:, 3:], row[:, 3:] = np.where(upright, column[:, 3:], 0), np.where(upright, 0, row[:, 3:])
+        at = np.stack([column[:, 3:], row[:, 3:]], axis=2) * np.array(toolkit.pitch)
+        units = np.array([(round(cos(angle), 15), round(sin(angle), 15)) for angle in DIRECTIONS.values()])
+        travel = ((tip - at) * units[clamps.integers[chosen, DIRECTION]]).sum(axis=2)
+        theta = seats.theta[seat]
+        x, y = (seats.point[seat, 0] + np.array(self.problem.workpiece.center)).T
+        anchor = np.stack(rotated(x, y, theta), axis=1)
+        force = np.zeros((len(rows), 5, 2))
+        reals = clamps.reals[chosen]
+        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / reals[..., PUSH, None], 1, 2)
+        force[:, 3, 0], force[:, 4, 1] = 1.0 / reals[:, 0, PUSH], 1.0 / reals[:, 1, PUSH]
+        quality = unknown_quality(rows[:, MARGIN])
+        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
+        features = np.hstack([seats.feature[seat], seats.clamp_feature[chosen]])
+        return FixtureTable(
+            arrangement=kind.astype(np.int8),
+            column=column.astype(np.int32),
+            row=row.astype(np.int32),
+            face=self.problem.faces[features].astype(np.int32),
+            theta=theta,
+            position=np.stack([column[:, 0], row[:, 0]], axis=1) * np.array(toolkit.pitch) - anchor,
+            jaw_separation=travel,
+            force=force,
+            quality=quality,
+            pairs=rows[:, COUNT].astype(np.int32),
+        )
+
+    def measured(self, table: FixtureTable) -> FixtureTable:
+        """A table with all its figures of quality."""
+        query = self.query
+        asked = query.tolerance, query.loads
+        quality = quality_of(
+            table, query.workpiece, self.toolkit, *asked, touched=self.touched, jaw_force=query.jaw_force
+        )
+        quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
+        return evolve(table, quality=quality)
+
+    def keep(self, table: FixtureTable) -> None:
+        """Take measured fixtures, in the order of their identities; of all the best where only those are asked for."""
+        together = FixtureTable.joined([self.table, table])
+        together = together.take(identity_order(together))
+        most, query = self.query.best, self.query
+        if most is not None and len(together) > most:
+            chosen = best_marked(together.quality, query.ranking, query.tolerance, most, ties=True)
+            self.has_dropped |= not chosen.all()
+            together = together.take(chosen)
+        self.table = together
+
+    def so_far(self) -> Result:
+        """A result, marked incomplete, of what is kept."""
+        return self.result(Account(0, 0, 0, 0, ()), Work(False, {}))
+
+    def result(self, account: Account, work: Work) -> Result:
+        """The result of all."""
+        query = self.query
+        order = rank(self.table.quality, query.ranking, query.tolerance)[: query.best]
+        names = [one.name for one in self.toolkit.arrangements]
+        account = evolve(account, undecided=(*account.undecided, *self.undecided))
+        notes = [undecided_note(len(account.undecided))] if account.undecided else []
+        return Result(
+            query=query,
+            table=self.table.take(order),
+            found=dict(zip(dict.fromkeys(names), [int(self.found.sum())], strict=True)),
+            distinct=dict(zip(dict.fromkeys(names), [self.distinct()], strict=True)),
+            complete=work.complete,
+            notes=tuple(notes),
+            statistics=work.statistics,
+            proof=proof_of(account, work),
+            pairs=self.pairs,
+            seats=len(self),
+        )
+
+    def named(self, table: FixtureTable) -> list[Undecided]:
+        """Pairs of which it is not decided whether they close, for the account."""
+        degrees = (np.degrees(table.theta) % 360.0).tolist()
+        return [
+            Undecided(
+                self.toolkit.arrangements[kind].title, tuple(face), tuple(column), tuple(row), angle, AT_AN_EDGE, 0.0
+            )
+            for kind, face, column, row, angle in zip(
+                table.arrangement.tolist(),
+                table.face.tolist(),
+                table.column.tolist(),
+                table.row.tolist(),
+                degrees,
+                strict=True,
+            )
+        ]
+
+    def smallest(self, table: FixtureTable) -> tuple[IntArray, Array]:
+        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K) and angles (N,)."""
+        faces = np.array([face.number for face in self.query.workpiece.faces])
+        image = np.zeros(int(faces.max()) + 1, np.int64)
+        pairs = self.toolkit.distinct_pairs
+        opposed = np.array([one[1] == other[1] and one != other for one, other in pairs])
+        upright = np.array([[name.endswith("y") for name in pair] for pair in pairs])[table.arrangement]
+        every, keys, poses = self.query.listing == "all", list[IntArray](), list[Array]()
+        for rotation in self.rotations:
+            image[faces] = faces[np.array(rotation.image)]
+            theta = (table.theta - rotation.angle + SAME_POSE) % tau - SAME_POSE
+            turned = opposed[table.arrangement] & (theta >= pi - SAME_POSE)
+            key = identity_numbers(table, image[table.face], upright, turned)
+            keys.append(np.column_stack([table.arrangement, key if every else key[:, :9]]).astype(np.int64))
+            poses.append(np.where(turned, theta - pi, theta))
+        best, pose = keys[0], poses[0]
+        for key, theta in zip(keys[1:], poses[1:], strict=True):
+            differs = key != best
+            first = differs.argmax(axis=1)[:, None]
+            less = np.take_along_axis(key, first, axis=1)[:, 0] < np.take_along_axis(best, first, axis=1)[:, 0]
+            before = np.where(differs.any(axis=1), less, theta < pose - SAME_POSE)
+            best, pose = np.where(before[:, None], key, best), np.where(before, theta, pose)
+        return best, pose
+
+    def distinct(self) -> int:
+        """How many sets all fixtures form when those that a rotation of the part carries into each other count once."""
+        if not self.keys:
+            return len(self)
+        key, pose = (np.concatenate(values) for values in zip(*self.keys, strict=True))
+        words = packed((key, int(key.max(initial=0))))
+        order = np.lexsort([pose, *reversed(words)])
+        fresh = changes([word[order] for word in words])
+        fresh[1:] |= np.diff(pose[order]) > 2 * SAME_POSE
+        return int(fresh.sum())
+
+
+def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
+    """The height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2, 2) leads to."""
+    upright = integers[DIRECTION] >= NAMES.index("-y")
+    away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
+    return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))
+
+
+def identity_numbers(
+    table: FixtureTable, face: IntArray, upright: NDArray[np.bool_], turned: NDArray[np.bool_]
+) -> IntArray:
+    """Locators' columns, rows and faces (N, 9), and the lines and faces of both clamps (N, 4), from the locators' lowest
+    hole.
+
+    Parameters
+    ----------
+    face : (N, 5) touched.
+    upright : (N, 2) which clamps push along columns.
+    turned : (N,) which fixtures are meant after half a turn of everything, which swaps the clamps.
+    """
+    column, row = (values[:, :3] - values[:, :3].min(axis=1, keepdims=True) for values in (table.column, table.row))
+    line = np.where(upright, table.column[:, 3:], table.row[:, 3:])
+    line = line - np.where(upright, table.column[:, :3].min(axis=1)[:, None], table.row[:, :3].min(axis=1)[:, None])
+    span = np.where(upright, column.max(axis=1)[:, None], row.max(axis=1)[:, None])
+    back = turned[:, None]
+    out = [
+        np.where(back, (column.max(axis=1, keepdims=True) - column)[:, ::-1], column),
+        np.where(back, (row.max(axis=1, keepdims=True) - row)[:, ::-1], row),
+        np.where(back, face[:, 2::-1], face[:, :3]),
+        np.where(back, (span - line)[:, ::-1], line) + FAR,
+        np.where(back, face[:, :2:-1], face[:, 3:]),
+    ]
+    return np.hstack(out)
+
+
+def identity_order(table: FixtureTable) -> NDArray[np.intp]:
+    """The order of fixtures by type, holes, orientation, faces and place."""
+    place = table.position @ np.array([1.0, 0.7548776662])
+    columns = [*table.column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
+    return np.lexsort([*reversed(columns), table.arrangement])
