@@ -22,7 +22,7 @@ from flint import arb, arb_mat
 
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.verification.balls import Point, cross, dot, exact_point, norm, root, turned
 from workhold.verification.closure import Balance
@@ -356,6 +356,8 @@ def box_center(outline: Outline) -> Point:
 def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
     """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
     for figure in FIGURES:
+        if figure is FIGURES[CLAMP_FREEDOM] and fixture.pair is None:
+            continue
         wanted = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
         if wanted != (figure.key in fixture.quality):
             return (
