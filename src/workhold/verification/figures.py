@@ -356,7 +356,9 @@ def box_center(outline: Outline) -> Point:
 def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
     """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
     for figure in FIGURES:
-        if figure is FIGURES[CLAMP_FREEDOM] and fixture.pair is None:
+        if figure is FIGURES[CLAMP_FREEDOM]:
+            if fixture.pair is None and figure.key in fixture.quality:
+                return f"its {figure.words} is given, and there are no two clamps"
             continue
         wanted = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
         if wanted != (figure.key in fixture.quality):
