@@ -35,9 +35,11 @@ def pair_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[list[str]]:
         theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
         theta[theta >= 360.0] = 0.0
         poses = np.column_stack([theta, rounded(block.position, LENGTH_STEPS)]).tolist()
-        ends = zip(*(values.tolist() for values in ratios(block.force)), strict=True)
+        # The ratio is that of the forces as they are written, so that reading and writing changes nothing.
+        force = np.vectorize(significant, otypes=[np.float64])(block.force) if len(block) else block.force
+        ends = zip(*(values.tolist() for values in ratios(force)), strict=True)
         holes, faces = np.stack([block.column, block.row], axis=2).tolist(), block.face.tolist()
-        forces, quality = block.force.tolist(), block.quality.tolist()
+        forces, quality = force.tolist(), block.quality.tolist()
         kinds, pairs = block.arrangement.tolist(), block.pairs.tolist()
         each = zip(kinds, places, poses, ends, holes, faces, forces, quality, pairs, strict=True)
         yield [json.dumps(fixture_entry(toolkit, figures, *numbers)) for numbers in each]
@@ -63,7 +65,7 @@ def fixture_entry(
         arrangement.carriers, holes, places, faces, forces, strict=True
     ):
         carrier = toolkit.carriers[number]
-        contact = {"x": x, "y": y, "segment": face, "force": [significant(one), significant(other)]}
+        contact = {"x": x, "y": y, "segment": face, "force": [one, other]}
         if carrier.on is None:
             pegs.append({"role": "locator", "column": hole[0], "row": hole[1], **contact})
             continue
