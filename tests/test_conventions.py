@@ -21,6 +21,7 @@ ROWS = {
     "the body of a clamp may enter": (["BODY_SLACK"], ["BODY_SLACK"]),
     "past the end at a tangent joint": (["END_SLACK"], ["HAIR"]),
     "inside any other end": (["END_SLACK"], ["HAIR"]),
+    "a straight piece of the convex hull": (["LEAST_HULL_EDGE"], ["LEAST_FLUSH"]),
     "an arc this near to its chord": (["READING"], []),
     "an arc of a bulge below this": (["STRAIGHT"], ["STRAIGHT"]),
     "a tangent joint": (["JOINT", "TANGENT"], [None, "TANGENT"]),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from workhold.files.result.columns import answer_to_file
     from workhold.files.result.reader import read_result as open
     from workhold.files.result.save import save
+    from workhold.model.fence import Fence
     from workhold.model.fixture import Fixture, Peg, Pose
     from workhold.model.plate import Plate
     from workhold.model.query import Query
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from workhold.search.design import answer, design
 
 __all__ = [
+    "Fence",
     "Fixture",
     "WorkholdError",
     "InputError",
@@ -51,6 +53,7 @@ __all__ = [
 ]
 
 HOMES = {
+    "Fence": "workhold.model.fence",
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",

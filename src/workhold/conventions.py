@@ -48,6 +48,8 @@ LEAST_SPAN = 1e-7
 SAME_POSE = 1e-6
 # mm. Places nearer than this are one: a contact at a joint is found from both faces, off by the rounding of each.
 SAME_PLACE = 1e-6
+# mm. Straight pieces of the hull shorter than this are none that a part can lie on.
+LEAST_HULL_EDGE = 1e-6
 # mm. An arc nowhere farther from its chord is a line, and neighbouring arcs nowhere farther from one circle are one: less
 # than a drawing can mean.
 READING = 1e-6

@@ -20,7 +20,11 @@ def test_aliases_are_kinds_with_fields_of_their_own() -> None:
         ("plate", {"pitch": 10, "peg_radius": 3, "min_gap": 6}, "has no min gap"),
         ("vise", {"pitch": 10, "peg_radius": 3, "columns": 1, "travel": (1, 2)}, "has no travel"),
         ("vise", {"pitch": 10, "peg_radius": 3}, "the vise's columns is not given"),
-        ("edge of nowhere", {}, "is not known: choose among vise, opening-vise, translating-clamp, gripper, plate"),
+        (
+            "edge of nowhere",
+            {},
+            "is not known: choose among vise, opening-vise, translating-clamp, edge, gripper, plate",
+        ),
     ],
 )
 def test_what_a_kind_does_not_have_is_refused_in_one_sentence(kind: str, fields: dict[str, object], words: str) -> None:

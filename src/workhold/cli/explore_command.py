@@ -146,6 +146,7 @@ def asked_vises(
         For words that mean nothing, lists that do not make a vise, and more than a thousand vises.
     """
     from workhold.files.toolkit.presets import load_vise, preset_names
+    from workhold.model.fence import Fence
     from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of
     from workhold.model.plate import Plate
 
@@ -163,7 +164,9 @@ def asked_vises(
         radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
         lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
     if names is None and pitch is not None:
-        if peg_radius is None or (columns is None and KINDS[kind or USUAL] is not Plate and "columns" not in said):
+        if peg_radius is None or (
+            columns is None and not issubclass(KINDS[kind or USUAL], Plate) and "columns" not in said
+        ):
             raise InputError("a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise.")
         bases = [Named("", kind or USUAL, dict(said))]
     else:
@@ -172,7 +175,8 @@ def asked_vises(
         bases = [
             Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
             for one in map(load_vise, asked)
-            if kind is None or (KINDS[kind] is Plate) == (KINDS[one.kind] is Plate)
+            if kind is None
+            or all(issubclass(KINDS[kind], sort) == issubclass(KINDS[one.kind], sort) for sort in (Plate, Fence))
         ]
     vises = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
     if len(vises) > MOST_VISES:

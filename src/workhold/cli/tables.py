@@ -209,6 +209,8 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
     clamps = [carrier for carrier in toolkit.carriers if carrier.on is not None]
     groups: dict[str, list[str]] = {}
     for carrier in toolkit.carriers:
+        if carrier.is_wall:
+            continue
         word = carrier.noun if carrier in clamps else f"{carrier.peg}s" if clamps else f"{carrier.name} holes"
         groups.setdefault(word, []).append(carrier.name)
     return groups
@@ -280,21 +282,27 @@ def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
     """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
-    first, noun, clamped = toolkit.carriers[0], toolkit.moving.noun, fixture.direction is not None
+    noun, clamped = toolkit.moving.noun, fixture.direction is not None
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
     pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", f">force per {noun} force"))
     for peg in fixture.pegs:
         stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
         where = unit.number(peg.x), unit.number(peg.y)
-        pegs.add_row(place_of(peg, toolkit), stands_on, *where, str(peg.face), f"{peg.force:.3f}")
+        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, f"{peg.force:.3f}")
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
         setting_sentence(fixture, toolkit, unit),
         f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
-        f"{unit.abbreviation} from the {first.title}'s hole {hole_name(first.name, 0, 0)}",
+        f"{unit.abbreviation} from {origin_words(toolkit)}",
         pegs,
     )
+
+
+def origin_words(toolkit: Toolkit) -> str:
+    """What places are told from."""
+    first, wall = toolkit.carriers[0], toolkit.wall
+    return f"the {first.title}'s hole {hole_name(first.name, 0, 0)}" if wall is None else f"column A at the {wall.noun}"
 
 
 def setting_sentence(fixture: Fixture, toolkit: Toolkit, unit: Unit) -> str:

@@ -25,13 +25,13 @@ TOOLKIT = option(
     VISE,
     "NAME|FILE",
     "vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. gripper: a vise of "
-    "one column. plate: three locators on a plate of holes, and a clamp. Or a name of workhold vises, or a TOML file. vise "
-    "if not given.",
+    "one column. plate: three locators on a plate of holes, and a clamp. fence: a straight wall that the part lies flush "
+    "against, one locator and a clamp. Or a name of workhold vises, or a TOML file. vise if not given.",
     "--toolkit",
 )
 # Options that only one kind of toolkit has.
 OF_VISES = ("body_radius", "blocked", "min_gap", "min_opening", "max_opening", "row_offset")
-OF_PLATES = ("clamp_radius", "travel", "direction")
+OF_PLATES = ("clamp_radius", "travel", "direction", "wall_offset")
 
 
 @frozen
@@ -83,6 +83,9 @@ class ViseWords:
         "In which the clamp may push: among -x, +x, -y, +y, such as --direction=-x,-y; all that a turn of the "
         "plate does not make of another one, if not given.",
     )
+    wall_offset: str | None = option(
+        PLATE, "LENGTH", "Of a fence: distance from its wall to the first row of holes' centres; must be given."
+    )
 
     def fields(self, unit: Unit) -> dict[str, Any]:
         """Keyword arguments of a toolkit, in mm, for the options that were given.
@@ -99,7 +102,15 @@ class ViseWords:
             out["columns"] = whole_number("--columns", self.columns)
         if self.rows is not None:
             out["rows"] = whole_number("--rows", self.rows)
-        for name in ("peg_radius", "body_radius", "min_gap", "max_opening", "row_offset", "clamp_radius"):
+        for name in (
+            "peg_radius",
+            "body_radius",
+            "min_gap",
+            "max_opening",
+            "row_offset",
+            "clamp_radius",
+            "wall_offset",
+        ):
             text = getattr(self, name)
             if text is not None:
                 out[name] = length(f"--{name.replace('_', '-')}", text, unit)
@@ -116,20 +127,25 @@ class ViseWords:
             out["directions"] = [name.strip() for name in self.direction.split(",")]
         return out
 
-    def refuse_others(self, of_plates: bool) -> None:
-        """Refuse options that the kind of toolkit does not have.
+    def refuse_others(self, kind: type[Toolkit]) -> None:
+        """Refuse options that a kind of toolkit does not have.
 
         Raises
         ------
         InputError
             Naming the first of them.
         """
-        for name in OF_VISES if of_plates else OF_PLATES:
+        from workhold.model.fence import Fence
+        from workhold.model.plate import Plate
+
+        has_a_clamp = issubclass(kind, Plate)
+        what = "of vises: a plate has no jaws" if has_a_clamp else "of plates: a vise has no clamp beside its jaws"
+        others: tuple[str, ...] = OF_VISES if has_a_clamp else OF_PLATES
+        for name in others:
             if getattr(self, name):
-                what = (
-                    "of vises: a plate has no jaws" if of_plates else "of plates: a vise has no clamp beside its jaws"
-                )
                 raise InputError(f"--{name.replace('_', '-')} is {what}; leave it out, or choose another --toolkit.")
+        if not issubclass(kind, Fence) and self.wall_offset is not None:
+            raise InputError("--wall-offset is of fences: leave it out, or choose --toolkit fence.")
 
     def asked(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
         """The toolkit, and the tolerance that a named one comes with.
@@ -141,6 +157,7 @@ class ViseWords:
         """
         fields, tolerance = self.fields(unit), None
         opening = optional_length("--min-opening", self.min_opening, unit)
+        from workhold.model.fence import Fence
         from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of, toolkit_of
         from workhold.model.plate import Plate
         from workhold.model.vise import Vise
@@ -162,11 +179,15 @@ class ViseWords:
             if word is not None and word.lower() in (*KINDS, *ALIASES):
                 kind, more = kind_of(word.lower())
                 said = {**said, **more}
-        self.refuse_others(kind == Plate.kind)
+        self.refuse_others(KINDS[kind])
         fields = {**said, **fields}
         needed = {"pitch": "distance between holes", "columns": "columns", "peg_radius": "pegs' radius"}
+        if issubclass(KINDS[kind], Plate):
+            del needed["columns"]
+        if issubclass(KINDS[kind], Fence):
+            needed["wall_offset"] = "distance from the first row of holes"
         for name, words in needed.items():
-            if name not in fields and not (name == "columns" and kind == Plate.kind):
+            if name not in fields:
                 option_name = f"--{name.replace('_', '-')}"
                 noun = KINDS[kind].noun
                 raise InputError(

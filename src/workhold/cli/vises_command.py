@@ -96,11 +96,15 @@ def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
 
 def own_figures(loaded: LoadedVise, unit: Unit) -> Iterator[tuple[str, str]]:
     """What only a toolkit of its kind has, and its value in words."""
+    from workhold.model.fence import Fence
     from workhold.model.plate import Plate
     from workhold.model.vise import Vise
 
     toolkit, of = loaded.toolkit, unit.abbreviation
     assumed = dict.fromkeys(loaded.assumed, " (assumed: no source says)")
+    if isinstance(toolkit, Fence):
+        offset = f"{unit.figure(toolkit.wall_offset, unit.decimals + 1)} {of}"
+        yield "from the fence to the first row of holes", offset + assumed.get("wall_offset", "")
     if isinstance(toolkit, Plate):
         tip = f"{unit.figure(toolkit.clamp_radius, unit.decimals + 1)} {of}"
         yield "radius of the clamp's tip", tip + assumed.get("clamp_radius", "")

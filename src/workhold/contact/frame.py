@@ -59,7 +59,7 @@ class Frame:
         InputError
             When the lattices are not alike, or the moving carrier slides neither along its rows nor along its columns.
         """
-        (standing,) = (carrier for carrier in toolkit.carriers if carrier.travel is None)
+        (standing,) = (carrier for carrier in toolkit.carriers if carrier.travel is None and not carrier.is_wall)
         moving = toolkit.moving
         assert moving.travel is not None
         turns = moving.travel.direction / (pi / 2)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.drawing.clamps import draw_clamp
 from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
-from workhold.drawing.plates import draw_holes, draw_plate, most_holes
+from workhold.drawing.plates import draw_holes, draw_plate, draw_wall, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
@@ -57,6 +57,16 @@ class Bench:
         """(N, 2) page points around each loop of the part, about ``step`` page units apart."""
         return [sampled_loop(loop, view, step) for loop in self.loops]
 
+    @property
+    def touching(self) -> list[int]:
+        """The pegs that touch one face each: all but corners on a wall."""
+        return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
+
+    @property
+    def round_pegs(self) -> list[int]:
+        """The pegs themselves: all but the ends of the contact with a wall."""
+        return [index for index, peg in enumerate(self.fixture.pegs) if not peg.is_on_wall]
+
     def radius(self, view: View, index: int) -> float:
         """Radius of a peg on the page."""
         carrier = self.toolkit.carrier(self.fixture.pegs[index].carrier)
@@ -68,7 +78,10 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
-    contacts = [contact_of((peg.x, peg.y), face) for peg, face in zip(fixture.pegs, faces, strict=True)]
+    contacts = [
+        ((peg.x, peg.y), (0.0, -1.0)) if peg.is_on_wall else contact_of((peg.x, peg.y), face)
+        for peg, face in zip(fixture.pegs, faces, strict=True)
+    ]
     return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece))
 
 
@@ -102,6 +115,8 @@ def draw_bench(
     holes = scene.group("holes")
     for carrier in bench.shown.carriers:
         draw_holes(holes, carrier, view, most_holes(view, bench.shown))
+    if bench.shown.wall is not None:
+        draw_wall(scene.group("wall"), bench.shown.wall, view, weight)
     if axes and bench.shown.measured is not None:
         group = scene.group("axes")
         for low, high in bench.shown.measured.axes:
@@ -116,7 +131,7 @@ def draw_bench(
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
             arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if min(bench.radius(view, index) for index in range(4)) > 7.0 * weight:
+    if min(bench.radius(view, index) for index in bench.round_pegs) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
             contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
@@ -127,7 +142,7 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     part = scene.group("part", view)
     d = outline_path(bench.loops, view)
     part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
-    for face in dict.fromkeys(bench.faces):
+    for face in dict.fromkeys(bench.faces[k] for k in bench.touching):
         part.path(segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"})
     part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
 
@@ -136,7 +151,8 @@ def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     """Draw the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
-    for index, peg in enumerate(bench.fixture.pegs):
+    for index in bench.round_pegs:
+        peg = bench.fixture.pegs[index]
         (x, y), radius, hole = view((peg.x, peg.y)), bench.radius(view, index), holes.get(peg.carrier, 0.0)
         cross = min(0.55 * radius, 6.0 * weight)
         if bench.toolkit.carrier(peg.carrier).peg_radius == 0 and hole > radius:

@@ -36,7 +36,7 @@ def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, z
     view = View.fitting(bounds, room)
     d = outline_path(workpiece.loop_segments, view)
     group.path(d, fill=PART_FILL, fill_rule="evenodd")
-    for face in dict.fromkeys(peg.face for peg in fixture.pegs):
+    for face in dict.fromkeys(peg.face for peg in fixture.pegs if peg.beside is None):
         group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
     group.path(d, BLACK, 1.4)
     for point in contacts(workpiece, fixture):
@@ -76,6 +76,6 @@ def contacts(workpiece: Workpiece, fixture: Fixture) -> list[Point]:
     back = fixture.pose.inverse
     points = []
     for peg in fixture.pegs:
-        face = face_of(workpiece, peg.face)
-        points.append(contact_of(back.apply(peg.x, peg.y), face)[0])
+        center = back.apply(peg.x, peg.y)
+        points.append(center if peg.is_on_wall else contact_of(center, face_of(workpiece, peg.face))[0])
     return points

@@ -8,10 +8,12 @@ from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
 from workhold.drawing.clamps import block_arrow, draw_sign
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.drawing.plates import draw_wall
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.holes import hole_name
 from workhold.model.setting import mover_of, setting_of
+from workhold.model.shown import ShownWall
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -111,6 +113,8 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
     if arrangement.direction is not None:
         standing = plural(counts[0], carriers[0].peg, NUMBERS).capitalize()
+        if toolkit.wall is not None:
+            standing = f"{toolkit.wall.noun.capitalize()} and {carriers[0].peg}"
         return f"{standing}, the {carriers[arrangement.carriers[-1]].noun} pushes {arrangement.towards}"
     if len(counts) > 1 and len(set(counts)) == 1:
         return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
@@ -169,6 +173,8 @@ def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: L
         column.fact(first.title.capitalize(), f"{holes_words(first)}, {pitch}")
         column.fact(f"Tip of the {moving.noun}", diameter_words(moving, lengths))
     column.fact(f"{first.peg.capitalize()}s", diameter_words(first, lengths))
+    if toolkit.wall is not None:
+        column.fact(f"Row 1 from the {toolkit.wall.noun}", lengths.words(first.offset[1]))
     if offset := offset_words(toolkit, lengths):
         column.fact(f"{moving.letter} rows over {first.letter} rows", offset)
     column.rule()
@@ -208,17 +214,20 @@ def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: 
     column.row([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
     for peg, place in zip(fixture.pegs, places, strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
-        column.row([peg.hole if carrier.on is None else carrier.noun, str(peg.face), *place, force], ends, size)
+        column.row([peg.hole if carrier.on is None else carrier.noun, peg.touched, *place, force], ends, size)
     column.y += 2
     origin = hole_name(first.name, 0, 0)
-    column.words(f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}.", 11, fill=GREY)
+    away = f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}."
+    if toolkit.wall is not None:
+        away = f"x from column A, y from the {toolkit.wall.noun}, to centres."
+    column.words(away, 11, fill=GREY)
     column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
     column.rule()
 
 
 def pegs_words(toolkit: Toolkit) -> str:
     """What its pegs are called, such as "peg" or "locator or clamp"."""
-    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers))
+    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers if not carrier.is_wall))
 
 
 def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
@@ -249,6 +258,10 @@ def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
     def line(scene: Scene, x: float, y: float) -> None:
         scene.line([(x - 15, y), (x + 16, y)], BLACK, 1.0, stroke_dasharray="7 4")
 
+    def wall(scene: Scene, x: float, y: float) -> None:
+        bar = Box(x - 15, -y - 6, x + 16, -y + 3)
+        draw_wall(scene, ShownWall(first, bar, (bar.x0, bar.x1)), View(1.0, 0.0, 0.0))
+
     signs = [(peg, f"{first.peg} to place, with its hole: {named}"), (hole, "hole, left empty")]
     if toolkit.carriers[-1].on is not None:
         has_a_hole = toolkit.carriers[-1].has_a_hole
@@ -256,6 +269,8 @@ def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
             (clamp, "clamp: bolt, body and tip") if has_a_hole else (line, "line of holes that the clamp is on")
         )
         signs.append((push, "which way the clamp pushes"))
+    if toolkit.wall is not None:
+        signs.append((wall, f"{toolkit.wall.noun} that the part lies flush on"))
     signs += [
         (force, f"force of the {pegs_words(toolkit)} on the part, longer if larger"),
         (face, "face touched, with its number"),

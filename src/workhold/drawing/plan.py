@@ -239,24 +239,25 @@ def draw_labels(
         placer.avoid_box(box)
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
-    pegs = bench.fixture.pegs
-    numbers = list(dict.fromkeys(peg.face for peg in pegs))
+    labelled_pegs, pegs = bench.round_pegs, bench.fixture.pegs
+    numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
     direction = -radians(bench.fixture.pose.theta_deg) / 2
     places = placer.place(
         [
-            *(peg_label(bench, index, view) for index in range(4)),
+            *(peg_label(bench, index, view) for index in labelled_pegs),
             *(face_tag(bench, face, view) for face in numbers),
             around(center, direction, (text_width(angle, 13) + 4, 16), (26, 32, 40, 50, 64), spread(24), turn_cost=4),
             *(mark_label(point, name) for point, name in marks),
         ]
     )
     group = scene.group("labels")
-    for index, (peg, place) in enumerate(zip(pegs, places, strict=False)):
-        draw_flag(group, place, bench.radius(view, index), peg.hole)
-    for face, place in zip(numbers, places[4:], strict=False):
+    for index, place in zip(labelled_pegs, places, strict=False):
+        draw_flag(group, place, bench.radius(view, index), pegs[index].hole)
+    rest = places[len(labelled_pegs) :]
+    for face, place in zip(numbers, rest, strict=False):
         draw_tag(group, place, str(face))
-    group.text(places[4 + len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
-    for (_, name), place in zip(marks, places[5 + len(numbers) :], strict=True):
+    group.text(rest[len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
+    for (_, name), place in zip(marks, rest[1 + len(numbers) :], strict=True):
         draw_mark(group, place, name)
 
 
@@ -279,6 +280,8 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
         placer.avoid_line(view(low), view(high), 0.5)
     for clamp in bench.shown.clamps:
         avoid_clamp(placer, clamp, view)
+    if bench.shown.wall is not None:
+        placer.avoid_box(view.box(bench.shown.wall.bar))
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
@@ -309,7 +312,7 @@ def mark_label(point: Point, name: str) -> Label:
 
 def face_tag(bench: Bench, face_number: int, view: View) -> Label:
     """Candidates for the number of a face: inside the part, beside the contacts on it."""
-    index = next(k for k, peg in enumerate(bench.fixture.pegs) if peg.face == face_number)
+    index = next(k for k in bench.touching if bench.fixture.pegs[k].face == face_number)
     face = bench.faces[index]
     size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     half = face.half_extent

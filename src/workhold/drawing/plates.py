@@ -7,11 +7,12 @@ from math import inf
 
 from workhold.drawing.scene import GREY, Scene, View
 from workhold.geometry.segment import Point
-from workhold.model.shown import Shown, ShownCarrier, Side
+from workhold.model.shown import Shown, ShownCarrier, ShownWall, Side
 
-__all__ = ["SLIDING", "draw_holes", "draw_plate", "labelled", "most_holes"]
+__all__ = ["SLIDING", "draw_holes", "draw_plate", "draw_wall", "labelled", "most_holes"]
 
 # Fill and edge of a plate that stands still, and of one that slides.
+FENCE = "#cfd6dd", "#3d4a58"
 STILL, SLIDING = ("#dbe4ee", "#7c8da1"), ("#f1e7d6", "#a8946f")
 
 # With holes closer than this on the page, in page units, only those near the pegs are drawn.
@@ -36,6 +37,21 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
     scene.polygon([point for run in runs for point in run[:-1]], fill)
     for side, run in zip(sides, runs, strict=True):
         scene.line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
+
+
+def draw_wall(scene: Scene, wall: ShownWall, view: View, weight: float = 1.0) -> None:
+    """Draw a wall: a bar, hatched below the line that the part lies on."""
+    box = view.box(wall.bar)
+    scene.rectangle(box, FENCE[0])
+    high, step = box.height, max(box.height * 0.8, 6.0 * weight)
+    for k in range(1, int((box.width + high) / step) + 1):
+        # Strokes at 45 degrees, cut off at the bar's ends.
+        foot = box.x0 - high + k * step
+        low, top = max(foot, box.x0), min(foot + high, box.x1)
+        if low < top:
+            ends = [(low, box.y1 - (low - foot)), (top, box.y1 - (top - foot))]
+            scene.line(ends, FENCE[1], 0.9 * weight, **{"class": "hatching"})
+    scene.line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
 
 
 def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:

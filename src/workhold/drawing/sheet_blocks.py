@@ -125,8 +125,8 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.theta_deg:.4f}"
     heading(column, "Part zero X0 Y0 and angle")
     column.fact("X0 Y0 is the", zero.words, BODY, bold=True)
-    column.fact(f"x from hole {sheet.origin}", lengths.words(x), bold=True)
-    column.fact(f"y from hole {sheet.origin}", lengths.words(y), bold=True)
+    column.fact(f"x from {sheet.from_x}", lengths.words(x), bold=True)
+    column.fact(f"y from {sheet.from_y}", lengths.words(y), bold=True)
     column.fact("turned by θ, counter-clockwise", f"{turn}°", bold=True)
     drawn = ", y ".join(map(lengths.words, zero.point))
     place = "" if sheet.zero_shown else " It lies outside the plan."
@@ -136,7 +136,7 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     turning = f"G68 X0 Y0 R{word}" if float(word) else "no G68, as the part is not turned"
     machine = sheet.details.machine_position
     if machine is None:
-        words = f"G54: the machine's position over the centre of {sheet.origin}, plus this x and y; then {turning}."
+        words = f"G54: the machine's position over {sheet.origin_words}, plus this x and y; then {turning}."
         column.paragraph(words, NOTE)
         return
     gx, gy = (lengths.number(start + way).replace("−", "-") for start, way in zip(machine, (x, y), strict=True))

@@ -41,15 +41,25 @@ def set_on(sheet: Sheet) -> Setting:
 def write_locators(column: Column, sheet: Sheet) -> None:
     """Write where the locators stand, and the clamp's tip."""
     plate, clamp = sheet.toolkit.carriers[0], mover(sheet)
-    heading(column, f"{plate.peg.capitalize()}s {diameter_words(plate, sheet.lengths)}")
-    names = [peg.hole if peg.carrier == plate.name else clamp.noun for peg in sheet.fixture.pegs]
+    wall = sheet.toolkit.wall
+    what = f"{plate.peg.capitalize()}s" if wall is None else f"{wall.noun.capitalize()} and {plate.peg}"
+    heading(column, f"{what} {diameter_words(plate, sheet.lengths)}")
+    names = [clamp.noun if peg.carrier == clamp.name else peg.hole for peg in sheet.fixture.pegs]
     header, rows, per = peg_rows(sheet, names)
     write_table(column, header, rows)
     column.paragraph(
-        f"x, y: centre of the {plate.peg} or of the {clamp.noun}'s tip, from the centre of hole {sheet.origin}"
+        f"x, y: centre of the {plate.peg} or of the {clamp.noun}'s tip, from {sheet.origin_words}"
         f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",
         NOTE,
     )
+    if wall is not None:
+        ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.is_on_wall))
+        lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
+        column.paragraph(
+            f"The part lies flush on the {wall.noun} {lies}. Row 1 of the {plate.noun} is "
+            f"{sheet.lengths.words(plate.offset[1])} from the {wall.noun}.",
+            NOTE,
+        )
     column.paragraph(f"{per} of {clamp.noun} force, without friction.", NOTE)
     write_dowel(column, sheet)
 
@@ -90,15 +100,24 @@ def clamp_steps(sheet: Sheet) -> list[str]:
         if clamp.has_a_hole
         else f"Set the {clamp.noun} so that its tip is on {place}"
     )
-    names = [peg.hole for peg in fixture.pegs[:-1]]
-    touch = listed([f"face {peg.face} at {peg.hole}" for peg in fixture.pegs])
+    names = [peg.hole for peg in fixture.pegs[:-1] if not peg.is_on_wall]
+    touch = listed([f"{peg.touching} at {peg.hole}" for peg in fixture.pegs])
     force = sheet.details.jaw_force
     with_force = "" if force is None else f" with {lengths.unit.force_words(force)}"
     what = f"Its {setting.name}" if clamp.has_a_hole else f"The {setting.title},"
+    wall = sheet.toolkit.wall
+    if wall is None:
+        put = f"Put {plate.peg}s in {listed(names)} of the {plate.noun}."
+        against = f"against all {NUMBERS[len(names)]} {plate.peg}s"
+    else:
+        put = (
+            f"Fix the {wall.noun} along the rows, its edge {lengths.words(plate.offset[1])} from the centres of row 1, and "
+            f"put the {plate.peg} in {listed(names)} of the {plate.noun}."
+        )
+        against = f"flush on the {wall.noun} and against the {plate.peg}"
     return [
-        f"Put {plate.peg}s in {listed(names)} of the {plate.noun}. {bolt}, pushing {towards}, and draw it back.",
-        f"Lay the part in as drawn, {lies_words(sheet)}, against all {NUMBERS[len(names)]} {plate.peg}s."
-        f"{inside_words(sheet)}",
+        f"{put} {bolt}, pushing {towards}, and draw it back.",
+        f"Lay the part in as drawn, {lies_words(sheet)}, {against}.{inside_words(sheet)}",
         f"Bring the {clamp.noun} up until its tip touches face {tip.face}. {what} is then "
         f"{lengths.words(setting.length)}; if not, the part lies another way.",
         f"Clamp{with_force}. They touch: {touch}. A strip of paper at each must not pull out.",
@@ -117,7 +136,9 @@ def write_plate(column: Column, sheet: Sheet) -> None:
         else f"{lengths.short(pitch_x)} apart along the rows and {lengths.short(pitch_y)} along the columns"
     )
     named = f"{peg.hole} is column {column_letters(peg.column)}, row {peg.row + 1}"
-    column.paragraph(f"{named}: columns from left to right, rows from below.", BODY)
+    wall = sheet.toolkit.wall
+    below = "below" if wall is None else f"the {wall.noun}"
+    column.paragraph(f"{named}: columns from left to right, rows from {below}.", BODY)
     size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
     column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.paragraph(moving_words(sheet), BODY)
@@ -131,7 +152,9 @@ def write_plate(column: Column, sheet: Sheet) -> None:
 def moving_words(sheet: Sheet) -> str:
     """How far all of the set-up may be moved along the holes of the plate."""
     ways = []
-    for spare, noun, way in zip(spare_holes(sheet), ("column", "row"), ("further right", "further up"), strict=True):
+    known = zip(spare_holes(sheet), ("column", "row"), ("further right", "further up"), strict=True)
+    # With a fence the rows are given.
+    for spare, noun, way in list(known)[: 2 if sheet.toolkit.wall is None else 1]:
         if spare is None:
             ways.append(f"any {noun}s {way}")
         elif spare:
@@ -139,6 +162,8 @@ def moving_words(sheet: Sheet) -> str:
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
     stands = f"All of it may stand {' and '.join(ways)}"
+    if sheet.toolkit.wall is not None:
+        return f"{stands}; places are then told from the column that takes the place of A."
     return f"{stands}; places are then told from the hole that takes the place of {sheet.origin}."
 
 
@@ -162,7 +187,7 @@ def beyond_plate(sheet: Sheet) -> list[tuple[str, str, int, str]]:
     sides = (("left side", "further right", part.x0, "column"), ("lower side", "further up", part.y0, "row"))
     found = []
     for (side, way, low, noun), pitch, spare in zip(sides, plate.pitch, spare_holes(sheet), strict=True):
-        needed = ceil(-low / pitch - 0.5)
+        needed = ceil(-low / pitch - 0.5) if noun == "column" or sheet.toolkit.wall is None else 0
         if spare is not None and 0 < needed <= spare:
             found.append((side, way, needed, noun))
     return found

@@ -116,7 +116,7 @@ def cautions_of(
         found.append(Caution("unfit", UNFIT))
     for peg, distance in zip(fixture.pegs, distances, strict=True):
         if is_near_edge(distance):
-            place = f"{peg.hole} touches face {peg.face} only {lengths.words(distance)} from its end"
+            place = f"{peg.hole} touches {peg.touching} only {lengths.words(distance)} from its end"
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
     if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
@@ -128,7 +128,7 @@ def cautions_of(
         words = (
             f"{largest.hole} pushes {largest.force:.1f} times as hard as the {toolkit.moving.pushers}: tighten gently"
         )
-        found.append(Caution("amplification", f"{words}, it may mark face {largest.face}."))
+        found.append(Caution("amplification", f"{words}, it may mark {largest.touching}."))
     if is_astray(error, off):
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))

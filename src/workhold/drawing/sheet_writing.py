@@ -77,8 +77,24 @@ class Sheet:
 
     @property
     def origin(self) -> str:
-        """The name of the hole that places are told from."""
-        return hole_name(self.toolkit.carriers[0].name, 0, 0)
+        """The name of the hole that places are told from; with a fence that is where it meets column A."""
+        wall = self.toolkit.wall
+        return hole_name(self.toolkit.carriers[0].name, 0, 0) if wall is None else f"column A at the {wall.noun}"
+
+    @property
+    def origin_words(self) -> str:
+        """The point that places are told from, in words."""
+        return f"the centre of hole {self.origin}" if self.toolkit.wall is None else self.origin
+
+    @property
+    def from_x(self) -> str:
+        """What x is told from."""
+        return f"hole {self.origin}" if self.toolkit.wall is None else "column A"
+
+    @property
+    def from_y(self) -> str:
+        """What y is told from."""
+        return f"hole {self.origin}" if self.toolkit.wall is None else f"the {self.toolkit.wall.noun}"
 
 
 def height_of(block: Block, width: float) -> float:
@@ -147,7 +163,7 @@ def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[s
         header.append(f"at {unit.force_words(force)}")
     rows = []
     for name, peg in zip(names, sheet.fixture.pegs, strict=True):
-        row = [name, str(peg.face), number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
+        row = [name, peg.touched, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])
     each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
     return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"

@@ -31,7 +31,7 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
     carriers = {carrier.name: carrier for carrier in toolkit.carriers}
     for peg in fixture.pegs:
         carrier = carriers[peg.carrier]
-        if carrier.on is not None:
+        if carrier.on is not None or carrier.is_wall:
             continue
         sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
         long = "" if length is None else unit.figure(length)

@@ -12,7 +12,10 @@ from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.holes import hole_name
 
-__all__ = ["Fixture", "Pair", "Peg", "Pose"]
+__all__ = ["WALL", "Fixture", "Pair", "Peg", "Pose"]
+
+# What stands for a wall among the carriers of pegs.
+WALL = "wall"
 
 
 @frozen
@@ -27,6 +30,7 @@ class Peg:
     face : number of the face it touches.
     force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the working ratio.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
+    beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
     """
 
     carrier: str
@@ -37,6 +41,26 @@ class Peg:
     face: int
     force: float
     place: str | None = None
+    beside: int | None = None
+
+    @property
+    def is_on_wall(self) -> bool:
+        """Whether it is an end of the contact with a wall rather than a peg."""
+        return self.carrier == WALL
+
+    @property
+    def touched(self) -> str:
+        """The number of the face touched, or those of the two that meet at a corner.
+
+        >>> Peg("wall", 0, 0, 12.0, 0.0, 3, 0.4, beside=4).touched
+        '3/4'
+        """
+        return str(self.face) if self.beside is None else f"{self.face}/{self.beside}"
+
+    @property
+    def touching(self) -> str:
+        """What it touches, in words."""
+        return f"face {self.face}" if self.beside is None else f"the corner of faces {self.face} and {self.beside}"
 
     @property
     def hole(self) -> str:

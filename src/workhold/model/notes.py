@@ -18,9 +18,10 @@ __all__ = [
 ]
 
 
-def no_fixture_notes(wording: Wording) -> tuple[str, str, str, str]:
-    """Why a search finds no fixture: all normals meet, no pegs of one carrier touch, no four touch, no four hold."""
-    return (
+def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
+    """Why a search finds no fixture: all normals meet, no pegs of one carrier touch, no four touch, no four hold; or what
+    the toolkit has to say instead."""
+    return wording.reasons or (
         "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
         "from turning.",
         f"No {wording.two} can touch the part together: the pitch is too large for it.",
@@ -31,7 +32,7 @@ def no_fixture_notes(wording: Wording) -> tuple[str, str, str, str]:
 
 def no_place_note(verified: int, wording: Wording) -> str:
     """Why a search finds no fixture though so many candidates are proven to hold the part."""
-    return f"{verified} sets of four pegs would hold the part, but none of them can stand in {wording.within}."
+    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {wording.within}."
 
 
 def no_pair_note(seats: int, contacts: int) -> str:

@@ -168,10 +168,15 @@ class Plate(Toolkit):
         if self.clamps == 1:
             if any(not isinstance(name, str) for name in names):
                 raise InputError("the directions are pairs, but there is one clamp: give two clamps, or no pairs.")
-            return names or (("-x",) if self.is_square else ("-x", "-y"))
+            return names or self.usual_directions
         if not names:
             return (("-x", "-y"),) if self.is_square else (("-x", "-y"), ("-x", "+y"))
         return tuple(combinations_with_replacement(names, 2)) if isinstance(names[0], str) else names
+
+    @property
+    def usual_directions(self) -> tuple[str, ...]:
+        """All directions that differ by more than a turn of the plate."""
+        return ("-x",) if self.is_square else ("-x", "-y")
 
     @property
     def distinct_directions(self) -> tuple[str, ...]:
@@ -245,6 +250,10 @@ class Plate(Toolkit):
             yield Change("with a second clamp", {"clamps": 2, "directions": None})
             if len(self.distinct_directions) == 1:
                 yield Change("with the clamp along the columns as well", {"directions": ("-x", "-y")})
+        yield from self.finer()
+
+    def finer(self) -> Iterator[Change]:
+        """Half the pitch, where the locators are thin enough."""
         if min(self.pitch) >= 4 * self.peg_radius:
             half = (self.pitch[0] / 2, self.pitch[1] / 2)
             fields: dict[str, Any] = {"pitch": half}

@@ -15,9 +15,10 @@ from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
+from workhold.model.wall import ENDS, ON_WALL
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "unknown_quality"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "peg_places", "unknown_quality"]
 
 # Fixtures looked at together when all are gone through.
 BLOCK = 4096
@@ -184,7 +185,7 @@ class Result:
     def __iter__(self) -> Iterator[Fixture]:
         for start in range(0, len(self), BLOCK):
             block = self.table.take(slice(start, start + BLOCK))
-            yield from (fixture_at(block, self.toolkit, index) for index in range(len(block)))
+            yield from (fixture_at(block, self.toolkit, index, self.workpiece) for index in range(len(block)))
 
     @overload
     def __getitem__(self, index: int) -> Fixture: ...
@@ -198,7 +199,7 @@ class Result:
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
-        return fixture_at(self.table.take(slice(index, index + 1)), self.toolkit, 0)
+        return fixture_at(self.table.take(slice(index, index + 1)), self.toolkit, 0, self.workpiece)
 
 
 def whole_turn_degrees(theta: float) -> float:
@@ -207,21 +208,34 @@ def whole_turn_degrees(theta: float) -> float:
     return 0.0 if degrees > 360.0 - 1e-10 else degrees
 
 
-def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int) -> Fixture:
-    """Make the :class:`Fixture` of one row of a table."""
+def peg_places(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
+    x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    if toolkit.wall is not None:
+        x[:, ON_WALL] = workpiece.flush.x(table.theta, table.position)
+        y[:, ON_WALL] = 0.0
+    return x, y
+
+
+def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece) -> Fixture:
+    """Make the :class:`Fixture` of one row of a table, which holds a workpiece."""
     one = table.take(slice(index, index + 1))
     arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
-    across, along = toolkit.places(one.arrangement, one.column, one.row, one.jaw_separation)
+    across, along = peg_places(one, toolkit, workpiece)
     pairs = one.force.ndim == 3
     forces = (working_forces(one.force) if pairs else one.force)[0].tolist()
     pegs = []
     for k, number in enumerate(arrangement.carriers):
         carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
         place = None if carrier.on is None else carrier.place_name(column, row)
-        peg = Peg(
-            carrier.name, column, row, float(across[0, k]), float(along[0, k]), int(one.face[0, k]), forces[k], place
-        )
-        pegs.append(peg)
+        beside = None
+        if carrier.is_wall:
+            end, flush = k - ON_WALL.start, workpiece.flush
+            place, beside = f"{carrier.noun} {ENDS[end]}", flush.touching[flush.number(one.theta)[0]][end].beside
+        at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
+        pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside))
     x, y = (float(v) for v in table.position[index])
     return Fixture(
         type=arrangement.name,

@@ -69,5 +69,6 @@ def setting_of(fixture: Fixture, toolkit: Toolkit) -> Setting | None:
     if carrier.is_along_x:
         sign, first, length, start = "x", "column A", tip.x, (0.0, tip.y)
     else:
-        sign, first, length, start = "y", "row 1", tip.y, (tip.x, 0.0)
+        first = "row 1" if toolkit.wall is None else f"the {toolkit.wall.noun}"
+        sign, length, start = "y", tip.y, (tip.x, 0.0)
     return Setting(f"tip {sign}", f"tip of the {carrier.noun}, {sign} from {first}", sign, length, start, end)

@@ -21,7 +21,7 @@ from math import ceil, floor, inf
 from typing import Literal
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -42,6 +42,7 @@ __all__ = [
     "Measured",
     "Shown",
     "ShownCarrier",
+    "ShownWall",
     "Side",
     "placed_boxes",
     "shown",
@@ -58,6 +59,8 @@ MOST_HOLES = 2_000
 SHARE_OF_GAP = 0.48
 # Holes so many columns and rows from a peg are near it.
 NEAR = 3
+# Of the pitch: how thick a wall is drawn, whose own thickness nobody knows.
+BAR = 0.4
 # Relative to the pitch: a hole this little beyond reach is in it.
 ROUNDING = 1e-6
 
@@ -175,6 +178,22 @@ class Measured:
 
 
 @frozen
+class ShownWall:
+    """What shows of a straight wall along x at y = 0; lengths in mm.
+
+    Parameters
+    ----------
+    carrier : the whole of it.
+    bar : as far as it shows, the part above it.
+    ends : x of the ends of the part's contact with it.
+    """
+
+    carrier: Carrier
+    bar: Box
+    ends: tuple[float, float]
+
+
+@frozen
 class Shown:
     """What shows of a toolkit and a part.
 
@@ -184,17 +203,20 @@ class Shown:
     clamps : those that are bolted to a plate.
     measured : the length to set; None where nothing moves.
     part : extent of the part in mm.
+    wall : what the part lies flush against; None where there is no wall.
     """
 
     carriers: tuple[ShownCarrier, ...]
     clamps: tuple[ShownClamp, ...]
     measured: Measured | None
     part: Box
+    wall: ShownWall | None = None
 
     @property
     def extent(self) -> Box:
         """Everything together."""
-        return reduce(Box.union, [*(one.plate for one in self.carriers), *(one.room for one in self.clamps)], self.part)
+        boxes = [*(one.plate for one in self.carriers), *(one.room for one in self.clamps)]
+        return reduce(Box.union, boxes if self.wall is None else [*boxes, self.wall.bar], self.part)
 
     @property
     def pitch(self) -> float:
@@ -242,7 +264,7 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
         When part and pegs are so far apart that too many holes would show.
     """
     travelled = fixture.jaw_separation
-    carriers = [carrier for carrier in toolkit.carriers if carrier.on is None]
+    carriers = [carrier for carrier in toolkit.carriers if carrier.on is None and not carrier.is_wall]
     clamps = tuple(shown_clamps(fixture, toolkit))
     reach = reach_of(part, fixture, carriers, clamps)
     ranges = [cells_in_reach(carrier, travelled, reach) for carrier in carriers]
@@ -274,7 +296,19 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 clamping=clamping_direction(carrier, toolkit),
             )
         )
-    return Shown(tuple(out), clamps, measured_between(out, fixture, toolkit), part)
+    seen = Shown(tuple(out), clamps, measured_between(out, fixture, toolkit), part)
+    return seen if toolkit.wall is None else with_wall(seen, fixture, toolkit.wall)
+
+
+def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
+    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it."""
+    (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
+    around = plate.plate.union(seen.part)
+    bar = Box(around.x0, -thick, around.x1, 0.0)
+    below = evolve(plate.plate, y0=-thick)
+    left, right = (peg.x for peg in fixture.pegs if peg.is_on_wall)
+    plate = evolve(plate, plate=below, broken=plate.broken - {"bottom"})
+    return evolve(seen, carriers=(plate,), wall=ShownWall(carrier, bar, (left, right)))
 
 
 def measured_between(seen: Sequence[ShownCarrier], fixture: Fixture, toolkit: Toolkit) -> Measured | None:

@@ -69,6 +69,7 @@ class Carrier:
     noun : what it is called, such as "jaw".
     peg : what each of its pegs is called, such as "locator".
     on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
+    is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
     """
 
     name: str
@@ -83,6 +84,7 @@ class Carrier:
     noun: str = "carrier"
     peg: str = "peg"
     on: str | None = None
+    is_wall: bool = False
 
     @property
     def title(self) -> str:
@@ -123,6 +125,8 @@ class Carrier:
         >>> clamp.place_name(0, 2)
         'clamp row 3'
         """
+        if self.is_wall:
+            return self.noun
         if self.on is None:
             return hole_name(self.name, column, row)
         if self.has_a_hole:
@@ -221,6 +225,9 @@ class Wording:
     rules : what four pegs that touch must still do, such as "keeps the smallest gap, closes and clamps".
     backwards : when a set of four that closes without clamping would hold.
     holes : the rule about holes, such as "holes that the jaws do not have".
+    sets : what holds the part together, in the plural.
+    reasons : why it holds nothing, from what is asked first to what is asked last; empty for the usual ones
+        (``model.notes``).
     """
 
     two: str
@@ -230,6 +237,8 @@ class Wording:
     rules: str
     backwards: str
     holes: str
+    sets: str = "sets of four pegs"
+    reasons: tuple[str, ...] = ()
 
 
 @frozen
@@ -336,6 +345,11 @@ class Toolkit:
     def without(self, limits: Iterable[Limit]) -> Toolkit:
         """The toolkit without some of its limits."""
         return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
+
+    @property
+    def wall(self) -> Carrier | None:
+        """The wall that the part lies flush against, where there is one."""
+        return next((carrier for carrier in self.carriers if carrier.is_wall), None)
 
     @property
     def moving(self) -> Carrier:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.conventions import READING
 from workhold.errors import InputError
 from workhold.geometry.face import Face, faces_of_loop
+from workhold.geometry.hull_edges import HullEdge, hull_edges
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.loop import (
     LoopShape,
@@ -29,6 +30,7 @@ from workhold.geometry.loop import (
 from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Pose
+from workhold.model.wall import Flush
 
 __all__ = ["Workpiece"]
 
@@ -144,6 +146,16 @@ class Workpiece:
             faces += faces_of_loop(loop, number)
             number += len(loop)
         return tuple(faces)
+
+    @cached_property
+    def hull_edges(self) -> tuple[HullEdge, ...]:
+        """The straight pieces of the boundary of its convex hull, on which it can lie flush; their faces are indices."""
+        return hull_edges([face.segment for face in self.faces if face.number < len(self.loops[0])])
+
+    @cached_property
+    def flush(self) -> Flush:
+        """How it lies on a wall, hull edge by hull edge."""
+        return Flush.of(self.hull_edges, [face.number for face in self.faces])
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -30,6 +30,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks, thread_count
 from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
+from workhold.search.fence import answer_on_fence
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
@@ -172,6 +173,8 @@ def answer_of_a_way(
     receiver: Receiver | None = None,
 ) -> Result:
     """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
+    if query.toolkit.wall is not None:
+        return handed_over(answer_on_fence(query, progress, cancel), receiver)
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
     # Smaller blocks learn earlier what margin is to be reached.

@@ -36,6 +36,7 @@ from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks, thread_count
 from workhold.search.contacts import contacts_of
 from workhold.search.design import answer
+from workhold.search.explaining_fence import removals_on_fence
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.statics.wrenches import outward_normals
 
@@ -93,7 +94,10 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     unit : of the lengths in its words.
     """
     ways = [evolve(query, toolkit=way) for way in query.toolkit.ways]
-    first, removals, nearest = together([removals_of(Problem.of(way), threads, unit) for way in ways])
+    if query.toolkit.wall is not None:
+        first, removals, nearest = together([removals_on_fence(way) for way in ways])
+    else:
+        first, removals, nearest = together([removals_of(Problem.of(way), threads, unit) for way in ways])
     return Explanation(first, removals, nearest, helps(query, threads, unit))
 
 
@@ -308,7 +312,7 @@ def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) ->
     toolkit = problem.toolkit.without(problem.toolkit.limits)
     part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
     table = placed(contacts.candidates.take(np.array([index])), part)
-    return NearestMiss(fixture_at(table, toolkit, 0), words)
+    return NearestMiss(fixture_at(table, toolkit, 0, problem.workpiece), words)
 
 
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
@@ -339,7 +343,8 @@ def nearest_turn(query: Query, result: Result) -> str:
     good = quality[:, WARNINGS] == quality[:, WARNINGS].min()
     found = np.degrees(result.table.theta[good])
     # What half a turn leaves in its arrangement lies in the jaws either way round.
-    pegs = np.array([one.pegs[0] == one.pegs[-1] for one in result.toolkit.arrangements])
+    swaps = bool(result.toolkit.symmetries)
+    pegs = np.array([swaps and one.pegs[0] == one.pegs[-1] for one in result.toolkit.arrangements])
     found = np.concatenate([found, found[pegs[result.table.arrangement[good]]] + 180.0])
     beyond = np.full(len(found), np.inf)
     for low, high in query.restrictions.angles:

@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 
 from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
 from workhold.geometry.rotation import rotated
+from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH, X, Y
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.force_ratio import working_forces
 from workhold.model.toolkit import Toolkit
+from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ContactMatrices", "Touched"]
@@ -65,12 +67,14 @@ class Touched:
     center : (2,) of the part's bounding box, in the part's coordinates.
     length : L of the wrenches, half the diameter of the peg-centre locus.
     features : (F, 12) rows of the contact features of each carrier's pegs with the slacks of their ends, one carrier after
-        the other, ordered by face.
-    starts : where the features of each face number begin in them, carrier after carrier, and where the last ones end.
+        the other, ordered by face; for a wall the hull edges come after them.
+    starts : where the features of each face number begin in them, carrier after carrier, then where each hull edge does, and
+        where the last ones end.
     segments : how many face numbers there are.
     moving : (C,) 1 for a carrier that moves, 0 for others.
-    axis : (2,) unit vector against which the moving pegs clamp, in the toolkit's frame.
-    directions : (C, 2) unit vector along which each carrier clamps, zero for one that stands still.
+    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame, zero for one that stands still.
+    wall : the number of the carrier that is a wall, or -1.
+    flush : how the part lies on a wall.
     """
 
     center: Array
@@ -79,8 +83,9 @@ class Touched:
     starts: NDArray[np.int64]
     segments: int
     moving: Array
-    axis: Array
     directions: Array
+    wall: int
+    flush: Flush
 
     @classmethod
     def of(
@@ -94,18 +99,23 @@ class Touched:
 
         Parameters
         ----------
-        loci : for each carrier those of its pegs, where they are known already.
+        loci : for each carrier with holes those of its pegs, where they are known already.
         length : L in mm, where it is known already.
         """
         carriers, segments = toolkit.carriers, len(workpiece.segments)
-        loci = loci or [contact_features(workpiece, carrier.peg_radius) for carrier in carriers]
+        if loci is None:
+            loci = [contact_features(workpiece, one.peg_radius) for one in carriers if not one.is_wall]
+        wall = next((number for number, one in enumerate(carriers) if one.is_wall), -1)
+        flush = Flush.of((), ()) if wall < 0 else workpiece.flush
+        loci = loci if wall < 0 else [*loci[:wall], (), *loci[wall:]]
         features = [feature for locus in loci for feature in locus]
         center = np.array(workpiece.center)
+        walls = [Line((a, b), (x, y)) for (a, b), (x, y) in flush.ends.tolist()]
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
-        rows = np.zeros((len(features) + 1, FEATURE_LENGTH))
-        rows[:-1, :SEGMENT_LENGTH] = feature_rows(features)
+        rows = np.zeros((len(features) + len(walls) + 1, FEATURE_LENGTH))
+        rows[:-1, :SEGMENT_LENGTH] = np.concatenate([feature_rows(features), segment_rows(walls)])
         # Each carrier's by themselves: where another's pegs may stand says nothing of a joint.
-        rows[:-1, SEGMENT_LENGTH:] = np.concatenate([end_slacks(list(locus)) for locus in loci])
+        rows[: len(features), SEGMENT_LENGTH:] = np.concatenate([end_slacks(list(locus)) for locus in loci])
         rows[:, [X, Y]] -= center
         faces = [number * segments + feature.face for number, locus in enumerate(loci) for feature in locus]
         radius = max(carrier.peg_radius for carrier in carriers)
@@ -113,12 +123,15 @@ class Touched:
             center=center,
             length=outline_diameter(workpiece) / 2 + radius if length is None else length,
             features=rows,
-            starts=np.searchsorted(faces, np.arange(len(loci) * segments + 1)).astype(np.int64),
+            starts=np.concatenate(
+                [np.searchsorted(faces, np.arange(len(loci) * segments)), np.arange(len(walls) + 1) + len(features)]
+            ).astype(np.int64),
             segments=segments,
             moving=np.array([carrier.travel is not None for carrier in carriers], np.float64),
-            axis=toolkit.clamping * np.array(toolkit.moving_axis, np.float64),
             directions=np.array([(0.0, 0.0) if c.travel is None else c.travel.unit for c in carriers], np.float64)
             * -toolkit.clamping,
+            wall=wall,
+            flush=flush,
         )
 
     def contact_matrices(
@@ -136,24 +149,38 @@ class Touched:
         count, each = pegs.shape[:2]
         points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
         inverses = np.zeros((count, 4, each))
-        # Copies, because a kernel is compiled anew for arrays that are read-only or laid out otherwise.
-        contact_matrices_of(
-            np.array(pegs, np.float64, order="C"),
-            np.array(pose, np.float64, order="C"),
-            np.array(self.moving[carriers], np.float64, order="C"),
-            self.axis,
-            np.array(faces + self.segments * np.asarray(carriers, np.int64), order="C"),
-            self.features,
-            self.starts,
-            self.center,
-            self.length,
-            points,
-            normals,
-            ends,
-            edges,
-            inverses,
-            np.empty((each, 4)),
-        )
+        on = np.asarray(carriers, np.int64)
+        on_wall = on == self.wall
+        edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
+        touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
+        # Each fixture has an axis of its own where a toolkit has several carriers that move.
+        mover = (on * (self.moving[on] > 0.0)).max(axis=1, initial=0)
+        for number in np.unique(mover).tolist():
+            rows = np.flatnonzero(mover == number)
+            p, n, e, d = (np.empty((len(rows), *values.shape[1:])) for values in (points, normals, ends, edges))
+            inverse = np.zeros((len(rows), 4, each))
+            # Copies, because a kernel is compiled anew for arrays that are read-only or laid out otherwise.
+            contact_matrices_of(
+                np.array(pegs[rows], np.float64, order="C"),
+                np.array(pose[rows], np.float64, order="C"),
+                np.array(self.moving[on[rows]], np.float64, order="C"),
+                -self.directions[number],
+                np.array(touched[rows], order="C"),
+                self.features,
+                self.starts,
+                self.center,
+                self.length,
+                p,
+                n,
+                e,
+                d,
+                inverse,
+                np.empty((each, 4)),
+            )
+            points[rows], normals[rows], ends[rows], edges[rows], inverses[rows] = p, n, e, d, inverse
+        # What lies flush on a wall ends nowhere that matters.
+        for distances in (ends, edges):
+            distances[on_wall & ~np.isnan(distances)] = np.inf
         if each == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
         reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)

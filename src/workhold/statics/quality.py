@@ -27,9 +27,10 @@ from workhold.model.quality import (
     TILT,
     WARNINGS,
 )
-from workhold.model.result import FixtureTable, Result, fixture_at
+from workhold.model.result import FixtureTable, Result, fixture_at, peg_places
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
+from workhold.model.wall import ON_WALL
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.jaw import jaw_forces_needed
@@ -85,7 +86,7 @@ def quality_of(
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
         carriers = toolkit.peg_carriers(block.arrangement)
-        x, y = toolkit.places(block.arrangement, block.column, block.row, block.jaw_separation)
+        x, y = peg_places(block, toolkit, workpiece)
         contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, faces)
         figures(
             contact_matrices.points,
@@ -93,7 +94,7 @@ def quality_of(
             contact_matrices.ends,
             contact_matrices.edges,
             contact_matrices.inverses,
-            faces,
+            shared_faces(block, toolkit, workpiece),
             known.length,
             tolerances,
             corners,
@@ -111,7 +112,7 @@ def quality_of(
         if toolkit.needs_pairs:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
         filled[:, TILT] = tilts(block.theta, direction)
-        filled[:, SMALLEST_FACE] = sizes[faces].min(axis=1, initial=np.inf)
+        filled[:, SMALLEST_FACE] = touched_sizes(block, toolkit, workpiece, sizes).min(axis=1, initial=np.inf)
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
         filled[:, PENALTY] = judging.penalty(filled)
 
@@ -137,6 +138,24 @@ def closures(reactions: Array) -> Array:
     return out
 
 
+def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
+    """Numbers (N, 4) that are the same for pegs which an error of one face moves alike; of a corner on a wall one of its
+    own."""
+    faces = block.face.astype(np.int64)
+    if toolkit.wall is not None:
+        faces[:, ON_WALL] = workpiece.flush.shared[workpiece.flush.number(block.theta)]
+    return faces
+
+
+def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
+    """Sizes (N, 4) in mm of what is touched, from those (S,) of the faces; on a wall how long the part lies on it."""
+    out = sizes[block.face]
+    if toolkit.wall is not None:
+        flush = workpiece.flush
+        out[:, ON_WALL] = flush.length[flush.number(block.theta)][:, None]
+    return np.asarray(out)
+
+
 def measured_fixture(
     result: Result, index: int, loads: Sequence[Load] | None = None, jaw_force: float | None = None
 ) -> Fixture:
@@ -145,7 +164,7 @@ def measured_fixture(
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
     quality = quality_of(row, result.workpiece, result.toolkit, result.query.tolerance, asked, jaw_force=force)
-    return fixture_at(evolve(row, quality=quality), result.toolkit, 0)
+    return fixture_at(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 
 
 def extremes(workpiece: Workpiece) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ The identities, for each type apart where a number is told for each:
   (``verification.undecided``);
 - of a search: crossings_sought <= curve_pairs, and contacts_examined <= candidates once it is complete, which then has
   examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
+- of a fence: cells = hull_edges, candidates = contacts_examined;
 - features >= faces touched;
 - the notes are those that follow from these numbers.
 
@@ -31,6 +32,7 @@ from workhold.verification.undecided import undecided_faults
 __all__ = ["account_faults"]
 
 SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
+FENCE = ("features", "hull_edges", "locator_places", "contacts_examined")
 ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "undecided")
 # The algebra names so many undecided systems, and counts the others in one note more.
 MOST_NAMED = 20
@@ -86,12 +88,20 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
 def statistics_faults(listing: Listing) -> Iterator[str]:
     """Contradictions in the numbers that tell how much work the search was."""
     numbers, proof = listing.statistics, listing.proof
-    if set(numbers) not in (set(SEARCH), set(ALGEBRA)) or min(numbers.values()) < 0:
-        yield f"the statistics are not {', '.join(SEARCH)}, each a number from 0"
+    known = [SEARCH, ALGEBRA] if listing.query.toolkit.wall is None else [FENCE]
+    if set(numbers) not in map(set, known) or min(numbers.values()) < 0:
+        yield f"the statistics are not {', '.join(known[0])}, each a number from 0"
         return
     touched = len({peg.face for fixture in listing.fixtures for peg in fixture.pegs})
     if numbers["features"] < touched:
         yield f"the statistics say {numbers['features']} features, but the fixtures touch {touched} faces"
+    if listing.query.toolkit.wall is not None:
+        if proof is not None and (proof.cells, proof.candidates) != (
+            numbers["hull_edges"],
+            numbers["contacts_examined"],
+        ):
+            yield "the proof has other cells or candidates than the statistics have hull edges or contacts examined"
+        return
     by_algebra = is_by_algebra(numbers)
     if not by_algebra and numbers["crossings_sought"] > numbers["curve_pairs"]:
         yield "the statistics say that more crossings were sought than there are pairs of curves"

@@ -62,7 +62,7 @@ class Balance:
     def of(cls, contacts: Sequence[Contact], pose: Pose, clamping: int) -> Balance:
         """The balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
         points = tuple(contact.in_part(pose) for contact in contacts)
-        normals = tuple(contact.side.outward(point) for contact, point in zip(contacts, points, strict=True))
+        normals = tuple(contact.outward(pose) for contact in contacts)
         vector = tuple(minors(points, normals))
         total = sum(vector, arb(0))
         shares = tuple(entry / total for entry in vector)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import degrees
+from math import degrees, nan
 from pathlib import Path
 from typing import Any, overload
 
@@ -88,6 +88,9 @@ class FixturesInColumns(Sequence[Fixture]):
         for carrier, column, row, face, force in zip(arrangement.carriers, *each, strict=True):
             one = self.toolkit.carriers[carrier]
             x, y = one.place(column, row, travelled)
+            if one.is_wall:
+                # Where the part lies on it follows from the pose, and is not written.
+                x = nan
             called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
             pegs.append(Peg(one.name, column, row, x, y, face, force, called))
         pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])

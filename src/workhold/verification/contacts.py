@@ -11,6 +11,7 @@ peg's centre, N = R n and C = R c, a peg of radius rho touches
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 from attrs import frozen
 from flint import arb, arb_mat
@@ -54,6 +55,17 @@ class Contact:
     way: Point
     side: Side
     radius: arb
+
+    is_flush: ClassVar[bool] = False
+
+    @property
+    def size(self) -> arb:
+        """Of the side: the length of a straight one, an arc's radius; in mm."""
+        return self.side.length if isinstance(self.side, LineSide) else self.side.radius
+
+    def outward(self, pose: Pose) -> Point:
+        """The outward unit normal at the contact, in the workpiece's frame."""
+        return self.side.outward(self.in_part(pose))
 
     def from_origin(self, pose: Pose) -> Point:
         """Vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""

@@ -151,7 +151,11 @@ class Measure:
         except ZeroDivisionError:
             # The pose is not known well enough for any figure but those of the forces.
             return {"closure_margin": least(balance.shares), "clamp_amplification": largest(balance.forces)}
-        pegs = list(zip(contacts, faces, balance.points, strict=True))
+        pegs = [
+            (contact, face, point)
+            for contact, face, point in zip(contacts, faces, balance.points, strict=True)
+            if not contact.is_flush
+        ]
         edges = [edge for peg in pegs if (edge := self.edge_distance(*peg)) is not None]
         out = {
             "closure_margin": least(balance.shares),
@@ -161,7 +165,7 @@ class Measure:
             "end_distance": least([self.end_distance(*peg) for peg in pegs]),
             "edge_distance": least([arb(self.wrench_length), *edges]),
             "tilt": tilt(pose, self.direction),
-            "smallest_face": least([c.side.radius if isinstance(c.side, ArcSide) else c.side.length for c in contacts]),
+            "smallest_face": least([contact.size for contact in contacts]),
         }
         if self.loads:
             out["load_reaction"] = self.load_reaction(inverse, balance)

@@ -110,9 +110,13 @@ class Judge:
         for name, peg in zip(hardware.names, fixture.pegs, strict=True):
             if peg.face not in outline.faces:
                 yield Finding(True, f"{name} is on segment {peg.face}, which does not name a face")
-        contacts = [hardware.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs]
-        faces = [peg.face for peg in fixture.pegs]
-        touching = list(zip(hardware.names, contacts, faces, strict=True))
+        contacts = hardware.contacts(fixture, outline)
+        faces = hardware.shared_faces(fixture, contacts)
+        touching = [
+            (name, contact, peg.face)
+            for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
+            if not contact.is_flush
+        ]
         for name, contact, face in touching:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")

@@ -12,11 +12,12 @@ pattern : the holes of a fixture in a form in which equal fixtures have equal on
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import cos, radians, sin
 from typing import Any, ClassVar
 
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding
@@ -78,6 +79,14 @@ class Hardware(ABC):
     def contact(self, peg: Peg, side: Side) -> Contact:
         """The contact of a peg with a side."""
 
+    def contacts(self, fixture: Fixture, outline: Outline) -> list[Contact]:
+        """The contacts of all pegs of a fixture, in their order."""
+        return [self.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs]
+
+    def shared_faces(self, fixture: Fixture, contacts: Sequence[Contact]) -> list[int]:
+        """Numbers of what the pegs touch: the same for those that an error of a face moves alike."""
+        return [peg.face for peg in fixture.pegs]
+
     @abstractmethod
     def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """What is wrong with the holes, and with the places x, y written for them."""
@@ -89,8 +98,8 @@ class Hardware(ABC):
         """Whether everything can stand as it does at a proven pose."""
 
     @abstractmethod
-    def broken_restriction(self, fixture: Fixture) -> str:
-        """What a fixture's pegs break that the toolkit rules out, in one sentence without a full stop; empty for nothing."""
+    def broken_restriction(self, fixture: Fixture, query: Query) -> str:
+        """What a fixture breaks of what the toolkit rules out, in one sentence without a full stop; empty for nothing."""
 
     @abstractmethod
     def body_radius(self, peg: Peg) -> float:

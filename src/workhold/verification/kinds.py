@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from workhold.errors import InputError
+from workhold.model.fence import Fence
 from workhold.model.plate import Plate
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
+from workhold.verification.fence import FenceRules
 from workhold.verification.hardware import Hardware
 from workhold.verification.plate import PlateRules
 from workhold.verification.vise import ViseRules
@@ -23,6 +25,8 @@ def hardware_of(toolkit: Toolkit) -> Hardware:
     """
     if isinstance(toolkit, Vise):
         return ViseRules(toolkit)
+    if isinstance(toolkit, Fence):
+        return FenceRules(toolkit)
     if isinstance(toolkit, Plate):
         return PlateRules(toolkit)
     raise InputError(f"a result in a {toolkit.kind} cannot be verified: its rules are not known.")

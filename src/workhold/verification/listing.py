@@ -26,9 +26,11 @@ from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.verification.columns import Columns, FixturesInColumns, columns_of
+from workhold.verification.fence import WALL_ENDS
 from workhold.verification.hardware import Hardware
 from workhold.verification.kinds import hardware_of
 from workhold.verification.plate import PLATE, WAYS, clamp_place
+from workhold.verification.rules import WALL
 
 __all__ = ["Listing", "listing_of", "read_listing"]
 
@@ -212,21 +214,47 @@ def fixture_from(item: Any) -> Fixture:
     direction = word(item, "direction") if item.get("direction") is not None else None
     if direction not in (None, *WAYS):
         raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
-    if not isinstance(pegs, list) or len(pegs) != 4 or not all(isinstance(peg, dict) for peg in pegs):
+    on_wall = wall_pegs_from(item["wall"]) if "wall" in item else ()
+    if not isinstance(pegs, list) or len(on_wall) + len(pegs) != 4 or not all(isinstance(peg, dict) for peg in pegs):
         raise UnusableError("it does not have four pegs")
+    taken = tuple(peg_from(peg) if direction is None else plate_peg_from(peg, direction) for peg in pegs)
     if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
     return Fixture(
         word(item, "type"),
-        tuple(peg_from(peg) if direction is None else plate_peg_from(peg, direction) for peg in pegs),
+        (*taken[:1], *on_wall, *taken[1:]),
         Pose(real(pose, "theta_deg"), real(pose, "x"), real(pose, "y")),
         # How far a clamp has travelled follows from its place.
         real(item, "jaw_separation") if direction is None else 0.0,
         {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality},
         direction,
     )
+
+
+def wall_pegs_from(item: Any) -> tuple[Peg, Peg]:
+    """The two ends of the contact with a wall from their JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    if not isinstance(item, dict):
+        raise UnusableError("its wall is not told by places, segments and forces")
+    pairs = []
+    for key in ("from", "to", "segments", "forces"):
+        value = item.get(key)
+        if not isinstance(value, list) or len(value) != 2:
+            raise UnusableError(f"the {key} of its wall is not two numbers")
+        pairs.append({"first": value[0], "second": value[1]})
+    *places, faces, forces = pairs
+    one, other = (
+        Peg(WALL, 0, 0, real(place, "first"), real(place, "second"), whole(faces, which), real(forces, which), called)
+        for place, which, called in zip(places, ("first", "second"), WALL_ENDS, strict=True)
+    )
+    return one, other
 
 
 def plate_peg_from(item: Mapping[str, Any], direction: str) -> Peg:

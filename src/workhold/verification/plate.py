@@ -18,13 +18,14 @@ from workhold.errors import InputError
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.holes import column_letters, hole_name
 from workhold.model.plate import Plate
+from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, norm
 from workhold.verification.capsule import clearance
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware, Key, Place, Rank, from_anchor
 from workhold.verification.outline import Outline
-from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_PUSH, SAME
+from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_PUSH, SAME, WALL
 from workhold.verification.sides import Side
 
 __all__ = ["PLATE", "WAYS", "PlateRules", "clamp_place", "quarter_turns", "seen_along_x"]
@@ -45,8 +46,26 @@ class PlateRules(Hardware):
         "a smaller contact margin, a longer stroke, more columns or rows, fewer restrictions or more directions"
     )
     least_clamping: ClassVar[float] = LEAST_PUSH
+    kinds: ClassVar[str] = "clamp"
+    pegs_wanted: ClassVar[str] = "three locators and then a clamp"
+    # Of columns and rows, those that count from the lowest that is used.
+    from_lowest: ClassVar[tuple[str, ...]] = ("column", "row")
 
     toolkit: Plate
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Where the hole in column 0 and row 0 is, in mm."""
+        return 0.0, 0.0
+
+    @property
+    def names_in_holes(self) -> tuple[str, ...]:
+        """Of the locators, and of the clamp."""
+        return self.names
+
+    def has_its_pegs(self, fixture: Fixture) -> bool:
+        """Whether the pegs of a fixture are three locators and then its clamp."""
+        return [peg.carrier for peg in fixture.pegs] == [PLATE, PLATE, PLATE, f"clamp {fixture.direction}"]
 
     @property
     def largest_radius(self) -> float:
@@ -66,25 +85,25 @@ class PlateRules(Hardware):
         InputError
             When it has no clamp.
         """
-        if fixture.type != "clamp" or fixture.direction is None:
-            raise InputError("its type is not clamp")
+        if fixture.type != self.kinds or fixture.direction is None:
+            raise InputError(f"its type is not {self.kinds}")
         tip, way = fixture.pegs[-1], WAYS[fixture.direction]
-        pitch_x, pitch_y = self.toolkit.pitch
-        travel = (tip.x - tip.column * pitch_x) * way[0] + (tip.y - tip.row * pitch_y) * way[1]
+        (pitch_x, pitch_y), (x, y) = self.toolkit.pitch, self.origin
+        travel = (tip.x - x - tip.column * pitch_x) * way[0] + (tip.y - y - tip.row * pitch_y) * way[1]
         return evolve(fixture, jaw_separation=travel)
 
     def contact(self, peg: Peg, side: Side) -> Contact:
         """The contact of a locator, or of the clamp's tip, which moves on its line, with a side."""
-        pitch_x, pitch_y = self.toolkit.pitch
-        hole = arb(pitch_x) * peg.column, arb(pitch_y) * peg.row
+        (pitch_x, pitch_y), (x, y) = self.toolkit.pitch, self.origin
+        hole = x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
         if peg.carrier == PLATE:
             return Contact(hole, exact_point(0.0, 0.0), side, arb(self.toolkit.peg_radius))
-        x, y = WAYS[peg.carrier.removeprefix("clamp ")]
-        return Contact(hole, exact_point(float(x), float(y)), side, arb(self.toolkit.clamp_radius))
+        way = WAYS[peg.carrier.removeprefix("clamp ")]
+        return Contact(hole, exact_point(*map(float, way)), side, arb(self.toolkit.clamp_radius))
 
     def lattice_numbers(self, fixture: Fixture) -> tuple[list[int], list[int]]:
         """Columns and rows of the plate that a fixture takes: of its locators, and of the clamp's hole or its line."""
-        *locators, clamp = fixture.pegs
+        *locators, clamp = in_holes(fixture)
         along_x = is_along_x(fixture)
         columns, rows = [peg.column for peg in locators], [peg.row for peg in locators]
         if self.is_bolted or not along_x:
@@ -96,20 +115,21 @@ class PlateRules(Hardware):
     def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """What is wrong with roles, direction, columns, rows and the places x, y written for them."""
         plate, direction = self.toolkit, fixture.direction
-        if not has_its_pegs(fixture):
-            yield Finding(True, "its pegs are not three locators and then a clamp")
+        if not self.has_its_pegs(fixture):
+            yield Finding(True, f"its pegs are not {self.pegs_wanted}")
         if direction not in plate.directions:
             yield Finding(True, f"its clamp moves in {direction}, which is not asked for")
-        if len({(peg.column, peg.row) for peg in fixture.pegs[:3]}) < 3:
+        *locators, _ = in_holes(fixture)
+        if len({(peg.column, peg.row) for peg in locators}) < len(locators):
             yield Finding(True, "two locators are in the same hole")
         for noun, numbers, count in zip(
             ("column", "row"), self.lattice_numbers(fixture), (plate.columns, plate.rows), strict=True
         ):
-            for name, place in zip(self.names, numbers, strict=False):
+            for name, place in zip(self.names_in_holes, numbers, strict=False):
                 if place < 0 or (count is not None and place >= count):
                     known = f"{noun}s from 0 upward" if count is None else f"{count} {noun}s"
                     yield Finding(True, f"{name} is in {noun} {place} of a plate with {known}")
-            if min(numbers) > 0:
+            if min(numbers) > 0 and noun in self.from_lowest:
                 yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
         clamp = fixture.pegs[-1]
         if clamp.place != clamp_place(fixture.direction or "", clamp.column, clamp.row, self.is_bolted):
@@ -117,12 +137,12 @@ class PlateRules(Hardware):
             yield Finding(True, f"the clamp is not told by the {told}")
         if not self.is_bolted and (clamp.column if is_along_x(fixture) else clamp.row):
             yield Finding(True, "the place of the clamp on its line is not counted from the plate's first hole")
-        for name, peg in zip(self.names, fixture.pegs, strict=True):
+        for name, peg in zip(self.names_in_holes, in_holes(fixture), strict=True):
             contact_way = WAYS[fixture.direction or ""] if peg is clamp else (0, 0)
-            for axis, written, count, pitch, way in zip(
-                "xy", (peg.x, peg.y), (peg.column, peg.row), plate.pitch, contact_way, strict=True
+            for axis, written, count, pitch, first, way in zip(
+                "xy", (peg.x, peg.y), (peg.column, peg.row), plate.pitch, self.origin, contact_way, strict=True
             ):
-                off = abs(arb(pitch) * count + arb(fixture.jaw_separation) * way - written)
+                off = abs(first + arb(pitch) * count + arb(fixture.jaw_separation) * way - written)
                 if not off < AGREEMENT:
                     words = f"the {axis} of {name} is {number(off)} mm from that of its {'line' if peg is clamp else 'hole'}"
                     yield from rule(AGREEMENT - off, words, words)
@@ -131,11 +151,11 @@ class PlateRules(Hardware):
         self, fixture: Fixture, contacts: list[Contact], pose: Pose, outline: Outline
     ) -> Iterator[Finding]:
         """Whether the clamp, bolted where it is said to be, reaches its place and clears locators and part."""
-        *locators, clamp = contacts
+        *locators, clamp = (contact for contact in contacts if not contact.is_flush)
         tip = clamp.place(pose)
         bolted = evolve(clamp, way=exact_point(0.0, 0.0)) if self.is_bolted else clamp
         hole = bolted.place(pose)
-        for name, locator in zip(self.names, locators, strict=False):
+        for name, locator in zip(self.names_in_holes, locators, strict=False):
             apart = distance_from_piece(locator.hole, tip, hole) - locator.radius - clamp.radius
             yield from rule(
                 apart + HAIR,
@@ -170,16 +190,19 @@ class PlateRules(Hardware):
         clamp, along_x = fixture.pegs[-1], is_along_x(fixture)
         way, pitch = WAYS[fixture.direction or ""], self.toolkit.pitch[0 if along_x else 1]
         column, row = clamp.column - way[0], clamp.row - way[1]
-        numbers = [peg.column if along_x else peg.row for peg in fixture.pegs[:3]] + [column if along_x else row]
+        *locators, _ = in_holes(fixture)
+        numbers = [peg.column if along_x else peg.row for peg in locators] + [column if along_x else row]
         count = self.toolkit.columns if along_x else self.toolkit.rows
-        if count is None or max(numbers) - min(numbers) < count:
+        is_free = ("column" if along_x else "row") in self.from_lowest
+        first = min(numbers) if is_free else 0
+        if min(numbers) >= first and (count is None or max(numbers) - first < count):
             yield from rule(
                 least - HAIR - (stroke - pitch),
                 f"the clamp could be bolted one hole nearer, {number(stroke - pitch)} mm behind its tip",
                 "one hole nearer the clamp would be bolted exactly at the edge of the least of its stroke",
             )
 
-    def broken_restriction(self, fixture: Fixture) -> str:
+    def broken_restriction(self, fixture: Fixture, query: Query) -> str:
         """A plate rules nothing out."""
         return ""
 
@@ -189,7 +212,7 @@ class PlateRules(Hardware):
 
     def patterns(self, fixture: Fixture) -> Iterator[tuple[Key, Place]]:
         """The locators' holes and the clamp's line, up to lattice steps, names and the half turn that makes +x into -x."""
-        if not has_its_pegs(fixture):
+        if not self.has_its_pegs(fixture):
             return
         sign = 1 if (fixture.direction or "").startswith("-") else -1
         *locators, clamp = fixture.pegs
@@ -218,9 +241,9 @@ class PlateRules(Hardware):
         return [list(WAYS).index(direction), *columns, *rows], angle, faces
 
 
-def has_its_pegs(fixture: Fixture) -> bool:
-    """Whether the pegs of a fixture are three locators and then its clamp."""
-    return [peg.carrier for peg in fixture.pegs] == [PLATE, PLATE, PLATE, f"clamp {fixture.direction}"]
+def in_holes(fixture: Fixture) -> list[Peg]:
+    """The locators of a fixture, and its clamp."""
+    return [peg for peg in fixture.pegs if peg.carrier != WALL]
 
 
 def is_along_x(fixture: Fixture) -> bool:

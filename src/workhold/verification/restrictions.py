@@ -12,7 +12,7 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, turned
 from workhold.verification.hardware import Hardware
-from workhold.verification.rules import AGREEMENT
+from workhold.verification.rules import AGREEMENT, WALL
 from workhold.verification.zones import zone_distance
 
 __all__ = ["broken_restriction"]
@@ -23,6 +23,9 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: Hardware) -> st
     restrictions = query.restrictions
     avoided = {face.number for face in query.workpiece.faces if set(face.segments) & set(restrictions.avoid)}
     for name, peg in zip(hardware.names, fixture.pegs, strict=True):
+        if peg.carrier == WALL:
+            # What a wall keeps clear of is the hardware's to say.
+            continue
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
         for zone in restrictions.zones:
@@ -32,7 +35,7 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: Hardware) -> st
     inside = ((theta - low + AGREEMENT) % 360.0 <= high - low + 2 * AGREEMENT for low, high in restrictions.angles)
     if restrictions.angles and not any(inside):
         return f"the part lies at {theta:g} degrees, which is outside the angles asked for"
-    return hardware.broken_restriction(fixture)
+    return hardware.broken_restriction(fixture, query)
 
 
 def in_part(fixture: Fixture, peg: Peg) -> Point:

@@ -16,10 +16,12 @@ __all__ = [
     "AGREEMENT",
     "BODY_SLACK",
     "FIGURE_AGREEMENT",
+    "FLUSH",
     "GENTLE_PEG",
     "HAIR",
     "LARGE_LOCATION_ERROR",
     "LEAST_CLAMPING",
+    "LEAST_FLUSH",
     "LEAST_PUSH",
     "LEAST_SHARE",
     "LEAST_SPAN",
@@ -39,6 +41,7 @@ __all__ = [
     "TILTED_POINTS",
     "UNFIT_CLOSURE",
     "UNFIT_LOCATION_ERROR",
+    "WALL",
     "WEAK_CLOSURE",
     "WHOLE",
 ]
@@ -64,6 +67,10 @@ LEAST_PUSH = 1e-9
 # No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one
 # point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
 LEAST_SPAN = 1e-7
+# mm. What is this near to a wall, or enters it by so much, lies on it; the contact with a wall is longer than the second.
+FLUSH, LEAST_FLUSH = 1e-7, 1e-6
+# What the ends of the contact with a wall stand on.
+WALL = "wall"
 # Radians and mm. Fixtures in the same holes with orientations and places nearer than this are the same.
 SAME = 1e-6
 

@@ -52,9 +52,9 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
     with ctx.workprec(PRECISIONS[0]):
         outline = Outline.of(query.workpiece)
         for number, entry in enumerate(entries, 1):
-            fault = (
-                written_fault(entry, query, outline) or holes_fault(entry, query) or place_fault(entry, query, outline)
-            )
+            fault = written_fault(entry, query, outline)
+            if query.toolkit.wall is None:
+                fault = fault or holes_fault(entry, query) or place_fault(entry, query, outline)
             if fault:
                 yield f"undecided candidate {number} of the proof {fault}"
 

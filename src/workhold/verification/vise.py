@@ -12,6 +12,7 @@ from flint import arb
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
 from workhold.model.vise import Vise
 from workhold.verification.balls import Point, exact_point
 from workhold.verification.contacts import Contact, Pose
@@ -124,7 +125,7 @@ class ViseRules(Hardware):
                 "the opening is exactly at the edge of the largest opening",
             )
 
-    def broken_restriction(self, fixture: Fixture) -> str:
+    def broken_restriction(self, fixture: Fixture, query: Query) -> str:
         """A peg in a blocked hole, or two whose bodies overlap."""
         for name, peg in zip(self.names, fixture.pegs, strict=True):
             blocked = (

@@ -7,16 +7,34 @@ from collections.abc import Sequence
 from flint import arb
 
 from workhold.model.restrictions import Zone
-from workhold.verification.balls import Point, cross, dot
+from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import ArcSide, Side, vertex_side
 
-__all__ = ["zone_distance"]
+__all__ = ["zone_distance", "zone_low"]
+
+
+def zone_sides(zone: Zone) -> list[Side]:
+    """The sides of a zone."""
+    vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in zone.loop]
+    return [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
+
+
+def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
+    """y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
+    low = None
+    for side in zone_sides(zone):
+        heights = [turned(point, cosine, sine)[1] for point in (side.start, side.end)]
+        if isinstance(side, ArcSide) and not side.within((-sine, -cosine)) < 0:
+            heights.append(turned(side.center, cosine, sine)[1] - side.radius)
+        for height in heights:
+            low = height if low is None else low.min(height)
+    assert low is not None
+    return low
 
 
 def zone_distance(zone: Zone, point: Point) -> arb:
     """Distance in mm from a point to a zone, 0 inside."""
-    vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in zone.loop]
-    sides = [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
+    sides = zone_sides(zone)
     if turns_around(sides, point) > arb.pi():
         return arb(0)
     nearest = sides[0].distance(point)

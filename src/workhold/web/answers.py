@@ -169,7 +169,7 @@ def rows_answer(
 ) -> list[dict[str, Any]]:
     """Fixtures as rows; ``ranks`` are those of the table's fixtures."""
     return [
-        {"rank": rank, **fixture_answer(fixture_at(table, toolkit, number), workpiece, toolkit)}
+        {"rank": rank, **fixture_answer(fixture_at(table, toolkit, number, workpiece), workpiece, toolkit)}
         for number, rank in enumerate(ranks)
     ]
 
@@ -204,7 +204,19 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         }
         for each in seen.carriers
     ]
-    plate = seen.carriers[0]
+    plate, wall = seen.carriers[0], seen.wall
+    if wall is not None:
+        lattices.append(
+            {
+                **lattice_of_none(wall.carrier),
+                "plate": [wall.bar.x0, wall.bar.y0, wall.bar.x1, wall.bar.y1],
+                "pegs": [next(numbers) for _ in wall.ends],
+                "peg_radius": 0.0,
+                "clamping": None,
+                "measured": None,
+                "clamp": None,
+            }
+        )
     clamps = [
         {
             **lattice_of_none(each.carrier),
@@ -278,9 +290,11 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "title": title_of(toolkit.arrangement(fixture.type, fixture.direction)),
         "setting": setting_answer(fixture, toolkit),
         "mover": toolkit.moving.noun,
-        "origin": hole_name(toolkit.carriers[0].name, 0, 0),
+        "origin": origin_name(toolkit),
         "holes": [peg.hole for peg in fixture.pegs],
         "faces": [peg.face for peg in fixture.pegs],
+        "corners": [number for number, peg in enumerate(fixture.pegs) if peg.beside is not None],
+        "flush": [number for number, peg in enumerate(fixture.pegs) if peg.is_on_wall],
         "theta_deg": fixture.pose.theta_deg,
         "x": fixture.pose.x,
         "y": fixture.pose.y,
@@ -292,11 +306,21 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     }
 
 
+def origin_name(toolkit: Toolkit) -> str:
+    """What places are told from."""
+    wall = toolkit.wall
+    return hole_name(toolkit.carriers[0].name, 0, 0) if wall is None else f"column A at the {wall.noun}"
+
+
 def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """Outward normals and contacts of a fixture's pegs in the toolkit's frame."""
     segments = {face.number: face.segment for face in workpiece.faces}
     normals, contacts = [], []
     for peg in fixture.pegs:
+        if peg.is_on_wall:
+            normals.append([0.0, -1.0])
+            contacts.append([peg.x, peg.y])
+            continue
         segment = segments[peg.face]
         nx, ny = segment.normal(segment.parameter(fixture.pose.inverse.apply(peg.x, peg.y)))
         x, y = (float(v) / hypot(nx, ny) for v in fixture.pose.turn(nx, ny))

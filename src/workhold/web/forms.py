@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, TypeAdapt
 
 from workhold.errors import InputError
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
+from workhold.model.fence import Fence
 from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import Load
 from workhold.model.plate import DIRECTIONS, Plate
@@ -125,15 +126,25 @@ class PlateForm(Form):
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
+class FenceForm(PlateForm):
+    """A fence with a locator and a clamp; lengths in mm."""
+
+    kind: Literal["edge"]  # type: ignore[assignment]
+    wall_offset: Number
+
+
 def form_of(value: Any) -> str:
     """Which form a toolkit's fields are given in."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return PLATE if kind == Plate.kind else VISE
+    return {Plate.kind: PLATE, Fence.kind: FENCE}.get(str(kind), VISE)
 
 
-# How the two forms are told apart; the words are no part of any message.
-VISE, PLATE = "<vise>", "<plate>"
-HeldIn = Annotated[Annotated[ViseForm, Tag(VISE)] | Annotated[PlateForm, Tag(PLATE)], Discriminator(form_of)]
+# How the forms are told apart; the words are no part of any message.
+VISE, PLATE, FENCE = "<vise>", "<plate>", "<fence>"
+HeldIn = Annotated[
+    Annotated[ViseForm, Tag(VISE)] | Annotated[PlateForm, Tag(PLATE)] | Annotated[FenceForm, Tag(FENCE)],
+    Discriminator(form_of),
+]
 
 
 class RestrictionsForm(Form, RestrictionsPart):

@@ -129,11 +129,25 @@ PLATE = (
     TRAVEL,
     Field("directions", "The clamp pushes", "several", "all that differ", choices=WAYS),
 )
+FENCE = (
+    *PLATE[:4],
+    Field("wall_offset", "Fence to row 1", "length", is_usual=True),
+    TIP,
+    TRAVEL,
+    Field("directions", "The clamp pushes", "several", "any way", choices=WAYS),
+)
 IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
 
 DESCRIBED = (
     Described(
         "translating-clamp", "Plate with a clamp", "Close clamp", PLATE, {"pitch": [20.0, 20.0], "peg_radius": 3.0}
+    ),
+    Described(
+        "edge",
+        "Fence with a stop and a clamp",
+        "Close clamp",
+        FENCE,
+        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0},
     ),
     Described("vise", "Vise, pegs on both jaws", "Close vise", VISE, IN_JAWS),
     Described("opening-vise", "Vise that holds by opening", "Open vise", VISE, IN_JAWS),

@@ -48,6 +48,7 @@ def test_figures_of_the_presets() -> None:
         "clamp-plate-20mm": ((20, 20), 6, None),
         "clamp-plate-one-inch": ((25.4, 25.4), 6.35, None),
         "clamp-table-50mm": ((50, 50), 16, None),
+        "fence-20mm": ((20, 20), 6, None),
         "gripper-one-column": ((10, 10), 6, 1),
         "gripper-two-columns": ((10, 10), 6, 2),
         "plate-half-inch": ((12.7, 12.7), 6.35, 4),

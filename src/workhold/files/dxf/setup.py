@@ -89,6 +89,7 @@ def setup_dxf(
             document.layers.add(name, color=color)
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
+        add_wall(space, seen)
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
@@ -109,7 +110,7 @@ def layer_of(carrier: Carrier) -> str:
     >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
-    if carrier.on is not None or carrier.name == carrier.noun:
+    if carrier.on is not None or carrier.is_wall or carrier.name == carrier.noun:
         return carrier.noun.upper()
     return f"{carrier.noun}_{carrier.name}".upper()
 
@@ -134,7 +135,7 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
     moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
     return {
         **PART,
-        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers},
+        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if not carrier.is_wall},
         **HOLES,
         **{setting_layer(carrier): SETTING for carrier in moving},
         **OTHERS,
@@ -233,6 +234,14 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
             add_text(space, column_letters(column), (x, below), seen)
         for row, y in {hole.row: hole.center[1] for hole in holes}.items():
             add_text(space, str(row + 1), (beside, y), seen)
+
+
+def add_wall(space: Modelspace, seen: Shown) -> None:
+    """Add the wall, if there is one, as a bar that the part lies on."""
+    if seen.wall is not None:
+        bar = seen.wall.bar
+        corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(seen.wall.carrier)})
 
 
 def add_travel(space: Modelspace, seen: Shown, layer_name: str) -> None:

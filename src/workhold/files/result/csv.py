@@ -47,7 +47,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
     yield ",".join([*POSE_COLUMNS, *moved, *(figure.key for figure in figures), *pegs]) + "\n"
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number = 0
-    for kinds, rows in fixture_rows(result.table, toolkit):
+    for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from workhold.errors import InputError
 from workhold.model.dowel import Fit
+from workhold.model.fence import Fence
 from workhold.model.kinds import USUAL, toolkit_of
 from workhold.model.load import ANY_DIRECTION, Load
 from workhold.model.plate import Plate
@@ -86,18 +87,25 @@ class PlatePart(Part):
     clamps: int = 1
 
 
+class FencePart(PlatePart):
+    """The keys of a fence."""
+
+    wall_offset: float
+
+
 # What tells the parts of a toolkit apart; they are no keys of a file.
-TAGS = ("<vise>", "<plate>")
+TAGS = ("<vise>", "<plate>", "<fence>")
 
 
 def tag_of(value: Any) -> str:
     """Which part a toolkit's keys are."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return TAGS[kind == Plate.kind]
+    return TAGS[(Plate.kind, Fence.kind).index(kind) + 1 if kind in (Plate.kind, Fence.kind) else 0]
 
 
 ToolkitPart = Annotated[
-    Annotated[OtherVisePart, Tag(TAGS[0])] | Annotated[PlatePart, Tag(TAGS[1])], Discriminator(tag_of)
+    Annotated[OtherVisePart, Tag(TAGS[0])] | Annotated[PlatePart, Tag(TAGS[1])] | Annotated[FencePart, Tag(TAGS[2])],
+    Discriminator(tag_of),
 ]
 
 

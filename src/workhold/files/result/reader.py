@@ -25,12 +25,16 @@ from workhold.files.result.head import checked_query, result_with
 from workhold.files.result.parts import read_parts
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.toolkit import Toolkit
+from workhold.model.wall import ON_WALL
+from workhold.model.workpiece import Workpiece
 
 __all__ = ["read_result"]
 
 BLOCK = 4096
+# What an end of the contact with a wall stands on.
+WALL = "wall"
 
 
 @frozen
@@ -105,6 +109,8 @@ def fixture_row(
     """The numbers of one fixture, for one row of each array of :class:`Columns`."""
     name = fixture["type"]
     pegs, pose = fixture["pegs"], fixture["pose"]
+    if "wall" in fixture and isinstance(pegs, list):
+        pegs = wall_pegs(fixture["wall"]) + pegs
     pair = fixture.get("directions")
     if not isinstance(pegs, list) or len(pegs) != (4 if pair is None else 5):
         raise ValueError(f"it does not have {'four' if pair is None else 'five'} pegs")
@@ -136,10 +142,23 @@ def fixture_row(
     return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
 
 
+def wall_pegs(wall: Any) -> list[Any]:
+    """The two ends of the contact with a wall as pegs; what touches there follows from the pose."""
+    places, forces = (wall["from"], wall["to"]), wall["forces"]
+    if [len(values) for values in (*places, forces)] != [2, 2, 2]:
+        raise ValueError("its wall does not have two places of two numbers and two forces")
+    return [
+        {"role": WALL, "x": x, "y": y, "segment": 0, "force": force}
+        for (x, y), force in zip(places, forces, strict=True)
+    ]
+
+
 def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
     """The carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole does not give."""
     if "role" not in peg:
         return peg["jaw"], peg["column"], peg["row"]
+    if peg["role"] == WALL:
+        return WALL, 0, 0
     if peg["role"] == "locator":
         return "plate", peg["column"], peg["row"]
     if peg["role"] != "clamp":
@@ -184,6 +203,8 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation, pairs = columns.placing.T
+    if toolkit.wall is not None:
+        face[:, ON_WALL] = faces_on_wall(query.workpiece, np.radians(theta_deg), path)
     if toolkit.needs_pairs:
         separation = np.stack([clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in (-2, -1)], axis=1)
     elif toolkit.moving.on is not None:
@@ -210,10 +231,23 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
     refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
     refuse_faulty(table, query, path, range(len(table)))
-    hole_x, hole_y = toolkit.places(arrangement, column, row, separation)
+    hole_x, hole_y = peg_places(table, toolkit, query.workpiece)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
     return table
+
+
+def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) -> NDArray[np.int32]:
+    """The faces (N, 2) told for the ends of the contact with a wall, in orientations (N,) in radians.
+
+    Raises
+    ------
+    InputError
+        When there are fixtures, but the workpiece cannot lie flush on a wall.
+    """
+    if len(theta) and len(workpiece.hull_edges) == 0:
+        raise InputError(f"{path}: fixture 1 lies flush on a wall, which {workpiece.name} cannot.")
+    return workpiece.flush.face[workpiece.flush.number(theta)]
 
 
 def clamp_travel(
@@ -222,8 +256,9 @@ def clamp_travel(
     """How far (N,) clamps, carriers of some numbers (N,), have travelled from their holes (N, 2 or more) to their tips (N, 2
     or more), in mm."""
     out = np.zeros(len(tip))
-    for number, carrier in enumerate(toolkit.carriers[1:], 1):
-        assert carrier.travel is not None
+    for number, carrier in enumerate(toolkit.carriers):
+        if carrier.travel is None:
+            continue
         x, y = carrier.place(hole[:, 0], hole[:, 1])
         along, across = carrier.travel.unit
         out = np.where(numbers == number, (tip[:, 0] - x) * along + (tip[:, 1] - y) * across, out)

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from attrs import asdict
+from attrs import asdict, evolve
 
 from workhold.files.atomic import text_file
 from workhold.files.result.pairs import pair_lines
@@ -28,9 +28,10 @@ from workhold.model.kinds import USUAL
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
+from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "ANGLE_STEPS",
@@ -54,17 +55,22 @@ BLOCK = 4096
 
 CONTACT = '"x": %r, "y": %r, "segment": %d, "force": %.12g'
 POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
+WALL = '"wall": {"from": [%r, %r], "to": [%r, %r], "segments": [%d, %d], "forces": [%.12g, %.12g]}, '
 # A number that is not written.
 LEFT_OUT = "%.0s"
 
 
 def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure]) -> str:
     """The line of a fixture with its numbers left open, in the order of :func:`fixture_rows`."""
-    pegs = ", ".join(f"{{{peg_template(toolkit.carriers[number], toolkit)}}}" for number in arrangement.carriers)
+    carriers = [toolkit.carriers[number] for number in arrangement.carriers]
+    pegs = ", ".join(f"{{{peg_template(one, toolkit)}}}" for one in carriers if not one.is_wall)
     quality = ", ".join(f'"{figure.key}": %.12g' for figure in figures)
     direction = "" if arrangement.direction is None else f'"direction": "{arrangement.direction}", '
     travel = f"{LEFT_OUT}" if toolkit.moving.on else '"jaw_separation": %r, '
-    return f'{{"type": "{arrangement.name}", {direction}"pegs": [{pegs}], {POSE}{travel}"quality": {{{quality}}}}}'
+    wall = "" if toolkit.wall is None else WALL
+    return (
+        f'{{"type": "{arrangement.name}", {direction}{wall}"pegs": [{pegs}], {POSE}{travel}"quality": {{{quality}}}}}'
+    )
 
 
 def peg_template(carrier: Carrier, toolkit: Toolkit) -> str:
@@ -76,6 +82,14 @@ def peg_template(carrier: Carrier, toolkit: Toolkit) -> str:
     hole = "[%d, %d]" if carrier.has_a_hole else f"null{LEFT_OUT}{LEFT_OUT}"
     line = f'{LEFT_OUT}"row": %d' if carrier.is_along_x else f'"column": %d{LEFT_OUT}'
     return f'"role": "clamp", "hole": {hole}, {line}, {CONTACT}'
+
+
+def with_wall(numbers: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The numbers of a fixture with those of its second and third peg, the ends of a wall, first: places, faces, forces."""
+    ends = numbers[6:12], numbers[12:18]
+    places = (value for end in ends for value in end[2:4])
+    faces, forces = (tuple(end[k] for end in ends) for k in (4, 5))
+    return *places, *faces, *forces, *numbers[:6], *numbers[18:]
 
 
 def write_result(result: Result, path: str | Path) -> None:
@@ -100,11 +114,11 @@ def result_text(result: Result) -> Iterator[str]:
     """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
     lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head(result).items()]
     yield "{" + "".join(lines) + '"fixtures": ['
-    yield from fixture_lines(result.table, result.toolkit)
+    yield from fixture_lines(result.table, result.toolkit, result.workpiece)
     yield "\n]}\n"
 
 
-def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
+def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[str]:
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     if toolkit.needs_pairs:
@@ -114,9 +128,11 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[str]:
         return
     figures = known_figures(table)
     templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
-    for kind, numbers in fixture_rows(table, toolkit):
+    for kind, numbers in fixture_rows(table, toolkit, workpiece):
         if toolkit.moving.on is not None:
             numbers = map(with_place_again, numbers)
+        if toolkit.wall is not None:
+            numbers = map(with_wall, numbers)
         yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
 
@@ -225,7 +241,9 @@ def rounded_degrees(angle: float) -> float:
     return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
 
 
-def fixture_rows(table: FixtureTable, toolkit: Toolkit) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
+def fixture_rows(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
+) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
     """Blocks of fixtures as plain numbers, rounded as they are written.
 
     Yields
@@ -238,16 +256,18 @@ def fixture_rows(table: FixtureTable, toolkit: Toolkit) -> Iterator[tuple[list[i
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         separation = rounded(block.jaw_separation, LENGTH_STEPS)
-        holes = toolkit.places(block.arrangement, block.column, block.row, separation)
+        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
+        theta[theta >= 360.0] = 0.0
+        position = rounded(block.position, LENGTH_STEPS)
+        # Places follow from the numbers that are written, so that they are the same when these are read.
+        written = evolve(block, jaw_separation=separation, theta=np.radians(theta), position=position)
+        holes = peg_places(written, toolkit, workpiece)
         x, y = (rounded(places, LENGTH_STEPS) for places in holes)
         columns: list[list[Any]] = []
         force = working_forces(block.force) if toolkit.needs_pairs else block.force
         for peg in range(toolkit.peg_count):
             numbers = (block.column, block.row, x, y, block.face, force)
             columns += [array[:, peg].tolist() for array in numbers]
-        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
-        theta[theta >= 360.0] = 0.0
-        position = rounded(block.position, LENGTH_STEPS)
         figures = [block.quality[:, number] for number in known]
         columns += [array.tolist() for array in (theta, *position.T, *np.atleast_2d(separation.T), *figures)]
         yield block.arrangement.tolist(), zip(*columns, strict=True)

@@ -16,6 +16,7 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.step.library import load_step_library
+from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.holes import hole_name
@@ -91,7 +92,7 @@ def setup_step(
     InputError
         As :func:`write_setup_step`.
     """
-    if min(carrier.peg_radius for carrier in toolkit.carriers) <= 0:
+    if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0:
         raise InputError(
             f"pegs of radius 0 have no body to write to a STEP file: give the {toolkit.noun} a peg radius."
         )
@@ -120,6 +121,8 @@ def setup_step(
         if clamp.hole is not None:
             bolt = peg_body(clamp.hole, seen.carriers[0].carrier.peg_radius, -plate_thickness, 0.0)
             named.append((f"bolt {hole_name(clamp.carrier.on or '', clamp.tip.column, clamp.tip.row)}", bolt))
+    if seen.wall is not None:
+        named.append((seen.wall.carrier.noun, extruded(wire(rectangle(seen.wall.bar)), [], 0.0, thickness)))
     named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen.carriers]
     named.append(("part zero X0 Y0", axes_at((zero or part_zero(workpiece)).point, fixture.pose, seen.pitch)))
     return assembly(f"{name} set-up", named)
@@ -161,8 +164,7 @@ def plate_body(shown: ShownCarrier, thickness: float) -> Any:
 
     radius, plate = shown.carrier.peg_radius, shown.plate
     x0, y0, x1, y1 = plate.x0, plate.y0, plate.x1, plate.y1
-    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-    border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
+    border = wire(rectangle(plate))
 
     def whole(hole: Point) -> bool:
         return x0 < hole[0] - radius and hole[0] + radius < x1 and y0 < hole[1] - radius and hole[1] + radius < y1
@@ -175,6 +177,12 @@ def plate_body(shown: ShownCarrier, thickness: float) -> Any:
         if not whole(hole):
             body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()
     return body
+
+
+def rectangle(box: Box) -> list[Line]:
+    """The sides of a box, counter-clockwise."""
+    corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
+    return [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
 
 
 def wire(segments: Iterable[Segment]) -> Any:

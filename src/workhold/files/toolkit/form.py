@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from workhold.errors import InputError
+from workhold.model.fence import Fence
 from workhold.model.kinds import USUAL, kind_of
 from workhold.model.plate import Plate
 
@@ -58,11 +59,22 @@ class PlateForm(ToolkitForm):
     directions: list[str] | None = None
 
 
+class FenceForm(PlateForm):
+    """The file of a fence with a locator and a clamp."""
+
+    wall_offset: FiniteFloat
+
+
+# The form of each kind's file; that of a vise is any other's.
+FORMS: Mapping[str, type[ToolkitForm]] = {Plate.kind: PlateForm, Fence.kind: FenceForm}
+NOUNS = {PlateForm: "plate", FenceForm: "fence"}
+
 WANTED = {
     "unit": 'write unit = "mm" or unit = "inch"',
     "pitch": "write the distance between holes as one number, or [x, y]",
     "columns": "write how many columns of holes each jaw has, such as columns = 2",
     "peg_radius": "write the radius of the pegs as a number",
+    "wall_offset": "write the distance from the fence to the first row of holes",
     "travel": "write the least and the most from the clamp's hole to its tip, such as [10, 35]",
     "directions": 'write a list of "-x", "+x", "-y" and "+y"',
     "assumed": 'write a list of the entries that no source gives, such as ["travel"]',
@@ -81,7 +93,7 @@ def checked(content: Mapping[str, Any]) -> dict[str, Any]:
         Naming the first entry that is not of this shape.
     """
     kind = content.get("kind", USUAL)
-    form = PlateForm if isinstance(kind, str) and kind_of(kind)[0] == Plate.kind else ViseForm
+    form = FORMS.get(kind_of(kind)[0], ViseForm) if isinstance(kind, str) else ViseForm
     try:
         return form.model_validate(content).model_dump(exclude_none=True)
     except ValidationError as error:
@@ -95,7 +107,7 @@ def in_words(error: ValidationError, form: type[ToolkitForm]) -> str:
     if kind == "extra_forbidden":
         known = get_close_matches(name, form.model_fields, n=1)
         meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(form.model_fields)}."
-        return f'"{name[:40]}" is no entry of a {"plate" if form is PlateForm else "vise"}: {meant}'
+        return f'"{name[:40]}" is no entry of a {NOUNS.get(form, "vise")}: {meant}'
     if kind == "missing":
         return f"{name} is missing: {WANTED[name]}."
     field = form.model_fields[name].annotation

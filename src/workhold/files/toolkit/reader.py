@@ -28,7 +28,7 @@ __all__ = ["LoadedVise", "described_vise", "read_vise_file"]
 
 # Bytes; a vise takes a few hundred.
 LARGEST_FILE = 1_000_000
-LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius")
+LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius", "wall_offset")
 # Entries that are handed on as they are.
 PLAIN = ("columns", "rows", "directions")
 # Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.

@@ -94,7 +94,7 @@ export class FixtureDrawing {
   build() {
     const { part, row } = this;
     const outline = outlinePath(part.loops);
-    const touched = new Set(row.faces);
+    const touched = new Set(row.faces.filter((_, k) => !row.corners.includes(k)));
     const shape = draw("g.part", { transform: poseMatrix(row) }, draw("path.part-fill", { d: outline }));
     for (const { segment, face } of partSegments(part)) {
       if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
@@ -112,7 +112,8 @@ export class FixtureDrawing {
   plate(carrier) {
     const { columns, rows, hole_radius: size, clamping } = carrier;
     const [x0, y0, x1, y1] = carrier.plate;
-    const plate = draw(`rect.plate.${clamping ? "slides" : "stands"}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
+    const kind = carrier.pegs.some((k) => this.row.flush.includes(k)) ? "wall" : clamping ? "slides" : "stands";
+    const plate = draw(`rect.plate.${kind}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
     let holes = "";
     if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) <= MOST_HOLES) {
       for (let column = columns[0]; column <= columns[1]; column += 1) {

@@ -147,7 +147,7 @@ const BESIDE = [20, -20, 34, -34, 50, -50, 68, -68];
 function faceLabels({ row, view, contacts }) {
   const seen = new Set();
   return contacts.flatMap(({ at, normal: [nx, ny] }, k) => {
-    if (seen.has(row.faces[k])) return [];
+    if (seen.has(row.faces[k]) || row.corners.includes(k)) return [];
     seen.add(row.faces[k]);
     const [x, y] = view.page(at);
     const places = BESIDE.map((aside) => ({ x: x - 14 * nx + aside * ny, y: y + 14 * ny + aside * nx }));

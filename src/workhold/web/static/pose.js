@@ -5,11 +5,12 @@
  */
 import { nearest, normalAt, pointAt, segmentsOf } from "./geometry.js";
 
-/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[], title: string, setting: {sign: string, name: string, length: number}|null, mover: string, origin: string}} Row */
+/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], corners: number[], flush: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[], title: string, setting: {sign: string, name: string, length: number}|null, mover: string, origin: string}} Row */
 
 /**
  * What shows of a carrier of holes, as the server tells it: the hole in column 0 and row 0, first and last column and row,
  * corners of its plate, numbers of its pegs, columns and rows that are used, the direction in which it slides to clamp or null.
+ * A wall has no columns and rows either, and its plate is the bar that shows of it.
  * A clamp that is bolted to a plate comes last, without columns and rows; its plate is the room it takes.
  * @typedef {{letter: string, origin: number[], pitch: number[], columns: number[], rows: number[], plate: number[], hole_radius: number, names_at: string, pegs: number[], peg_radius: number, used_columns: number[], used_rows: number[], clamping: number[]|null, measured: number[][]|null, clamp: null|{draws_back: number|null, hole: number[]|null, tip: number[], bolt_radius: number, line: number[]}}} Carrier
  */
@@ -77,8 +78,11 @@ export function partSegments(part) {
  */
 export function contactsOf(part, row) {
   const back = intoPart(row);
+  const [c, s] = turn(row);
   return row.pegs.map((center, k) => {
     const peg = back(center);
+    // What lies flush on a wall is pushed straight up.
+    if (row.flush.includes(k)) return { peg, contact: peg, normal: [-s, -c] };
     let best = null;
     for (const { segment, face } of partSegments(part)) {
       if (face !== row.faces[k]) continue;

@@ -71,7 +71,7 @@ export function drawThumbnail(canvas, part, row) {
   pen.fill(outline, "evenodd");
   pen.strokeStyle = ink.touched;
   pen.lineWidth = (0.045 * width) / k;
-  for (const face of new Set(row.faces)) {
+  for (const face of new Set(row.faces.filter((_, at) => !row.corners.includes(at)))) {
     const path = faces.get(face);
     if (path) pen.stroke(path);
   }

@@ -1,0 +1,115 @@
+"""A fence: a straight wall that the part lies flush against, one locator as a stop, and a clamp (Overmars et al. 1995).
+
+Reference: M. Overmars, A. Rao, O. Schwarzkopf, C. Wentink, *Immobilizing polygons against a wall*, ACM Symposium on
+Computational Geometry (1995).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+from typing import ClassVar
+
+from attrs import evolve, field, frozen
+
+from workhold.errors import InputError
+from workhold.limits import refuse_long
+from workhold.model.fixture import WALL
+from workhold.model.plate import DIRECTIONS, Plate
+from workhold.model.real import real
+from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
+from workhold.model.units import Unit
+
+__all__ = ["Fence"]
+
+
+@frozen
+class Fence(Plate):
+    """A plate with a straight fence along x at y = 0: the part lies flush against it, above it.
+
+    One locator stands in a hole and one clamp on a row or a column of holes, as on a :class:`workhold.Plate`. The fence
+    touches the part at both ends of a hull edge, a straight piece of the boundary of the part's convex hull.
+
+    Parameters
+    ----------
+    pitch, peg_radius, columns, rows, clamp_radius, travel : see :class:`workhold.Plate`; rows count from the fence.
+    directions : in which the clamp may move when it clamps; None means all four, which are all different here.
+    wall_offset : distance in mm from the fence to the first row of holes, the peg radius or more.
+
+    Raises
+    ------
+    InputError
+        As of a plate, and for a first row in which a locator would stand in the fence.
+
+    Examples
+    --------
+    >>> from workhold import Fence
+    >>> Fence(pitch=20, peg_radius=3, wall_offset=10).directions
+    ('-x', '+x', '-y', '+y')
+    """
+
+    kind: ClassVar[str] = "edge"
+    noun: ClassVar[str] = "fence"
+    wording: ClassVar[Wording] = Wording(
+        two="fence and locator",
+        four="fence, locator and clamp",
+        inside="on this fence",
+        within="their places as asked: with the columns and rows given, and clear of the clamp with its stroke",
+        rules="presses the part against the fence and the locator",
+        backwards="the clamp pulls, not when it pushes",
+        holes="holes that the plate does not have",
+        sets="pairs of locator and clamp",
+        reasons=(
+            "The part cannot lie flush against a fence: no straight piece of its convex hull is there to lie on it, or none "
+            "at an angle and on faces that are allowed.",
+            "No locator in a row of holes can touch a side of the part while it lies flush against the fence.",
+            "Every face that locator and clamp could touch is parallel or square to the side that lies against the fence: "
+            "they would have to cover three directions beside the fence's, which takes a second clamp.",
+            "Locator and clamp can touch the part on the fence at the same time, but no such pair presses it against fence "
+            "and locator.",
+        ),
+    )
+
+    wall_offset: float = field(kw_only=True, converter=real)
+
+    def __attrs_post_init__(self) -> None:
+        super().__attrs_post_init__()
+        if self.clamps != 1:
+            raise InputError(f"clamps {self.clamps} cannot be: a fence has 1.")
+        if not (isfinite(self.wall_offset) and self.wall_offset >= self.peg_radius):
+            raise InputError(
+                f"wall offset {self.wall_offset:g} is less than the peg radius {self.peg_radius:g}: a locator in the first "
+                "row would stand in the fence; give the distance from the fence to the first row of holes, in mm."
+            )
+        refuse_long("wall offset", self.wall_offset)
+
+    @property
+    def usual_directions(self) -> tuple[str, ...]:
+        """All four."""
+        return tuple(DIRECTIONS)
+
+    @property
+    def distinct_directions(self) -> tuple[str, ...]:
+        """All directions: the fence turns with the plate."""
+        return self.directions
+
+    @property
+    def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
+        """A locator, the two ends of the fence's contact and a clamp, once for each direction."""
+        names = self.directions
+        return tuple(Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names)
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """The clamp in all directions, and half the pitch."""
+        if len(self.directions) < len(DIRECTIONS):
+            yield Change("with the clamp in any of the four directions", {"directions": tuple(DIRECTIONS)})
+        yield from self.finer()
+
+    @property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The plate, the wall, and for each direction the clamp."""
+        size = self.pitch, self.columns, self.rows
+        wall = Carrier(WALL, *size, 0.0, 0.0, noun="fence", peg="end", is_wall=True)
+        offset = 0.0, self.wall_offset
+        plate, *clamps = (evolve(one, offset=offset) for one in super().carriers)
+        return plate, wall, *clamps

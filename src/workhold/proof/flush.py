@@ -1,0 +1,139 @@
+"""Whether a locator and a clamp press a part that lies flush on a wall against both, in balls.
+
+Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice, as the
+exact numbers that their doubles are, to as many digits as it takes.
+"""
+
+from __future__ import annotations
+
+from attrs import frozen
+from flint import arb, ctx
+
+from workhold.contact.problem import Problem
+from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.geometry.hull_edges import HullEdge
+from workhold.model.toolkit import Carrier
+from workhold.proof.deciding import BALLS
+
+__all__ = ["Candidate", "pressing"]
+
+Point = tuple[arb, arb]
+
+# Bits of the balls, one after the other.
+PRECISIONS = (128, 256, 512)
+
+
+@frozen
+class Candidate:
+    """A locator and a clamp that may press a part against a wall.
+
+    Parameters
+    ----------
+    edge : number of the hull edge that lies on the wall.
+    row, line : the locator's row; the clamp's, or its column from the locator's if it is upright.
+    is_upright : whether the clamp is on a column.
+    features : those that locator and clamp touch.
+    branches : -1 or 1, which of its two contacts with an arc each is at.
+    """
+
+    edge: int
+    row: int
+    line: int
+    is_upright: bool
+    features: tuple[int, int]
+    branches: tuple[float, float]
+
+
+def pressing(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
+    """Whether a candidate presses the part, its contacts inside their features; None where that is not decided.
+
+    Parameters
+    ----------
+    plate : in whose holes the locator stands.
+    push : unit vector along which the clamp moves as it clamps.
+    """
+    with BALLS:
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                verdict = verdict_on(candidate, problem, plate, push)
+            if verdict is not None:
+                return verdict
+    return None
+
+
+def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
+    """The verdict at the precision in force."""
+    edge = problem.workpiece.hull_edges[candidate.edge]
+    start, tangent, wall = line_of(edge, problem.workpiece.center)
+    level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
+    rows = [problem.rows[k].tolist() for k in candidate.features]
+    locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
+    if locator is None:
+        return False
+    (u, v), a, slack = locator
+    if candidate.is_upright:
+        level = u + arb(plate.pitch[0]) * candidate.line
+    else:
+        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.line
+    clamp = touched(rows[1], start, tangent, level, candidate.is_upright, candidate.branches[1])
+    if clamp is None:
+        return False
+    (p, q), b, other = clamp
+    length = arb(problem.wrench_length)
+    across, ahead = abs(a[0]), abs(b[0])
+    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
+    both = wall * (ahead * a[1] + across * b[1]) / length
+    null = [both - last, last, ahead * wall / length, across * wall / length]
+    size = sum((abs(entry) for entry in null), arb(0))
+    margin = arb(problem.contact_margin)
+    rules = [entry - LEAST_CLOSURE * size for entry in null]
+    rules += [-a[0] * b[0], size - LEAST_SPAN, -null[3] * (b[0] * push[0] + b[1] * push[1]) - LEAST_CLAMPING * size]
+    rules += [end - margin for end in (*slack, *other)]
+    if any(rule <= 0 for rule in rules):
+        return False
+    return True if all(rule > 0 for rule in rules) else None
+
+
+def line_of(edge: HullEdge, center: tuple[float, float]) -> tuple[Point, Point, arb]:
+    """Start of a hull edge about a center, unit vector along it, and its length."""
+    one, other = edge.start, edge.end
+    dx = arb(other.center[0]) - arb(one.center[0])
+    dy = arb(other.center[1]) - arb(one.center[1])
+    # The common tangent of two circles on whose left both lie; a corner is a circle of radius 0.
+    across = arb(one.radius) - arb(other.radius)
+    square = dx * dx + dy * dy
+    length = (square - across * across).sqrt()
+    tx, ty = (length * dx - across * dy) / square, (across * dx + length * dy) / square
+    x = arb(one.center[0]) - arb(center[0]) + one.radius * ty
+    y = arb(one.center[1]) - arb(center[1]) - one.radius * tx
+    return (x, y), (tx, ty), length
+
+
+def touched(
+    row: list[float], start: Point, tangent: Point, level: arb, upright: bool, branch: float
+) -> tuple[Point, Point, list[arb]] | None:
+    """Centre of a peg on a line that touches a feature, the outward normal there and the distances to the rule of ends; None
+    where they do not meet."""
+    is_arc, x, y, ax, ay, half, radius, sign, rest_x, rest_y, low, high = row
+    tx, ty = tangent
+    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
+    middle = dx * tx + dy * ty, dy * tx - dx * ty
+    # Axes of features are unit vectors but for rounding.
+    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
+    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+    across = 0 if upright else 1
+    up = level - middle[across]
+    if is_arc == 0.0:
+        s = up / axis[across]
+        point = middle[0] + s * axis[0], middle[1] + s * axis[1]
+        return point, (axis[1], -axis[0]), [half - s + high, half + s + low]
+    square = radius * arb(radius) - up * up
+    if square < 0:
+        return None
+    rest = square.sqrt() if square > 0 else arb(0, (abs(square).abs_upper()).sqrt().upper())
+    ray = (up, branch * rest) if upright else (branch * rest, up)
+    point, normal = (middle[0] + ray[0], middle[1] + ray[1]), (sign * ray[0] / radius, sign * ray[1] / radius)
+    if half >= arb.pi():
+        return point, normal, []
+    angle = arb.atan2(axis[0] * ray[1] - axis[1] * ray[0], axis[0] * ray[0] + axis[1] * ray[1])
+    return point, normal, [(half - angle) * radius + high, (half + angle) * radius + low]

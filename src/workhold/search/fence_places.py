@@ -1,0 +1,186 @@
+"""Where round pegs on straight lines touch a part that lies flush on a wall, in closed form and with bounds of the error.
+
+In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. The lines are rows, of one v
+each, or columns, of one u each; every one meets a straight feature in one point at most and an arc in two.
+
+Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn`` radians, and of
+sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off by ``off`` over the sine of the
+angle at which its line meets the feature, and its normal by ``turn`` and, on an arc, by that over the radius; the factors
+below are generous. Where a line only grazes an arc there is no bound, and the contact is decided in balls.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import define, fields, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import LOOSE, PARALLEL
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SIGN,
+    X,
+    Y,
+)
+
+__all__ = ["Laid", "Places", "laid_on", "places_on"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Half a unit in the last place of a double.
+ROUNDING = 1.2e-16
+# Pairs of lines and features looked at together.
+TOGETHER = 1 << 19
+
+
+@frozen(eq=False)
+class Laid:
+    """Features of a part that lies on a hull edge.
+
+    Parameters
+    ----------
+    rows : (F, 12) kernel rows in the wall's frame.
+    length : of the hull edge, in mm.
+    turn : by how many radians its direction may be off.
+    off : by how many mm lengths may be off.
+    """
+
+    rows: Array
+    length: float
+    turn: float
+    off: float
+
+
+def laid_on(rows: Array, start: Array, end: Array) -> Laid:
+    """Features (F, 12) of a part laid on the hull edge from a start to an end (2,), all about the same point."""
+    step = end - start
+    length = float(np.hypot(*step))
+    (tx, ty), out = step / length, rows.copy()
+    dx, dy = rows[:, X] - start[0], rows[:, Y] - start[1]
+    out[:, X], out[:, Y] = dx * tx + dy * ty, dy * tx - dx * ty
+    out[:, AXIS_X] = rows[:, AXIS_X] * tx + rows[:, AXIS_Y] * ty
+    out[:, AXIS_Y] = rows[:, AXIS_Y] * tx - rows[:, AXIS_X] * ty
+    size = float(np.abs(out[:, [X, Y, RADIUS]]).max(initial=length) + np.abs([start, end]).max())
+    turn = 8 * ROUNDING * (1.0 + size / length)
+    return Laid(out, length, turn, 16 * ROUNDING * size + turn * size)
+
+
+@define(frozen=True, eq=False)
+class Places:
+    """M contacts of pegs on lines.
+
+    Parameters
+    ----------
+    line : (M,) index of the line.
+    feature : (M,) index of the feature touched.
+    point : (M, 2) centre of the peg, u and v in mm.
+    normal : (M, 2) outward unit normal there.
+    slack : (M,) how far in mm it is from breaking the rule of ends, infinite on a whole circle.
+    reach, swing : (M,) by how many mm and radians place and normal may be off.
+    branch : (M,) -1 or 1 for the lower or the upper of the two points of an arc, 1 on a straight feature.
+    """
+
+    line: IntArray
+    feature: IntArray
+    point: Array
+    normal: Array
+    slack: Array
+    reach: Array
+    swing: Array
+    branch: Array
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Places:
+        """The contacts of an index array or mask, in its order."""
+        return Places(*(getattr(self, one.name)[order] for one in fields(Places)))
+
+    @classmethod
+    def joined(cls, parts: list[Places]) -> Places:
+        """All contacts of several."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Places)))
+
+
+def places_on(laid: Laid, chosen: tuple[int, int], levels: Array, upright: bool, margin: float) -> Places:
+    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a tangent joint with
+    both features that meet there.
+
+    Parameters
+    ----------
+    chosen : first and past-the-last number of the features.
+    levels : (K,) v of rows, or u of columns if ``upright``, in mm.
+    margin : smallest distance in mm from the end of a feature.
+    """
+    first, last = chosen
+    rows = laid.rows[first:last]
+    along, across = ((Y, X) if upright else (X, Y)), ((AXIS_Y, AXIS_X) if upright else (AXIS_X, AXIS_Y))
+    together = max(TOGETHER // max(len(rows), 1), 1)
+    parts = []
+    for start in range(0, max(len(levels), 1), together):
+        some = levels[start : start + together]
+        for part in (on_lines(laid, rows, some, along, across), on_arcs(laid, rows, some, along, across)):
+            inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
+            kept = part.take(inside)
+            parts.append(Places(kept.line + start, kept.feature + first, *tail(kept)))
+    return Places.joined(parts)
+
+
+def tail(places: Places) -> tuple[Array, ...]:
+    """All but the lines and features of contacts."""
+    return tuple(getattr(places, one.name) for one in fields(Places))[2:]
+
+
+def on_lines(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]) -> Places:
+    """Contacts with straight features; those parallel to the lines have none."""
+    straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
+    some = rows[straight]
+    rises = some[:, across[1]]
+    s = (levels[:, None] - some[:, along[1]]) / rises
+    near = 4.0 * (laid.off + laid.turn * np.abs(s)) / np.abs(rises) + LOOSE
+    line, which = np.nonzero(np.abs(s) <= some[:, HALF_EXTENT] + near)
+    s, some = s[line, which], some[which]
+    point = np.stack([some[:, X] + s * some[:, AXIS_X], some[:, Y] + s * some[:, AXIS_Y]], axis=1)
+    slack = np.minimum(some[:, HALF_EXTENT] - s + some[:, HIGH_SLACK], some[:, HALF_EXTENT] + s + some[:, LOW_SLACK])
+    reach = 4.0 * (laid.off + laid.turn * np.abs(s)) / np.abs(some[:, across[1]])
+    normal = np.stack([some[:, AXIS_Y], -some[:, AXIS_X]], axis=1)
+    turned = np.full(len(s), 2.0 * laid.turn)
+    return Places(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
+
+
+def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]) -> Places:
+    """Contacts with arcs."""
+    round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
+    some = rows[round_]
+    up = levels[:, None] - some[:, along[1]]
+    line, which = np.nonzero(np.abs(up) <= some[:, RADIUS] + 2.0 * laid.off)
+    line, which = np.repeat(line, 2), np.repeat(which, 2)
+    branch = np.tile([-1.0, 1.0], len(line) // 2)
+    up, some = up[line, which], some[which]
+    half = np.sqrt(np.maximum((some[:, RADIUS] - up) * (some[:, RADIUS] + up), 0.0))
+    ray = np.empty((len(up), 2))
+    upright = along[0] == Y
+    ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = 4.0 * laid.off * some[:, RADIUS] / half
+    # Beside a grazing line the square root is of what rounding leaves.
+    reach[~(half * half > 16.0 * laid.off * some[:, RADIUS])] = np.inf
+    angle = np.arctan2(
+        some[:, AXIS_X] * ray[:, 1] - some[:, AXIS_Y] * ray[:, 0],
+        some[:, AXIS_X] * ray[:, 0] + some[:, AXIS_Y] * ray[:, 1],
+    )
+    slack = np.minimum(
+        (some[:, HALF_EXTENT] - angle) * some[:, RADIUS] + some[:, HIGH_SLACK],
+        (some[:, HALF_EXTENT] + angle) * some[:, RADIUS] + some[:, LOW_SLACK],
+    )
+    slack[some[:, HALF_EXTENT] >= np.pi] = np.inf
+    normal = some[:, [SIGN]] * ray / some[:, [RADIUS]]
+    swing = 2.0 * (laid.turn + (reach + laid.off) / some[:, RADIUS])
+    return Places(line, round_[which], some[:, [X, Y]] + ray, normal, slack, reach, swing, branch)

@@ -1,0 +1,265 @@
+"""The search of a fence: part flush on the wall, a locator in a row of holes, and a clamp on a row or a column.
+
+There is nothing to seek but to look: one orientation for each hull edge, then every row meets every feature in closed form,
+which are the locator's places, and then the clamp's lines do likewise. Whether a pair presses the part against the wall is
+told by the null vector of the four wrenches (Overmars et al. 1995: the line of the joint force of locator and clamp meets
+the hull edge strictly between its ends), with bounds of its error; what these leave open is decided in balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, floor, inf
+
+import numpy as np
+from attrs import define, evolve, field, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import ANGLE_SLACK, CLEARANCE, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, PARALLEL
+from workhold.geometry.intersect import bounding_box
+from workhold.geometry.rotation import rotated
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
+from workhold.kernels.contact.closure import ROUNDING
+from workhold.listing.on_fence import Pressed
+from workhold.model.fixture import Pose
+from workhold.model.toolkit import Carrier
+from workhold.proof.flush import Candidate, pressing
+from workhold.search.fence_places import Laid, Places, laid_on, places_on
+
+__all__ = ["FenceSearch"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Pairs of locator and clamp looked at together.
+TOGETHER = 1 << 17
+
+
+@frozen(eq=False)
+class Clamps:
+    """Contacts of a clamp with M contacts of the locator they go with; -1 for those that go with any.
+
+    Parameters
+    ----------
+    places : contacts of the tip.
+    locator : (M,) index of the locator's contact.
+    line : (M,) row of the clamp, or its column counted from the locator's.
+    """
+
+    places: Places
+    locator: IntArray
+    line: IntArray
+
+
+@define(eq=False)
+class FenceSearch:
+    """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many pairs were
+        proven to press the part, and how many needed balls.
+    undecided : the pairs that not even they decide, with the number of their hull edge.
+    is_square : whether every face that was offered is parallel or square to the wall.
+    nearest : as long as none is proven, the smallest share of the four contacts in the pair in which it is the largest, and
+        that pair.
+    """
+
+    problem: Problem
+    locators: int = field(default=0, init=False)
+    examined: int = field(default=0, init=False)
+    verified: int = field(default=0, init=False)
+    escalated: int = field(default=0, init=False)
+    undecided: list[Candidate] = field(factory=list, init=False)
+    is_square: bool = field(default=True, init=False)
+    nearest: tuple[float, Pressed] | None = field(default=None, init=False)
+
+    @property
+    def plate(self) -> Carrier:
+        """In whose holes the locator stands."""
+        return self.problem.toolkit.carriers[0]
+
+    @property
+    def clamp(self) -> Carrier:
+        """The clamp."""
+        return self.problem.toolkit.moving
+
+    @property
+    def push(self) -> tuple[float, float]:
+        """Unit vector along which the clamp moves as it clamps."""
+        x, y = self.problem.toolkit.moving_axis
+        return 0.0 - x, 0.0 - y
+
+    @property
+    def edges(self) -> list[int]:
+        """The numbers of the hull edges on which the part may lie: at an angle that is allowed, on faces that may be
+        touched, and with no keep-out zone reaching into the wall."""
+        part, asked = self.problem.workpiece, self.problem.restrictions
+        avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
+        out = []
+        for number, (theta, touching) in enumerate(zip(part.flush.theta.tolist(), part.flush.touching, strict=True)):
+            if any(avoided.issuperset(end.faces) for end in touching):
+                continue
+            turned = float(np.degrees(theta))
+            off = [((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles]
+            if off and not any(ahead <= width for ahead, width in off):
+                continue
+            x, y = part.flush.ends[number, 0].tolist()
+            laid = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
+            zones = [laid.carry(segment) for zone in asked.zones for segment in zone.segments]
+            if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
+                out.append(number)
+        return out
+
+    def laid(self, edge: int) -> Laid:
+        """The features as the part lies on a hull edge."""
+        ends = self.problem.workpiece.flush.ends[edge] - np.array(self.problem.workpiece.center)
+        return laid_on(self.problem.rows, ends[0], ends[1])
+
+    def pressed(self, edge: int) -> Iterator[Pressed]:
+        """The pairs that press the part as it lies on a hull edge, some at a time."""
+        problem, laid = self.problem, self.laid(edge)
+        lines = laid.rows[:, IS_ARC] == 0.0
+        tilted = np.minimum(np.abs(laid.rows[:, AXIS_X]), np.abs(laid.rows[:, AXIS_Y])) > PARALLEL
+        self.is_square = self.is_square and bool((lines & ~tilted).all())
+        rows = self.rows_of(laid, problem.standing)
+        locators = places_on(laid, problem.standing, rows, False, problem.contact_margin)
+        self.locators += len(locators)
+        if len(locators) == 0:
+            return
+        for part in self.clamps(laid, locators):
+            if len(part.line):
+                yield self.closing(edge, laid, locators, part)
+
+    def rows_of(self, laid: Laid, chosen: tuple[int, int]) -> Array:
+        """v of the rows of holes, from the first one on, that some features reach."""
+        first, pitch = self.plate.offset[1], self.plate.pitch[1]
+        _, high = reach_of(laid.rows[slice(*chosen)], upward=True)
+        count = max(floor((high - first) / pitch + 1e-9) + 1, 0)
+        rows = np.arange(count if self.plate.rows is None else min(count, self.plate.rows), dtype=np.float64)
+        return np.asarray(first + pitch * rows)
+
+    def clamps(self, laid: Laid, locators: Places) -> Iterator[Clamps]:
+        """Contacts of the clamp, those on columns with the locators that these are counted from."""
+        problem, margin = self.problem, self.problem.contact_margin
+        if self.clamp.is_along_x:
+            places = self.clear(places_on(laid, problem.moving, self.rows_of(laid, problem.moving), False, margin))
+            together = max(TOGETHER // max(len(places), 1), 1)
+            for start in range(0, len(locators), together):
+                numbers = np.arange(start, min(start + together, len(locators)))
+                which = np.tile(np.arange(len(places)), len(numbers))
+                yield Clamps(places.take(which), np.repeat(numbers, len(places)), places.line[which])
+            return
+        low, high = reach_of(laid.rows[slice(*problem.moving)], upward=False)
+        pitch, columns = self.plate.pitch[0], self.plate.columns
+        most = inf if columns is None else columns - 1
+        u = locators.point[:, 0]
+        first, last = ceil((low - u.max()) / pitch - 1e-9), floor((high - u.min()) / pitch + 1e-9)
+        steps = np.arange(int(max(first, -most)), int(min(last, most)) + 1)
+        features = problem.moving[1] - problem.moving[0]
+        together = max(TOGETHER // max(len(steps) * features, 1), 1)
+        for start in range(0, len(locators) if len(steps) else 0, together):
+            some = u[start : start + together]
+            levels = (some[:, None] + pitch * steps).ravel()
+            places = self.clear(places_on(laid, problem.moving, levels, True, margin))
+            locator = start + places.line // len(steps)
+            # The column is as uncertain as the locator it is counted from.
+            grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + laid.off) / laid.off)
+            yield Clamps(evolve(places, reach=grown), locator, steps[places.line % len(steps)])
+
+    def clear(self, places: Places) -> Places:
+        """Contacts of the tip clear of the wall, in which it pushes the part."""
+        x, y = self.push
+        push = -(places.normal[:, 0] * x + places.normal[:, 1] * y)
+        above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
+        return places.take(above & (push > -2.0 * places.swing))
+
+    def closing(self, edge: int, laid: Laid, locators: Places, clamps: Clamps) -> Pressed:
+        """The pairs of locators and clamps that press the part against the wall."""
+        self.examined += len(clamps.line)
+        one, two = locators, clamps.places
+        null, push, held, doubtful = closure(laid, one, two, clamps.locator, self.push, self.problem)
+        open_ = np.flatnonzero(doubtful)
+        for k in open_.tolist():
+            candidate = self.candidate(edge, one, two, clamps, k)
+            verdict = pressing(candidate, self.problem, self.plate, self.push)
+            held[k] = verdict is True
+            if verdict is None:
+                self.undecided.append(candidate)
+        self.escalated += len(open_)
+
+        def pairs(chosen: IntArray) -> Pressed:
+            locator = clamps.locator[chosen]
+            return Pressed(
+                edge=np.full(len(chosen), edge),
+                row=one.line[locator],
+                line=clamps.line[chosen],
+                locator=one.point[locator],
+                tip=two.point[chosen],
+                feature=np.stack([one.feature[locator], two.feature[chosen]], axis=1),
+                null=null[chosen],
+                push=push[chosen],
+            )
+
+        good = np.flatnonzero(held)
+        self.verified += len(good)
+        if self.verified == 0:
+            share = null.min(axis=1) / np.maximum(np.abs(null).sum(axis=1), 1e-300)
+            best = int(share.argmax())
+            if self.nearest is None or share[best] > self.nearest[0]:
+                self.nearest = float(share[best]), pairs(np.array([best]))
+        return pairs(good)
+
+    def candidate(self, edge: int, one: Places, two: Places, clamps: Clamps, k: int) -> Candidate:
+        """A pair as balls decide it."""
+        locator = int(clamps.locator[k])
+        return Candidate(
+            edge=edge,
+            row=int(one.line[locator]),
+            line=int(clamps.line[k]),
+            is_upright=not self.clamp.is_along_x,
+            features=(int(one.feature[locator]), int(two.feature[k])),
+            branches=(float(one.branch[locator]), float(two.branch[k])),
+        )
+
+
+def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
+    """Least and largest v, or u, of features (F, 12)."""
+    place = rows[:, 2 if upward else 1]
+    extent = np.where(rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X]))
+    return float((place - extent).min()), float((place + extent).max())
+
+
+def closure(
+    laid: Laid, one: Places, two: Places, locator: IntArray, push: tuple[float, float], problem: Problem
+) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force the clamp passes
+    on in its direction; which pairs (M,) press the part, and of which that is open.
+
+    With normals a, b and moments m, M of locator and clamp about the start of the hull edge of length l, lengths in parts of
+    L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
+    """
+    length = problem.wrench_length
+    a, b = one.normal[locator], two.normal
+    p = one.point[locator] / length
+    q = two.point / length
+    across, ahead = np.abs(a[:, 0]), -b[:, 0] * np.copysign(1.0, a[:, 0])
+    wall = laid.length / length
+    last = ahead * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + across * (q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0])
+    both = wall * (ahead * a[:, 1] + across * b[:, 1])
+    null = np.stack([both - last, last, ahead * wall, across * wall], axis=1)
+    reach = np.maximum(one.reach[locator], two.reach)
+    swing = np.maximum(one.swing[locator], two.swing)
+    pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
+    with np.errstate(invalid="ignore"):
+        band = 20.0 * swing + 4.0 * (reach + laid.off) / length + ROUNDING
+        size = np.abs(null).sum(axis=1)
+        least = np.minimum(null.min(axis=1, initial=1.0) - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        force = null[:, 3] * pushes - LEAST_CLAMPING * size
+        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
+        worst = np.minimum(least / band, force / (3.0 * band + size * swing))
+        worst = np.minimum(worst, slack / np.maximum(1.2 * reach, 1e-300))
+    held = worst > 1.1
+    return null, pushes, held, ~held & ~(worst < -1.1)

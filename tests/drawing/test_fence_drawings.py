@@ -1,0 +1,99 @@
+"""A fence in pictures, on the setup sheet, in DXF and STEP: a bar that the part lies on, and where things are told from."""
+
+from __future__ import annotations
+
+import re
+from io import StringIO
+
+import ezdxf
+import pytest
+from sheet_reading import collisions
+from svg_reading import texts
+
+from workhold import Fence, Result, Workpiece, design
+from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.result_sheet import result_sheet
+from workhold.files.dxf.setup import setup_dxf
+from workhold.files.pin_list import pin_list
+from workhold.files.result.csv import result_csv_text
+from workhold.model.restrictions import Restrictions
+from workhold.model.shown import shown
+from workhold.model.units import MILLIMETRE
+
+L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
+KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
+
+
+def held(loop: list[list[float]], **fields: object) -> Result:
+    """The fixtures of a part on a fence."""
+    return design(Workpiece.from_loops("part", [loop]), Fence(10, 3, wall_offset=5, **fields))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("travel", [(4, 30), None], ids=["bolted", "line"])
+@pytest.mark.parametrize("direction", ["-x", "+x", "-y", "+y"])
+def test_pictures_and_sheets_show_the_fence_and_cover_nothing(direction: str, travel: object) -> None:
+    """One hatched bar below the part, two round pegs, four forces; no word lies on another."""
+    # Small tips, so that a clamp that pulls towards itself finds room in the mouth.
+    result = held(KITE, travel=travel, directions=[direction])
+    if direction == "+y":
+        assert len(result) == 0
+        return
+    fixture, part, fence = result[0], result.workpiece, result.toolkit
+    picture = draw_fixture(fixture, part, fence)
+    # Once in the plan, once among the signs.
+    assert len(re.findall('class="fence"', picture)) == 2 and 'class="hatching"' in picture
+    assert len(re.findall('class="peg"', picture)) == 2
+    for page in result_sheet(result, 1):
+        assert collisions(page) == []
+    words = " ".join(word for page in result_sheet(result, 1) for word in texts(page))
+    assert "fence left" in words and "x from column A" in words and "y from the fence" in words
+    assert "5.000 mm from the fence" in words and "jaw" not in words
+
+
+def test_corners_on_the_fence_are_told_by_both_faces_and_not_marked_as_touched() -> None:
+    """The slant of an L lies on the fence with two corners."""
+    result = held(L, travel=(2, 40))
+    fixture = result[0]
+    assert [peg.touched for peg in fixture.pegs[1:3]] == ["1/2", "3/4"]
+    picture = draw_fixture(fixture, result.workpiece, result.toolkit)
+    assert len(re.findall('class="touched"', picture)) == len({fixture.pegs[0].face, fixture.pegs[3].face})
+    words = " ".join(word for page in result_sheet(result, 1) for word in texts(page))
+    assert "the corner of faces 1 and 2" in words.replace("- ", "")
+
+
+def test_the_bar_lies_below_the_part_and_the_plate_goes_on_below_it() -> None:
+    """As long as plate and part."""
+    result = held(KITE)
+    seen = shown(result[0], result.toolkit, result.workpiece)
+    assert seen.wall is not None and seen.wall.bar.y1 == 0.0 < -seen.wall.bar.y0
+    assert seen.wall.bar.x0 <= seen.part.x0 and seen.wall.bar.x1 >= seen.part.x1
+    assert seen.part.y0 == pytest.approx(0.0, abs=1e-9)
+    assert seen.carriers[0].plate.y0 == seen.wall.bar.y0
+    assert seen.wall.ends == (result[0].pegs[1].x, result[0].pegs[2].x)
+
+
+def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:
+    """The wall's ends are no pegs."""
+    result = held(KITE, travel=(4, 30))
+    drawing = ezdxf.read(StringIO(setup_dxf(result[0], result.workpiece, result.toolkit).decode()))
+    (bar,) = drawing.modelspace().query('*[layer=="FENCE"]')
+    assert max(y for _, y, *_ in bar.get_points()) == 0.0
+    assert len(drawing.modelspace().query('CIRCLE[layer=="LOCATORS"]')) == 1
+
+
+def test_the_list_of_pins_has_the_locator_alone_and_a_spreadsheet_all_contacts() -> None:
+    """A fence is no pin."""
+    result = held(KITE)
+    assert len(pin_list(result[0], result.toolkit, MILLIMETRE, None, None).splitlines()) == 2
+    header, first, *_ = "".join(result_csv_text(result)).splitlines()
+    row = dict(zip(header.split(","), first.split(","), strict=True))
+    assert (row["peg2_jaw"], row["peg2_hole"], float(row["peg2_y"])) == ("wall", "fence", 0.0)
+    assert float(row["peg2_x"]) == pytest.approx(result[0].pegs[1].x, abs=1e-8)
+
+
+def test_angles_choose_what_lies_on_the_fence() -> None:
+    """Seen from the drawing: the part turned so that one side is level."""
+    theta = held(KITE)[0].pose.theta_deg
+    asked = Restrictions(angles=((theta - 0.5, theta + 0.5),))
+    result = design(Workpiece.from_loops("part", [KITE]), Fence(10, 3, wall_offset=5), restrictions=asked)
+    assert {round(fixture.pose.theta_deg, 6) for fixture in result} == {round(theta, 6)}

@@ -1,0 +1,215 @@
+"""Results of a fence: true ones are proven, and each rule that is broken is named."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from attrs import evolve
+
+import workhold
+from workhold import Fence, Query, Result, Workpiece, answer, design
+from workhold.completeness import verify as verify_completely
+from workhold.model.load import Load
+from workhold.model.proof import AT_AN_EDGE, Undecided
+from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.verification import Verification, verify, verify_file, verify_fixture
+from workhold.verification.undecided import undecided_faults
+
+Data = dict[str, Any]
+Edit = Callable[[Data], object]
+
+KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
+NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
+ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
+LIMITED = Fence((10, 8), 3, columns=7, rows=7, clamp_radius=2.5, travel=(4, 26), wall_offset=6)
+
+
+def part(loop: list[list[float]]) -> Workpiece:
+    """A part of one loop."""
+    return Workpiece.from_loops("part", [loop])
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    """The fixtures of a part on a fence with limits, a stroke and a clamp of another radius."""
+    return design(part(NOTCHED), LIMITED)
+
+
+@pytest.fixture
+def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
+    """Verify its file after an edit of its JSON."""
+    workhold.save(result, tmp_path / "r.json")
+    data = json.loads((tmp_path / "r.json").read_text())
+
+    def verified(edit: Edit) -> Verification:
+        content = copy.deepcopy(data)
+        edit(content)
+        path = tmp_path / "edited.json"
+        path.write_text(json.dumps(content))
+        return verify_file(path)
+
+    return verified
+
+
+@pytest.mark.parametrize(
+    ("loop", "fields", "asked"),
+    [
+        (KITE, {"pitch": 10}, {}),
+        (NOTCHED, {"pitch": (12, 9), "clamp_radius": 4.5}, {"contact_margin": 0.5}),
+        (KITE, {"pitch": (8, 10), "directions": ("+x", "+y")}, {"best": 8, "rank_by": "location-error"}),
+        (NOTCHED, {"pitch": 10, "columns": 6, "rows": 6, "travel": (4, 24)}, {}),
+        (ARCH, {"pitch": 8}, {"loads": [Load(((30.0, 10.0),), 200.0)]}),
+        (
+            NOTCHED,
+            {"pitch": 8, "travel": (0, 30)},
+            {"restrictions": Restrictions((2,), (circle_zone(10.0, -5.0, 4.0),), ((100.0, 360.0),))},
+        ),
+    ],
+)
+def test_everything_a_search_lists_is_proven(loop: Any, fields: Data, asked: Data, tmp_path: Path) -> None:
+    """As a result and in files of both forms, which say the same; and so it is when it is searched again."""
+    result = design(part(loop), Fence(peg_radius=3, wall_offset=5, **fields), **asked)
+    assert len(result) >= 5
+    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
+        if isinstance(source, Path):
+            workhold.save(result, source)
+        outcome = verify_completely(source, complete=True)
+        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
+        assert outcome.faults == () and outcome.is_compared and outcome.bits == 128
+
+
+def clamp(data: Data) -> Data:
+    """The clamp of the first fixture."""
+    return data["fixtures"][0]["pegs"][1]
+
+
+def locator(data: Data) -> Data:
+    """The locator of the first fixture."""
+    return data["fixtures"][0]["pegs"][0]
+
+
+def raised(data: Data, by: float) -> None:
+    """The first fixture off the wall."""
+    first = data["fixtures"][0]
+    first["pose"]["y"] += by
+    for peg in first["pegs"]:
+        peg["y"] += by
+
+
+def moved(data: Data, by: int) -> None:
+    """The first fixture so many columns to the right."""
+    first = data["fixtures"][0]
+    for peg in first["pegs"]:
+        peg["x"] += 10.0 * by
+        if "column" in peg:
+            peg["column"] += by
+        if peg.get("hole"):
+            peg["hole"][0] += by
+    for end in ("from", "to"):
+        first["wall"][end][0] += 10.0 * by
+    first["pose"]["x"] += 10.0 * by
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (lambda d: d["fixtures"][0]["wall"]["from"].__setitem__(0, 1.0), "from where the part touches"),
+        (lambda d: d["fixtures"][0]["wall"]["to"].__setitem__(1, 0.01), "from where the part touches"),
+        (lambda d: d["fixtures"][0]["wall"]["forces"].__setitem__(1, 0.1), "the force of the fence at its right end"),
+        (lambda d: d["fixtures"][0]["wall"]["segments"].__setitem__(0, 4), "the fence at its left end touches face"),
+        (
+            lambda d: d["fixtures"][0]["pose"].__setitem__("theta_deg", d["fixtures"][0]["pose"]["theta_deg"] + 0.01),
+            "touch",
+        ),
+        (lambda d: raised(d, 1.0), "the y of"),
+        (lambda d: (moved(d, 1), d["toolkit"].__setitem__("columns", 20)), "its lowest column is 1"),
+        (lambda d: locator(d).__setitem__("row", 5), "the y of the locator"),
+        (lambda d: locator(d).__setitem__("force", 0.5), "the force of the locator"),
+        (lambda d: locator(d).__setitem__("segment", 4), "away from touching"),
+        (lambda d: d["toolkit"].__setitem__("rows", 1), "is in row"),
+        (lambda d: d["toolkit"].__setitem__("columns", 1), "is in column"),
+        (lambda d: d["toolkit"].__setitem__("travel", [4.0, 5.0]), "beyond the 5 mm of its stroke"),
+        (lambda d: d["toolkit"].__setitem__("travel", [13.0, 26.0]), "nearer than the 13 mm of its stroke"),
+        (lambda d: d["toolkit"].__setitem__("directions", ["+y"]), "which is not asked for"),
+        (lambda d: d["fixtures"][0]["quality"].__setitem__("location_error", 0.001), "location error"),
+        (lambda d: d["fixtures"][0]["quality"].__setitem__("smallest_face", 1.0), "smallest face"),
+        (lambda d: d["fixtures"].__setitem__(1, d["fixtures"][0]), "it is the same as fixture 1"),
+    ],
+)
+def test_what_is_wrong_is_refuted_by_name(edited: Callable[[Edit], Verification], edit: Edit, words: str) -> None:
+    """One edit of a true file each."""
+    outcome = edited(edit)
+    assert not outcome.holds
+    assert any(words in item.reason for item in outcome.unproven), [item.reason for item in outcome.unproven][:3]
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (lambda d: d["statistics"].__setitem__("hull_edges", 3), "hull edges"),
+        (lambda d: d["statistics"].pop("locator_places"), "the statistics are not"),
+        (lambda d: d["fixtures"].reverse(), "fixture 2"),
+        (lambda d: d["distinct"].__setitem__("edge", 1), "distinct says 1"),
+        (lambda d: d["toolkit"].pop("wall_offset"), "wall_offset"),
+    ],
+)
+def test_contradictions_of_the_head_are_told(edited: Callable[[Edit], Verification], edit: Edit, words: str) -> None:
+    """As faults, or as a file that cannot be verified."""
+    try:
+        outcome = edited(edit)
+    except workhold.InputError as error:
+        assert words in str(error)
+        return
+    assert not outcome.holds and any(words in fault for fault in outcome.faults), outcome.faults
+
+
+def test_a_fixture_left_out_is_found_by_searching_again(result: Result, tmp_path: Path) -> None:
+    """Only the search of the query can show it."""
+    lacking = evolve(
+        result,
+        table=result.table.take(slice(1, None)),
+        found={"edge": len(result) - 1},
+        distinct={"edge": len(result) - 1},
+        notes=(),
+    )
+    assert verify(lacking).holds
+    outcome = verify_completely(lacking, complete=True)
+    assert any("that it does not list" in fault for fault in outcome.faults)
+
+
+def test_restrictions_are_kept_by_the_wall(result: Result) -> None:
+    """A result of a wider query breaks them by name."""
+    for asked, words in (
+        (Restrictions((0,)), "the part lies on the fence with face 0, which is to be avoided"),
+        (Restrictions(zones=(circle_zone(30.0, -6.0, 4.0),)), "the fence stands in a keep-out zone"),
+        (Restrictions(angles=((10.0, 11.0),)), "outside the angles asked for"),
+    ):
+        outcome = verify(evolve(result, query=evolve(result.query, restrictions=asked)))
+        assert any(words in item.reason for item in outcome.unproven), outcome.unproven[:3]
+
+
+def test_a_part_tilted_on_the_wall_or_through_it_is_refuted(result: Result) -> None:
+    """Whatever its pegs say."""
+    fixture = result[0]
+    here = result.query
+    assert verify_fixture(fixture, here.workpiece, here.toolkit).verdict == "proven"
+    for pose in (
+        evolve(fixture.pose, theta_deg=fixture.pose.theta_deg + 3.0),
+        evolve(fixture.pose, theta_deg=fixture.pose.theta_deg + 180.0),
+        evolve(fixture.pose, y=fixture.pose.y - 2.0),
+    ):
+        assert verify_fixture(evolve(fixture, pose=pose), here.workpiece, here.toolkit).verdict == "refuted"
+
+
+def test_undecided_entries_must_name_faces_and_reasons() -> None:
+    """Their places are not looked at."""
+    query = Query(part(KITE), Fence(10, 3, wall_offset=5))
+    entry = Undecided("edge -x", (1, 0, 0, 3), (0, 0, 0, 0), (0, 0, 0, 2), 0.0, AT_AN_EDGE, 0.0)
+    assert list(undecided_faults([entry], query)) == []
+    assert len(list(undecided_faults([evolve(entry, faces=(9, 0, 0, 3))], query))) == 1
+    assert answer(query).proof is not None
