@@ -18,6 +18,7 @@ import processes
 import pruning
 import table_one
 import threads
+import toolkits
 from page import write_page
 from report import Section, machine
 
@@ -40,6 +41,7 @@ def main() -> None:
         lambda quick: algebra.run(quick, options.budget),
         memory.run,
         many.run,
+        toolkits.run,
         pruning.run,
     ):
         sections.append(run(options.quick))

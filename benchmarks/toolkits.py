@@ -1,0 +1,111 @@
+"""Target 10: what a simultaneous contact costs in each toolkit, beside the vise's Type II, and two clamps on a plate.
+
+Contacts are counted in runs of their own: sets of four that touch at once, whatever the rules say of them. Of two clamps what
+counts is the waiting: the best hundred of a rectangle on a plate of eight by six holes.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+from designs import warm
+from report import Column, Section, measured, run_alone
+
+# Times the vise's Type II, by measurements that differ by a tenth from run to run.
+MOST_TIMES = 1.1
+MOST_SECONDS = 0.5
+REPEATS = 5
+# Part, pitch and columns of the vise; on plates the same part and pitch.
+PARTS = (("widget", 8, 4), ("ring", 12, 4))
+
+COLUMNS = (
+    Column("toolkit", 26, right=False),
+    Column("part", 14, right=False),
+    Column("contacts A", 12),
+    Column("fixtures", 10),
+    Column("seconds", 9),
+    Column("ns each", 8),
+)
+
+
+def run(quick: bool) -> Section:
+    """Measure plates beside the vise, then two clamps."""
+    section = Section("toolkits", "Other toolkits, one thread", COLUMNS).begin()
+    worst = 0.0
+    for part, pitch, columns in PARTS[:1] if quick else PARTS:
+        vise = told(section, "vise, Type II", part, ("Vise", part, pitch, columns, "II"))
+        for name in ("-x", "-y"):
+            plate = told(section, f"plate, clamp {name}", part, ("Plate", part, pitch, 8, name))
+            worst = max(worst, plate / vise)
+    section.target(
+        10,
+        f"a contact on a plate costs at most {MOST_TIMES:g} times one of the vise's Type II",
+        f"{worst:.2f} times",
+        worst <= MOST_TIMES,
+    )
+    outcome = measured("toolkits.two_clamps", REPEATS)
+    section.row("plate, two clamps, best 100", "100 × 60", "", f"{outcome['pairs']:,}", f"{outcome['seconds']:.3f}", "")
+    words = f"the best 100 of a rectangle on 8 × 6 holes with two clamps in under {MOST_SECONDS:g} s"
+    section.target(10, words, f"{outcome['seconds']:.3f} s", outcome["seconds"] < MOST_SECONDS)
+    return section
+
+
+def told(section: Section, toolkit: str, part: str, task: tuple[Any, ...]) -> float:
+    """Measure one design and tell its row; nanoseconds for each contact."""
+    contacts, outcome = measured("toolkits.contacts", *task), measured("toolkits.design_seconds", *task)
+    each = 1e9 * outcome["seconds"] / contacts
+    numbers = f"{contacts:,}", f"{outcome['fixtures']:,}", f"{outcome['seconds']:.3f}", f"{each:.0f}"
+    section.row(toolkit, part, *numbers)
+    return each
+
+
+def query_of(kind: str, part: str, pitch: float, columns: int, way: str) -> Any:
+    """A design in a vise of one type, or on a plate with one direction."""
+    import workhold
+
+    workpiece = workhold.load(part)
+    if kind == "Vise":
+        return workhold.Query(workpiece, workhold.Vise(pitch=pitch, columns=columns, peg_radius=3), way)
+    plate = workhold.Plate(pitch=pitch, peg_radius=3, columns=columns, rows=columns, directions=[way])
+    return workhold.Query(workpiece, plate)
+
+
+def contacts(*task: Any) -> int:
+    """Task: simultaneous contacts of a design."""
+    from workhold.contact.problem import Problem
+    from workhold.search.contacts import contacts_of
+
+    return contacts_of(Problem.of(query_of(*task)), 1)
+
+
+def design_seconds(*task: Any) -> dict[str, Any]:
+    """Task: a proven design, its kernels compiled and loaded; the best of some runs."""
+    import workhold
+
+    warm()
+    query, least = query_of(*task), float("inf")
+    for _ in range(REPEATS):
+        start = perf_counter()
+        result = workhold.answer(query, threads=1)
+        least = min(least, perf_counter() - start)
+    return {"seconds": least, "fixtures": len(result)}
+
+
+def two_clamps(repeats: int) -> dict[str, Any]:
+    """Task: the best hundred ways to hold a rectangle with two clamps; the best of some runs."""
+    import workhold
+
+    loop = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
+    workpiece = workhold.Workpiece.from_loops("rectangle", [loop])
+    plate = workhold.Plate(pitch=20, peg_radius=3, columns=8, rows=6, clamps=2)
+    least = float("inf")
+    for _ in range(repeats + 1):
+        start = perf_counter()
+        result = workhold.design(workpiece, plate, best=100, threads=1)
+        least = min(least, perf_counter() - start)
+    return {"seconds": least, "pairs": result.pairs}
+
+
+if __name__ == "__main__":
+    run_alone(__doc__, run)
