@@ -1,7 +1,7 @@
 """Target 10: what a simultaneous contact costs in each toolkit, beside the vise's Type II, and two clamps on a plate.
 
-Contacts are counted in runs of their own: sets of four that touch at once, whatever the rules say of them. Of two clamps what
-counts is the waiting: the best hundred of a rectangle on a plate of eight by six holes.
+Contacts are counted in runs of their own: sets of four that touch at once, whatever the rules say of them. Of two clamps
+what counts is the waiting: the best hundred of a rectangle on a plate of eight by six holes.
 """
 
 from __future__ import annotations

@@ -74,8 +74,7 @@ class PairedFixtures:
     hardware: Hardware = field(init=False)
     touched: Touched = field(init=False)
     rotations: tuple[Rotation, ...] = field(init=False)
-    table: FixtureTable = field(init=False)
-    has_dropped: bool = field(default=False, init=False)
+    tables: list[FixtureTable] = field(init=False)
     seats_looked_at: int = field(default=0, init=False)
     pairs: int = field(default=0, init=False)
     found: IntArray = field(init=False)
@@ -86,7 +85,7 @@ class PairedFixtures:
         toolkit = self.query.toolkit
         assert isinstance(toolkit, Plate)
         part = self.query.workpiece
-        self.toolkit, self.table = toolkit, FixtureTable.empty(toolkit)
+        self.toolkit, self.tables = toolkit, [FixtureTable.empty(toolkit)]
         kinds = np.full((len(NAMES), len(NAMES)), -1, np.int64)
         for number, pair in enumerate(toolkit.distinct_pairs):
             kinds[NAMES.index(pair[0]), NAMES.index(pair[1])] = number
@@ -204,15 +203,19 @@ class PairedFixtures:
         return evolve(table, quality=quality)
 
     def keep(self, table: FixtureTable) -> None:
-        """Take measured fixtures, in the order of their identities; of all the best where only those are asked for."""
-        together = FixtureTable.joined([self.table, table])
-        together = together.take(identity_order(together))
+        """Take measured fixtures; where only the best are asked for, those that may be among them."""
+        self.tables.append(table)
         most, query = self.query.best, self.query
-        if most is not None and len(together) > most:
+        if most is not None:
+            together = self.together()
             chosen = best_marked(together.quality, query.ranking, query.tolerance, most, ties=True)
-            self.has_dropped |= not chosen.all()
-            together = together.take(chosen)
-        self.table = together
+            self.tables = [together.take(chosen)]
+
+    def together(self) -> FixtureTable:
+        """What is kept, in the order of identities."""
+        everything = FixtureTable.joined(self.tables)
+        self.tables = [everything.take(identity_order(everything))]
+        return self.tables[0]
 
     def so_far(self) -> Result:
         """A result, marked incomplete, of what is kept."""
@@ -221,13 +224,14 @@ class PairedFixtures:
     def result(self, account: Account, work: Work) -> Result:
         """The result of all."""
         query = self.query
-        order = rank(self.table.quality, query.ranking, query.tolerance)[: query.best]
+        table = self.together()
+        order = rank(table.quality, query.ranking, query.tolerance)[: query.best]
         names = [one.name for one in self.toolkit.arrangements]
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
         notes = [undecided_note(len(account.undecided))] if account.undecided else []
         return Result(
             query=query,
-            table=self.table.take(order),
+            table=table.take(order),
             found=dict(zip(dict.fromkeys(names), [int(self.found.sum())], strict=True)),
             distinct=dict(zip(dict.fromkeys(names), [self.distinct()], strict=True)),
             complete=work.complete,

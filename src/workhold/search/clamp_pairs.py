@@ -40,6 +40,8 @@ __all__ = ["answer_of_pairs"]
 
 # Blocks of one direction's search that are worked on before seats are made of what they found, and most such ranges.
 BLOCKS_TOGETHER, MOST_RANGES = 48, 256
+# Ranges after which what has been found so far is shown.
+MOST_PREVIEWS = 8
 # Radians beside a range that are searched as well, so that a seat on its edge is found whole from either side.
 OVERLAP = 10 * SAME_POSE
 
@@ -65,7 +67,7 @@ def answer_of_pairs(
                 accounts.append(account)
                 cells, complete = cells + done, complete and whole
             kept.add(seats_of(parts, (low, high)))
-            if preview is not None:
+            if preview is not None and number < MOST_PREVIEWS:
                 preview(kept.so_far())
             if cancel is not None and cancel.is_set():
                 complete = complete and number + 2 == len(edges)
