@@ -121,3 +121,13 @@ def test_directions_of_the_page_are_those_of_the_plate() -> None:
     plate = next(one for one in DESCRIBED if one.name == "translating-clamp")
     (field,) = [field for field in plate.fields if field.name == "directions"]
     assert [choice.value for choice in field.choices] == list(DIRECTIONS)
+
+
+def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:
+    """The nearest miss of a part that no clamp of this stroke reaches has neither a body nor a length to draw."""
+    vise = {**PLATE, "directions": ["-x"], "travel": [300, 301], "columns": 12, "rows": 8}
+    url = server.done(request(workpiece=RECTANGLE, vise=vise))
+    nearest = server.client.get(f"{url}/explanation").json()["nearest"]
+    clamp = nearest["row"]["carriers"][-1]
+    assert (clamp["clamp"]["hole"], clamp["measured"]) == (None, None)
+    assert nearest["row"]["setting"]["length"] < 300

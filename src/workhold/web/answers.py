@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.segment import Arc, Segment
+from workhold.model.clamp import ShownClamp
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
 from workhold.model.holes import hole_name
@@ -224,11 +225,12 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "pegs": [next(numbers)],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
-            "measured": measured.get(each.carrier.name),
+            "measured": measured.get(each.carrier.name) if is_reached(each) else None,
             "clamp": {
-                "hole": each.hole,
+                # Of four contacts that are no fixture the clamp may reach no hole.
+                "hole": each.hole if is_reached(each) else None,
                 "tip": [each.tip.x, each.tip.y],
-                "draws_back": draws_back(each.carrier, each.hole, (each.tip.x, each.tip.y)),
+                "draws_back": draws_back(each),
                 "bolt_radius": plate.hole_radius,
                 "line": [plate.plate.x0, plate.plate.y0, plate.plate.x1, plate.plate.y1],
             },
@@ -238,11 +240,27 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     return lattices + clamps
 
 
-def draws_back(clamp: Carrier, hole: Sequence[float] | None, tip: Sequence[float]) -> float | None:
+def stroke_of(clamp: ShownClamp) -> float:
+    """How far in mm the tip is out of the hole, along the way that it clamps."""
+    assert clamp.hole is not None
+    (x, y), (dx, dy) = clamp.hole, clamp.clamping
+    return (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy
+
+
+def is_reached(clamp: ShownClamp) -> bool:
+    """Whether the tip is where the clamp can reach from its hole; so it is where only the line is told."""
+    travel = clamp.carrier.travel
+    if clamp.hole is None or travel is None or travel.most is None:
+        return True
+    return -travel.most - 1e-6 <= stroke_of(clamp) <= -travel.least + 1e-6
+
+
+def draws_back(clamp: ShownClamp) -> float | None:
     """How far in mm a clamp can be drawn back from where it clamps; None where only its line is told."""
-    if hole is None or clamp.travel is None or clamp.travel.most is None:
+    travel = clamp.carrier.travel
+    if clamp.hole is None or travel is None or travel.most is None:
         return None
-    return max(hypot(tip[0] - hole[0], tip[1] - hole[1]) + clamp.travel.most, 0.0)
+    return max(stroke_of(clamp) + travel.most, 0.0)
 
 
 def lattice_of_none(carrier: Carrier) -> dict[str, Any]:

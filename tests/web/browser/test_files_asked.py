@@ -100,12 +100,15 @@ def test_gaps_are_joined_up_to_the_largest(walk: Walk, tmp_path: Path) -> None:
     assert len(loops(walk)) == 1 and page.locator("#drawing-part .stray").count() == 1
     page.focus("#join")
     page.keyboard.press("End")
-    page.wait_for_function("async () => (await import('/static/state.js')).state.part.loops.length === 2")
-    assert "1.100 mm" in walk.seen("#file-asks output").inner_text() and page.input_value("#join") == "3"
+    walk.seen("#part-words:has-text('100.00 mm × 60.00 mm, 5 faces, 1 hole')")
+    walk.seen("#file-asks output:has-text('1.100 mm')")
+    assert page.input_value("#join") == "3" and len(loops(walk)) == 2
+    # With less the outline around the hole is nearly closed: it is not taken for a part, and the slider stays.
     page.focus("#join")
     page.keyboard.press("ArrowLeft")
-    page.wait_for_function("async () => (await import('/static/state.js')).state.part.loops.length === 1")
-    assert "0.300 mm" in page.inner_text("#file-asks output")
+    walk.seen("#part-trouble:has-text('is not closed')")
+    walk.seen("#file-asks output:has-text('0.300 mm')")
+    assert loops(walk) == []
 
 
 def test_an_outline_that_is_open_says_so_beside_the_slider(walk: Walk, tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ export function askQuestions(survey, how, answer) {
   if (!how.unit && !survey.asked.includes("unit")) bare = null;
   const unit = unitQuestion(how, answer);
   // Sizes of parts and gaps mean nothing before there is a unit.
-  const rest = unit && !how.unit ? [] : [partQuestion, gapQuestion, axisQuestion].map((each) => each(survey, how, answer));
+  const rest = unit && !how.unit ? [] : [partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
   const asked = [unit, ...rest].filter((question) => question !== null);
   byId("file-asks").replaceChildren(...asked);
   any = asked.length > 0;
@@ -106,11 +106,14 @@ function gapQuestion({ asked, gaps, size }, how, answer) {
   return question(`There are loose ends, with gaps from ${length(open[0], 3)} to ${length(open[open.length - 1], 3)}. Join gaps up to`, make("div.join", {}, slider, words));
 }
 
-/** Along which axis a solid is held. */
-function axisQuestion({ solid }, how, answer) {
+/** Along which axis a solid is held, and which of several it is. */
+function solidQuestion({ solid }, how, answer) {
   if (!solid) return null;
   const buttons = ["x", "y", "z"].map((axis) => make("button", {
     type: "button", "aria-pressed": String((how.axis ?? "z") === axis), click: () => answer({ axis }),
   }, axis));
-  return question("The pegs stand along", make("div.segmented", {}, ...buttons));
+  const which = /** @type {HTMLInputElement} */ (make("input.short", { type: "number", id: "solid", min: 1, step: 1, value: how.part ?? 1 }));
+  which.addEventListener("change", () => which.validity.valid && answer({ part: Number(which.value) }));
+  return question("The pegs stand along", make("div.row-of-buttons", {},
+    make("div.segmented", {}, ...buttons), make("label.inline", {}, "Solid, the largest is 1", which)));
 }
