@@ -17,7 +17,7 @@ from workhold.files.part.load import load
 
 PHONE, DESK = {"width": 390, "height": 800}, {"width": 1280, "height": 800}
 OVERLAPS = """(svg) => {
-  const kinds = ["hole-label", "face-label", "load-text"].map((kind) => `${svg} .${kind}`).join();
+  const kinds = ["hole-label", "face-label", "load-text", "hole-axis.used"].map((kind) => `${svg} .${kind}`).join();
   const labels = [...document.querySelectorAll(kinds)].map((each) => each.getBoundingClientRect());
   const over = (a, b) => Math.min(
     Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));

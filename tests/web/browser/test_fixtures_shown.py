@@ -175,8 +175,11 @@ def test_the_jaw_chosen_counts_in_bars_sheet_and_warnings(walk: Walk) -> None:
     asked = {name: query[name][0] for name in ("jaw", "jaw_force", "loads")}
     told = walk.server.client.get(f"{url}/warnings", params=asked).json()["warnings"]
     assert "load" in [one["kind"] for one in told]
-    walk.seen("#warnings li.load")
-    assert page.locator("#warnings li").all_inner_texts() == [one["sentence"] for one in told]
+    # They follow the force after a moment of quiet.
+    page.wait_for_function(
+        "(told) => String([...document.querySelectorAll('#warnings li')].map((one) => one.innerText)) === String(told)",
+        arg=[one["sentence"] for one in told],
+    )
 
 
 def test_two_fixtures_side_by_side(walk: Walk) -> None:

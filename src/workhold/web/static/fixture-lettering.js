@@ -16,12 +16,13 @@ const SHORTEST = 20;
 export function drawLettering(drawing) {
   const { overlay } = drawing.view;
   const closed = drawing.open === 0;
-  const parts = [...columnNames(drawing), ...rowNames(drawing), ...travels(drawing)];
+  const axes = [...columnNames(drawing), ...rowNames(drawing)];
+  const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...travels(drawing)];
   if (closed) {
     parts.push(...forces(drawing).map(({ tail, tip, kind }) => arrow(tail, tip, kind)));
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
-  parts.push(...labels(drawing, closed));
+  parts.push(...labels(drawing, closed, axes.filter(({ kind }) => kind === USED)));
   overlay.replaceChildren(...parts);
 }
 
@@ -51,6 +52,16 @@ function word(text, [x, y], kind, anchor = "middle") {
   return draw(`text.${kind}`, { x, y, "text-anchor": anchor, dy: "0.36em" }, text);
 }
 
+/** The class of the name of a column or row in which something stands. */
+const USED = "hole-axis used";
+
+/** The name of a column or a row, and the room that it takes. */
+function axisName(text, [x, y], peg, anchor = "middle") {
+  const w = 8 * text.length;
+  const middle = anchor === "middle" ? x : anchor === "end" ? x - w / 2 : x + w / 2;
+  return { text, x, y, anchor, kind: peg ? USED : "hole-axis", room: { x: middle, y, w, h: 12 } };
+}
+
 /** Letters above the columns, as many as there is room for; those with pegs always. */
 function columnNames(drawing) {
   const { view, row } = drawing;
@@ -62,7 +73,7 @@ function columnNames(drawing) {
       const peg = carrier.used_columns.includes(column);
       if (!peg && column % step) continue;
       const [px, py] = view.page([place(carrier, column, 0)[0] + dx, carrier.plate[3] + dy]);
-      names.push(word(columnLetters(column), [px, py - 11], peg ? "hole-axis used" : "hole-axis"));
+      names.push(axisName(columnLetters(column), [px, py - 11], peg));
     }
     return names;
   });
@@ -80,8 +91,7 @@ function rowNames(drawing) {
       const peg = carrier.used_rows.includes(index);
       if (!peg && (index + 1) % step) continue;
       const [px, py] = view.page([carrier.plate[right ? 2 : 0] + dx, place(carrier, 0, index)[1] + dy]);
-      const kind = peg ? "hole-axis used" : "hole-axis";
-      names.push(word(String(index + 1), [px + (right ? 9 : -9), py], kind, right ? "start" : "end"));
+      names.push(axisName(String(index + 1), [px + (right ? 9 : -9), py], peg, right ? "start" : "end"));
     }
     return names;
   });
@@ -112,19 +122,30 @@ function travels(drawing) {
   });
 }
 
-/** Labels of the pegs' holes, on the side away from the part. */
+/** Degrees to either side of the wanted way, and how many times as far, a label may stand; those wanted most first. */
+const TURNS = [0, 25, -25, 50, -50, 80, -80, 115, -115, 150, -150, 180];
+const FARTHER = [1, 1.4, 1.9];
+
+/** Places around a middle: on an ellipse towards a unit vector (y downward), and then ever more aside and farther. */
+function around([x, y], [ux, uy], [far, high]) {
+  return FARTHER.flatMap((times) => TURNS.map((turn) => {
+    const [c, s] = [Math.cos((turn * Math.PI) / 180), Math.sin((turn * Math.PI) / 180)];
+    return { x: x + times * far * (c * ux - s * uy), y: y + times * high * (s * ux + c * uy) };
+  }));
+}
+
+/** Labels of the pegs' holes, on the side away from the part; that of a clamp beside its body. */
 function holeLabels(drawing) {
   const { row, view, contacts } = drawing;
   const radius = pegSize(drawing);
   return pegCenters(drawing).map((center, k) => {
-    const [x, y] = center;
     const [nx, ny] = contacts[k].normal;
-    const size = { w: 8.4 * row.holes[k].length + 12, h: 20, center, text: row.holes[k] };
+    const w = 8.4 * row.holes[k].length + 12;
     const pushed = row.carriers.find((each) => each.clamp && each.pegs.includes(k));
-    if (!pushed) return { ...size, x: x + nx * (radius + 8 + size.w / 2), y: y - ny * (radius + 18) };
-    // Beside the body and the arrow behind it, on the lower or the left side.
-    const [bx, by] = pushed.clamp.hole ? view.page(pushed.clamp.hole) : [x, y];
-    return pushed.clamping[0] ? { ...size, x: bx, y: by + radius + 20 } : { ...size, x: bx - radius - 14 - size.w / 2, y: by };
+    const [middle, way] = pushed
+      ? [pushed.clamp.hole ? view.page(pushed.clamp.hole) : center, pushed.clamping[0] ? [0, 1] : [-1, 0]]
+      : [center, [nx, -ny]];
+    return { center, text: row.holes[k], w, h: 20, places: around(middle, way, [radius + 10 + w / 2, radius + 19]) };
   });
 }
 
@@ -151,25 +172,29 @@ function faceLabels({ row, view, contacts }) {
     seen.add(row.faces[k]);
     const [x, y] = view.page(at);
     const places = BESIDE.map((aside) => ({ x: x - 14 * nx + aside * ny, y: y + 14 * ny + aside * nx }));
-    return [{ ...places[0], places, w: 19, h: 19, text: String(row.faces[k]) }];
+    return [{ places, w: 19, h: 19, text: String(row.faces[k]) }];
   });
 }
 
 /** Names of holes, numbers of faces and the size of the load, none on another, on a peg or on an arrow. */
-function labels(drawing, closed) {
+function labels(drawing, closed, axes) {
   const radius = pegSize(drawing);
-  const taken = pegCenters(drawing).map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius }));
+  const taken = axes.map(({ room }) => room);
+  taken.push(...pegCenters(drawing).map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius })));
   const load = closed && drawing.load ? [loadLabel(drawing)] : [];
   if (closed) taken.push(...forces(drawing).flatMap(({ tail, tip }) => along(tail, tip, 8)));
   if (load.length) taken.push(...along(load[0].tail, load[0].tip, 10));
   const faces = closed ? faceLabels(drawing) : [];
   const holes = holeLabels(drawing);
-  apart([...holes, ...load], taken);
-  taken.push(...holes, ...load);
-  for (const face of faces) {
-    Object.assign(face, face.places.find((place) => isFree({ ...face, ...place }, taken)) ?? {});
-    taken.push(face);
+  // Where there is room for none they are pushed apart at last.
+  const crowded = [];
+  for (const label of [...load, ...holes, ...faces]) {
+    const free = label.places.find((place) => isFree({ ...label, ...place }, taken));
+    Object.assign(label, free ?? label.places[0]);
+    if (free) taken.push(label);
+    else crowded.push(label);
   }
+  apart(crowded, taken);
   return [
     ...faces.flatMap(({ x, y, text }) => [draw("circle.face-label", { cx: x, cy: y, r: 9.5 }), word(text, [x, y], "face-name")]),
     ...holes.flatMap(({ x, y, w, center, text }) => [
@@ -203,7 +228,8 @@ function loadLabel({ view, load }) {
   const long = Math.hypot(tip[0] - tail[0], tip[1] - tail[1]);
   const [ux, uy] = long > 1 ? [(tip[0] - tail[0]) / long, (tip[1] - tail[1]) / long] : [0, -1];
   const text = `${number(load.size, 0)} N`;
-  return { tail, tip, text, x: tip[0] + 28 * ux, y: tip[1] + 14 * uy, w: 8.4 * text.length, h: 16 };
+  const w = 8.4 * text.length;
+  return { tail, tip, text, w, h: 16, places: around(tip, [ux, uy], [8 + w / 2, 14]) };
 }
 
 /** The load itself. */
