@@ -12,7 +12,7 @@ from running_server import WIDGET, RunningServer, request
 
 from workhold.files.toolkit.presets import load_vise, preset_names
 from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
-from workhold.model.plate import DIRECTIONS
+from workhold.model.plate import DIRECTIONS, Plate
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind
 
@@ -118,9 +118,12 @@ def test_what_would_help_says_which_fields_change(server: RunningServer) -> None
 
 
 def test_directions_of_the_page_are_those_of_the_plate() -> None:
-    plate = next(one for one in DESCRIBED if one.name == "translating-clamp")
-    (field,) = [field for field in plate.fields if field.name == "directions"]
-    assert [choice.value for choice in field.choices] == list(DIRECTIONS)
+    """Of one clamp all, of two the pairs that half a turn of the plate does not make of each other."""
+    fields = next(one for one in DESCRIBED if one.name == "translating-clamp").fields
+    one, two = ([choice.value for choice in field.choices] for field in fields if field.name == "directions")
+    assert one == list(DIRECTIONS)
+    every = Plate(pitch=20, peg_radius=3, clamps=2, directions=list(DIRECTIONS))
+    assert {tuple(pair) for pair in two} == set(every.distinct_pairs) and len(two) == 6
 
 
 def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:

@@ -31,6 +31,7 @@ Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
 Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
 LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
 Name = Annotated[str, Field(max_length=200)]
+DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
 class Form(BaseModel):
@@ -113,7 +114,8 @@ class PlateForm(Form):
     rows: int | None = Field(default=None, ge=1, le=MOST_ROWS)
     clamp_radius: Number | None = None
     travel: Point | None = None
-    directions: list[Name] | None = Field(default=None, max_length=len(DIRECTIONS))
+    directions: list[Name] | list[DirectionPair] | None = Field(default=None, max_length=len(DIRECTIONS) ** 2)
+    clamps: int = Field(default=1, ge=1, le=2)
 
     def toolkit(self) -> Toolkit:
         """The toolkit.
@@ -211,6 +213,7 @@ class SearchForm(Form):
     ranking: list[Name] | None = Field(default=None, max_length=10)
     prefer: Name | None = None
     jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
+    listing: Literal["best", "all"] | None = None
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
 
@@ -233,6 +236,7 @@ class SearchForm(Form):
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             jaw_force=self.jaw_force,
+            listing=self.listing if toolkit.needs_pairs else None,
         )
 
 

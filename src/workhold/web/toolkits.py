@@ -102,6 +102,18 @@ class Described:
         }
 
 
+def pair_words(one: str, other: str) -> str:
+    """What a pair of directions is called.
+
+    >>> pair_words("-x", "-y"), pair_words("-x", "-x"), pair_words("-x", "+x")
+    ('to the left and downward', 'both to the left', 'against each other, to the left and right')
+    """
+    if one == other:
+        return f"both {TOWARDS[one]}"
+    against = "against each other, " if one[1] == other[1] else ""
+    return f"{against}{TOWARDS[one]} and {TOWARDS[other].removeprefix('to the ') if against else TOWARDS[other]}"
+
+
 PITCH = Field("pitch", "Pitch", "pitch", is_usual=True)
 PEG = Field("peg_radius", "Peg radius", "length", is_usual=True, least="0")
 ROWS = Field("rows", "Rows a jaw", "count", "as needed")
@@ -120,6 +132,9 @@ GRIPPER = tuple(field for field in VISE if field.name != "columns")
 TRAVEL = Field("travel", "Stroke", "span", "any", least="0")
 TIP = Field("clamp_radius", "Clamp tip radius", "length", "as a locator", least="0")
 WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
+# Half a turn of the plate makes the others of these.
+DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
+PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
 PLATE = (
     PITCH,
     Field("columns", "Columns", "count", "as needed", is_usual=True),
@@ -127,7 +142,9 @@ PLATE = (
     Field("peg_radius", "Locator radius", "length", is_usual=True, least="0"),
     TIP,
     TRAVEL,
-    Field("directions", "The clamp pushes", "several", "all that differ", choices=WAYS),
+    Field("clamps", "Clamps", "one", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),
+    Field("directions", "The clamp pushes", "several", "all that differ", choices=WAYS, when={"clamps": 1}),
+    Field("directions", "The clamps push", "several", "across each other", choices=PAIRS, when={"clamps": 2}),
 )
 FENCE = (
     *PLATE[:4],
@@ -140,7 +157,11 @@ IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
 
 DESCRIBED = (
     Described(
-        "translating-clamp", "Plate with a clamp", "Close clamp", PLATE, {"pitch": [20.0, 20.0], "peg_radius": 3.0}
+        "translating-clamp",
+        "Plate with a clamp",
+        "Close clamp",
+        PLATE,
+        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "clamps": 1},
     ),
     Described(
         "edge",
