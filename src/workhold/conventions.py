@@ -59,6 +59,17 @@ STRAIGHT = 2e-6
 
 # == Reading and joining: what an outline is ==
 
+# mm. A curve, or a chain of chords and arcs, that is nowhere farther from a line or an arc is one in disguise: less than
+# machines hold. The departure counts in the tolerance of the faces all the same.
+DISGUISE = 1e-3
+# A share of the radius. The cubics by which programs write quarter circles are this far off at most (2.73e-4, and what is
+# left of it with other handles).
+AS_ARC = 3e-4
+# Radians. Where a curve's direction jumps by more it has a corner.
+CORNER = 1e-3
+# A share. Where a curve's curvature jumps by more, one line or arc of a disguise may end.
+CURVATURE_JUMP = 0.01
+
 # mm. Segments shorter than this have no direction worth the name.
 SHORTEST = 1e-7
 # mm. Points nearer than this touch: the rounding of a drawing with seven digits.
@@ -172,8 +183,6 @@ SAME_VOLUME, FREE_VOLUME = 1e-5, 1e-2
 ALIGNED = 1e-7
 # mm. Heights of a solid's faces closer than this are the same.
 SAME_HEIGHT = 1e-5
-# mm. A free-form edge nearer than this to a line or a circle is one that was saved as a spline.
-SAME_CURVE = 1e-6
 # mm. Gaps between the edges of a border that are rounding and not worth a word.
 EDGE_GAP = 1e-6
 

@@ -9,7 +9,7 @@ from attrs import frozen
 
 from workhold.cli.commands import option
 from workhold.cli.saying import tell
-from workhold.cli.values import choice, length, length_unit, optional_count, optional_length
+from workhold.cli.values import choice, length, length_unit, optional_count, optional_length, optional_positive_length
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
@@ -27,6 +27,7 @@ CALLED = {
     "layers": "--layer",
     "part_number": "--part",
     "join_tolerance": "--join-tolerance",
+    "fit": "--fit",
     "axis": "--axis",
     "section": "--section",
 }
@@ -68,6 +69,11 @@ class PartWords:
     join_tolerance: str = option(
         READING, "LENGTH", "Largest gap between ends of lines that is closed.", default=JOIN_TOLERANCE
     )
+    fit: str | None = option(
+        READING,
+        "LENGTH",
+        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves that are none.",
+    )
 
     def load(self, part: str) -> Loaded:
         """Read a part and tell on stderr what a user should know about the drawing.
@@ -83,6 +89,7 @@ class PartWords:
         """
         unit = length_unit(self.unit)
         join_tolerance = length(CALLED["join_tolerance"], self.join_tolerance, unit)
+        fit = optional_positive_length(CALLED["fit"], self.fit, unit)
         part_number = optional_count(CALLED["part_number"], self.part_number)
         axis = None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z"))
         section = optional_length(CALLED["section"], self.section, unit)
@@ -95,6 +102,7 @@ class PartWords:
             layers=self.layer or None,
             part_number=part_number,
             join_tolerance=join_tolerance,
+            fit=fit,
             axis=axis,
             section=section,
             called=CALLED,

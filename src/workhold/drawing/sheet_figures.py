@@ -45,7 +45,8 @@ def write_quality(column: Column, sheet: Sheet) -> None:
     tolerance, lengths = sheet.details.tolerance, sheet.lengths
     if "location_error" in sheet.fixture.quality:
         allowed = f"pegs off by up to {lengths.short(tolerance.peg, 3)}, faces by {lengths.short(tolerance.face, 3)}"
-        column.paragraph(f"Location error: {allowed}.", NOTE)
+        read = f", of which {lengths.short(tolerance.departure, 3)} because the drawing's curves were read as arcs"
+        column.paragraph(f"Location error: {allowed}{read if tolerance.departure else ''}.", NOTE)
 
 
 def load_words(load: Load, lengths: LengthUnit) -> str:

@@ -9,18 +9,19 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-__all__ = ["AXIS", "DRAWING_UNIT", "JOIN_TOLERANCE", "LAYERS", "MARK", "PART_NUMBER", "SECTION", "UNIT", "worded"]
+__all__ = ["AXIS", "DRAWING_UNIT", "FIT", "JOIN_TOLERANCE", "LAYERS", "MARK", "PART_NUMBER", "SECTION", "UNIT", "worded"]
 
 # The unit of a drawing that does not say its own, and the one that counts whatever it says.
 UNIT, DRAWING_UNIT = "<unit>", "<drawing_unit>"
-PART_NUMBER, LAYERS, JOIN_TOLERANCE, AXIS, SECTION = (
+PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, AXIS, SECTION = (
     "<part_number>",
     "<layers>",
     "<join_tolerance>",
+    "<fit>",
     "<axis>",
     "<section>",
 )
-MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, AXIS, SECTION)))
+MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, AXIS, SECTION)))
 # The arguments of ``workhold.load``; it knows one unit.
 IN_PYTHON = {"drawing_unit": "unit"}
 

@@ -115,7 +115,8 @@ class Query:
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no restriction.
     ranking : figures of quality, the first counting most, named as in ``model.quality``; None is what a machinist would look
         at: warnings, penalty, load reaction or, without loads, clamp amplification, closure margin, edge distance.
-    tolerance : how far pegs and faces may be off, for the location error; None is the usual one.
+    tolerance : how far pegs and faces may be off, for the location error; None is the usual one. The workpiece's departure
+        is added to that of the faces.
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
     jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where it is open.
@@ -142,6 +143,7 @@ class Query:
 
     def __attrs_post_init__(self) -> None:
         refuse_other_kinds(self)
+        object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         pairs = self.toolkit.needs_pairs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.model.dowel import Fit
@@ -20,8 +20,9 @@ class Tolerance:
     Parameters
     ----------
     peg : how far the surface of a peg may be from where it should be, in mm.
-    face : how far a face of the part may be from where it should be, in mm.
+    face : how far a face of the part may be from where it should be, in mm; the departure is a part of it.
     fit : of the dowels that are the pegs, which the first follows from; None where it is not known.
+    departure : how far the outline as read may be from the drawn one, in mm; a query sets it to its workpiece's.
 
     Raises
     ------
@@ -32,8 +33,21 @@ class Tolerance:
     peg: float = field(default=0.01, converter=real)
     face: float = field(default=0.01, converter=real)
     fit: Fit | None = None
+    departure: float = field(default=0.0, converter=real)
 
     def __attrs_post_init__(self) -> None:
-        for name, value in (("peg", self.peg), ("face", self.face)):
+        for name, value in (("peg", self.peg), ("face", self.face), ("departure in the face", self.departure)):
             if not (isfinite(value) and value >= 0):
                 raise InputError(f"{name} tolerance {value} is not a length: give 0 or more, in mm.")
+
+    def with_departure(self, departure: float) -> Tolerance:
+        """The same tolerance for an outline that departs by so much, in mm, from the drawn one.
+
+        Examples
+        --------
+        >>> Tolerance(0.01, 0.02).with_departure(0.5).face
+        0.52
+        """
+        if departure == self.departure:
+            return self
+        return evolve(self, face=max(self.face - self.departure, 0.0) + departure, departure=departure)

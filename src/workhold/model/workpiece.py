@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, partial
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from workhold.geometry.loop import (
 from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Pose
+from workhold.model.real import real
 from workhold.model.wall import Flush
 
 __all__ = ["Workpiece"]
@@ -52,6 +54,7 @@ class Workpiece:
     loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then the holes,
         clockwise.
     remarks : what was changed of the loops given, one sentence each.
+    departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines and arcs.
 
     Examples
     --------
@@ -64,6 +67,7 @@ class Workpiece:
     name: str
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of, repr=lambda loops: f"<{len(loops)} loops>")
     remarks: tuple[str, ...] = field(default=(), eq=False)
+    departure: float = 0.0
 
     def __attrs_post_init__(self) -> None:
         for loop in self.loops:
@@ -71,11 +75,15 @@ class Workpiece:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # What was worked out stays behind, and the arrays are read-only again on the other side.
-        return Workpiece, (self.name, self.loops)
+        return Workpiece, (self.name, self.loops, (), self.departure)
 
     @classmethod
     def from_loops(
-        cls, name: str, loops: Sequence[ArrayLike], labels: Sequence[Sequence[str]] | None = None
+        cls,
+        name: str,
+        loops: Sequence[ArrayLike],
+        labels: Sequence[Sequence[str]] | None = None,
+        departure: float = 0.0,
     ) -> Workpiece:
         """Check loops of (x, y, bulge) vertices in mm and turn them so that material lies on the left.
 
@@ -84,6 +92,7 @@ class Workpiece:
         name : what the user calls the part.
         loops : the outer loop first, then any holes; each (N, 3), run in either direction.
         labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
+        departure : how far these loops may be from what was drawn, in mm; below ``READING`` it is none.
 
         Raises
         ------
@@ -125,7 +134,8 @@ class Workpiece:
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
         refuse_misplaced_holes(name, drawn)
-        return cls(name, tuple(used), (*straightened_remark(straightened), *rounded_remark(rounded)))
+        remarks = (*straightened_remark(straightened), *rounded_remark(rounded))
+        return cls(name, tuple(used), remarks, departure_of(departure))
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
@@ -167,13 +177,26 @@ class Workpiece:
     def placed(self, pose: Pose) -> Workpiece:
         """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
-        return Workpiece(self.name, tuple(loops))
+        return Workpiece(self.name, tuple(loops), departure=self.departure)
 
     @property
     def center(self) -> Point:
         """Centre of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def departure_of(value: float) -> float:
+    """How far an outline may be from the drawn one, in mm; nothing where that is less than a drawing can mean.
+
+    Raises
+    ------
+    InputError
+        When it is no length.
+    """
+    if not (isfinite(real(value)) and value >= 0):
+        raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")
+    return 0.0 if value < READING else float(value)
 
 
 def straightened_remark(count: int) -> tuple[str, ...]:

@@ -151,8 +151,10 @@ def taken_in(fixtures: list[Fixture] | Columns, hardware: Hardware) -> Sequence[
 
 def keys_missing(head: Head) -> list[str]:
     """A fault for every key of the form that is not there: what would be taken for it is claimed by nobody."""
-    # Of a vise and a toolkit one is enough, an account that is missing is told in any case, and a fit decides nothing.
+    # Of a vise and a toolkit one is enough, an account that is missing is told in any case, and a fit decides nothing; a
+    # departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
+    spared |= {"workpiece.departure", "tolerance.departure"}
     if getattr(head.toolkit, "clamps", 1) == 1:
         spared |= {"listing", "pairs", "seats", "toolkit.clamps"}
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]

@@ -82,6 +82,7 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
         "segments": segments,
         "faces": [face_answer(face.number, face.segment) for face in workpiece.faces],
         "bounds": list(workpiece.bounds),
+        "departure": workpiece.departure,
         "remarks": list(remarks),
     }
 

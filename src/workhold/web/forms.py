@@ -45,6 +45,7 @@ class WorkpieceForm(Form):
 
     name: Name = "part"
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
+    departure: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
 
     def workpiece(self, most_segments: int) -> Workpiece:
         """The part.
@@ -54,11 +55,13 @@ class WorkpieceForm(Form):
         InputError
             For loops that cannot be used, and for too many segments.
         """
-        return checked_part(self.name, self.loops, most_segments)
+        return checked_part(self.name, self.loops, most_segments, self.departure)
 
 
-def checked_part(name: str, loops: Sequence[Sequence[Sequence[float]]], most_segments: int) -> Workpiece:
-    """A part of loops in mm.
+def checked_part(
+    name: str, loops: Sequence[Sequence[Sequence[float]]], most_segments: int, departure: float = 0.0
+) -> Workpiece:
+    """A part of loops in mm, with how far they may be from what was drawn.
 
     Raises
     ------
@@ -72,7 +75,7 @@ def checked_part(name: str, loops: Sequence[Sequence[Sequence[float]]], most_seg
             "and arcs instead of many short pieces."
         )
     try:
-        return Workpiece.from_loops(name, loops)
+        return Workpiece.from_loops(name, loops, departure=departure)
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError):
             raise

@@ -74,6 +74,9 @@ UnitGiven = Literal["mm", "cm", "m", "inch"] | None
 PartGiven = Annotated[int | None, Query(ge=1, le=100_000)]
 LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
 JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
+FitGiven = Annotated[
+    float | None, Query(ge=0.0001, le=100, description="how far arcs may be from true curves that they stand for, in mm")
+]
 AxisGiven = Literal["x", "y", "z"] | None
 
 
@@ -83,12 +86,15 @@ async def sent(
     part: PartGiven = None,
     layer: LayersGiven = None,
     join: JoinGiven = None,
+    fit: FitGiven = None,
     axis: AxisGiven = None,
 ) -> Upload:
     """A file that is sent, and what is said about how to read it."""
     content = await request.body()
     given: dict[str, Any] = {"unit": unit, "part_number": part, "layers": layer, "join_tolerance": join}
     name = shown_name(request.headers.get("x-filename", ""))
+    if fit is not None and not name.lower().endswith(".json"):
+        given["fit"] = fit
     if axis is not None and name.lower().endswith((".step", ".stp")):
         given["axis"] = axis
     options = {key: value for key, value in given.items() if value is not None}

@@ -47,6 +47,7 @@ CALLED = {
     "layers": '"Layers"',
     "part_number": "the part number",
     "join_tolerance": '"Join gaps up to"',
+    "fit": '"Fit curves within"',
     "axis": "axis",
     "section": "the height of a section",
 }
@@ -237,7 +238,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     from workhold.web.forms import checked_part
 
     part, stem = loaded.workpiece, upload.name.rpartition(".")[0]
-    checked_size = checked_part(part.name, part.loops, upload.most_segments)  # type: ignore[arg-type]
+    checked_size = checked_part(part.name, part.loops, upload.most_segments, part.departure)  # type: ignore[arg-type]
     name = stem or upload.name if part.name == path.stem else part.name
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
 

@@ -127,8 +127,8 @@ def test_an_array_of_holes(tmp_path: Path) -> None:
     assert centers == {(5.0 - 10 * row, 5.0 + 15 * column) for row in range(2) for column in range(3)}
 
 
-def test_unequal_scales_are_fine_for_lines_only(tmp_path: Path) -> None:
-    """Lines stay lines under any affine map; arcs would become ellipses and are refused by handle and place."""
+def test_unequal_scales_turn_arcs_into_ellipses(tmp_path: Path) -> None:
+    """Lines stay lines under any affine map; arcs become ellipses, which need a fit."""
     document, space = new_dxf()
     rectangle(document.blocks.new("PLATE"))
     space.add_blockref("PLATE", (0, 0), dxfattribs={"xscale": 2, "yscale": 3, "rotation": 20})
@@ -136,8 +136,10 @@ def test_unequal_scales_are_fine_for_lines_only(tmp_path: Path) -> None:
     assert area(load(tmp_path / "part.dxf")) == pytest.approx(2400 * 6)
     document.blocks.get("PLATE").add_circle((30, 20), 5)
     document.saveas(tmp_path / "part.dxf")
-    with pytest.raises(InputError, match=r"CIRCLE \w+ of INSERT \w+ at \(.*unequal scales turn into ellipses"):
+    with pytest.raises(InputError, match=r"CIRCLE \w+ of INSERT \w+ at \(.* is a true curve.*give fit 0\.01"):
         load(tmp_path / "part.dxf")
+    part = load(tmp_path / "part.dxf", fit=0.001)
+    assert area(part) == pytest.approx((2400 - 25 * pi) * 6, abs=0.001 * 80)
 
 
 def test_a_block_turned_half_way_inside_an_unequal_scale_is_skewed(tmp_path: Path) -> None:
@@ -148,8 +150,10 @@ def test_a_block_turned_half_way_inside_an_unequal_scale_is_skewed(tmp_path: Pat
     document.blocks.new("OUTER").add_blockref("INNER", (0, 0), dxfattribs={"rotation": 45})
     space.add_blockref("OUTER", (0, 0), dxfattribs={"xscale": 2, "yscale": 3})
     document.saveas(tmp_path / "part.dxf")
-    with pytest.raises(InputError, match="unequal scales turn into ellipses"):
+    with pytest.raises(InputError, match="is a true curve"):
         load(tmp_path / "part.dxf")
+    part = load(tmp_path / "part.dxf", fit=0.001)
+    assert part.bounds == pytest.approx((-10, -15, 10, 15), abs=0.001)
 
 
 def test_block_entities_on_layer_0_take_the_inserts_layer(tmp_path: Path) -> None:

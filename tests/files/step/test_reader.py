@@ -37,6 +37,7 @@ from step_shapes import (
 )
 
 from workhold.errors import InputError
+from workhold.files.outline.curves import Curves
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.step.reader import refuse_missing_volume
 from workhold.files.step.regions import edge_piece
@@ -180,11 +181,11 @@ def test_a_rounded_rib_reaches_out_by_its_radius(tmp_path: Path) -> None:
 def test_a_circle_may_look_either_way(up: int) -> None:
     """A quarter circle about an axis that points down runs clockwise seen from above."""
     circle = gp_Circ(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, up), gp_Dir(1, 0, 0)), 5)
-    piece, free_form = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge())
+    piece = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge(), Curves(None), "edge")
     assert piece is not None
     assert piece[1] == pytest.approx([up * tan(pi / 8)])
     assert np.array(piece[0]) == pytest.approx(np.array([(5, 0), (0, 5 * up)]), abs=1e-12)
-    assert not free_form
+    assert piece[2] is None
 
 
 def test_a_lying_cylinder_is_a_rectangle_seen_from_above_and_a_circle_along_its_axis(tmp_path: Path) -> None:
@@ -296,11 +297,35 @@ def bezier_wall(depth: float = 15.0) -> Any:
     return prism([Geom_BezierCurve(poles), *straight], 10)
 
 
-@pytest.mark.parametrize("depth", [15.0, 1e-4])
-def test_free_form_walls_are_refused(tmp_path: Path, depth: float) -> None:
-    """However flat; the message names where the curve begins and ends."""
-    said = refusal(tmp_path, bezier_wall(depth))
-    assert "a free-form curve from (60, " in said and "neither a line nor a circle" in said
+def test_free_form_walls_are_refused_without_a_fit(tmp_path: Path) -> None:
+    """The message names the curve and a fit that would do."""
+    said = refusal(tmp_path, bezier_wall())
+    assert re.search(
+        r"curved edge 0 of border 0 at \(60, 40\) is a true curve.*give fit 0\.01 to put \d+ lines and arcs", said
+    )
+    assert "layer" not in said
+
+
+def test_free_form_walls_are_fitted(tmp_path: Path) -> None:
+    """With a fit the area is that under the Bézier curve, and how far it departs is told.
+
+    x = 60 + 45 t (1 - t) (1 - 2 t) and y = 45 t - 5 t³, so that the wall adds the integral of (x - 60) (45 - 15 t²).
+    """
+    t = np.polynomial.Polynomial([0, 1])
+    wall = (45 * t * (1 - t) * (1 - 2 * t) * (45 - 15 * t**2)).integ()
+    loaded = read(tmp_path, bezier_wall(), fit=0.02)
+    part = loaded.workpiece
+    assert 0.001 < part.departure <= 0.02
+    assert area(part) == pytest.approx(2400 + wall(1) - wall(0), abs=part.departure * 50)
+    assert any("in place of 1 curve" in remark for remark in loaded.remarks)
+    assert not any("Not prismatic" in remark for remark in loaded.remarks)
+
+
+def test_free_form_walls_that_are_flat_are_lines(tmp_path: Path) -> None:
+    """Control points 0.1 µm off a line: a line in disguise, whose departure is less than a drawing can mean."""
+    loaded = read(tmp_path, bezier_wall(1e-7))
+    assert len(loaded.workpiece.segments) == 4 and loaded.workpiece.departure == 0
+    assert 1e-5 < read(tmp_path, bezier_wall(1e-4)).workpiece.departure < 1e-4
 
 
 def test_free_form_walls_out_of_sight_do_no_harm(tmp_path: Path) -> None:
@@ -317,12 +342,14 @@ def test_lines_and_circles_saved_as_splines_are_recognised(tmp_path: Path) -> No
     assert area(loaded.workpiece) == pytest.approx(2400 - (4 - pi) * 25 - 36 * pi, rel=1e-9)
     radii = sorted({round(s.radius, 6) for s in loaded.workpiece.segments if isinstance(s, Arc)})
     assert radii == [5, 6]
-    assert loaded.remarks == ("9 free-form edges are lines or circles to within 1e-6 mm and taken as such.",)
+    assert loaded.remarks == ("Read 9 curves as the lines and arcs that they stand for.",)
 
 
 def test_a_silhouette_of_ellipses_is_refused_with_a_remedy(tmp_path: Path) -> None:
     """An oblique cylinder has none of lines and circles; a ring that stands reaches out of its sections."""
-    assert "an ellipse from" in refusal(tmp_path, cylinder(5, 30, (0, 0, 0), (1, 0, 1)))
+    assert "do not make one outline: give another axis, or section" in refusal(
+        tmp_path, cylinder(5, 30, (0, 0, 0), (1, 0, 1))
+    )
     said = refusal(tmp_path, BRepPrimAPI_MakeTorus(20, 5).Solid(), axis="x")
     assert re.search(r"a rounded rim at heights 0 to 50 mm reaches [\d.]+ mm out of", said)
     assert "give section, the height" in said

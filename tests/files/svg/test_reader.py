@@ -82,8 +82,8 @@ def test_a_rect_rounded_to_the_full_is_a_stadium(tmp_path: Path) -> None:
     assert len(part.segments) == 6
     round_one = read_svg(tmp_path, '<rect width="40" height="40" rx="99"/>', MM).workpiece
     assert area(round_one) == pytest.approx(400 * pi, rel=1e-12)
-    with pytest.raises(InputError, match="elliptical corners"):
-        read_svg(tmp_path, '<rect width="60" height="40" rx="30" ry="20"/>', MM)
+    ellipse = read_svg(tmp_path, '<rect width="60" height="40" rx="30" ry="20"/>', MM, fit=0.001).workpiece
+    assert area(ellipse) == pytest.approx(600 * pi, abs=0.001 * 160)
 
 
 @pytest.mark.parametrize(
@@ -166,13 +166,15 @@ def test_transform_functions(tmp_path: Path, text: str, factor: float) -> None:
     assert area(read_svg(tmp_path, body, unit="mm").workpiece) == pytest.approx(factor * (800 + 50 * pi))
 
 
-def test_unequal_scales_are_fine_for_lines_only(tmp_path: Path) -> None:
-    """Skewed lines are lines; skewed arcs are refused by name and place, also those whose axes keep their lengths."""
+def test_unequal_scales_turn_arcs_into_ellipses(tmp_path: Path) -> None:
+    """Skewed lines are lines; skewed arcs, also those whose axes keep their lengths, need a fit."""
     body = '<g transform="skewX(20) scale(2 3)"><rect width="10" height="5"/></g>'
     assert area(read_svg(tmp_path, body, MM).workpiece) == pytest.approx(300)
     for text in ("scale(2 3)", "skewX(20)", "skewY(-3)", "matrix(1 0 0.1 1 0 0)", "matrix(1 0 0.6 0.8 0 0)"):
-        with pytest.raises(InputError, match=r"path 'd' at \(0, 0\) has arcs that its transform turns into ellipses"):
+        with pytest.raises(InputError, match=r"path 'd' segment 2 at \(.*\) is a true curve"):
             read_svg(tmp_path, f'<g transform="{text}">{D}</g>', MM)
+    skewed = read_svg(tmp_path, f'<g transform="matrix(1 0 0.6 0.8 0 0)">{D}</g>', MM, fit=0.001).workpiece
+    assert area(skewed) == pytest.approx(0.8 * (800 + 50 * pi), abs=0.001 * 150)
 
 
 @pytest.mark.parametrize(
@@ -209,12 +211,12 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ('<path id="c" d="M0 0 C 1 1 2 2 3 0 z"/>', r"path 'c' segment 1 is a Bézier curve at \(0, 0\)"),
-        ('<path d="M0 0 h 5 S 2 2 3 0"/>', r"path number 1 \(without id\) segment 2 is a Bézier curve at \(5, 0\)"),
-        ('<path id="q" d="M0 0 q 2 2 3 0"/>', "path 'q' segment 1 is a Bézier"),
-        ('<path id="t" d="M0 0 t 2 2"/>', "path 't' segment 1 is a Bézier"),
-        ('<path id="e" d="M0 0 A 9 5 0 0 1 6 0 z"/>', "path 'e' segment 1 is an elliptical arc"),
-        ('<ellipse id="e" rx="5" ry="3"/>', "ellipse 'e' is an ellipse at"),
+        ('<path id="c" d="M0 0 C 1 1 2 2 3 0 z"/>', r"path 'c' segment 1 at \(0, .*\) is a true curve"),
+        ('<path d="M0 0 h 5 S 2 2 3 0"/>', r"number 1 \(without id\) segment 2 at \(5, .* true curve"),
+        ('<path id="q" d="M0 0 q 2 2 3 0"/>', "path 'q' segment 1 at .* true curve"),
+        ('<path id="t" d="M0 0 q 1 1 2 0 t 2 5"/>', "path 't' segment 1 at .* true curve"),
+        ('<path id="e" d="M0 0 A 9 5 0 0 1 6 0 z"/>', "path 'e' segment 1 at .* true curve"),
+        ('<ellipse id="e" rx="5" ry="3"/>', "ellipse 'e' at .* true curve"),
         ('<path id="p" d="M0 0 h 5 L 3"/>', "path 'p' has path data that cannot be read"),
         ('<path id="p" d="M0 0 h 5 v nonsense"/>', "path 'p' has path data that cannot be read"),
         ('<path id="p" d="L 3 3 z"/>', "path 'p'.*path data"),

@@ -1,4 +1,4 @@
-"""What each DXF entity is as a chain: its points and bulges in the coordinates of the layout or block it stands in.
+"""What each DXF entity is as a chain: its points, bulges and curves in the coordinates of the layout or block it stands in.
 
 Glossary
 --------
@@ -10,23 +10,22 @@ raw chain : points (x, y, z) and bulges before units and block placements.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import cos, radians, sin, tau
+from collections.abc import Callable, Mapping, Sequence
+from math import cos, pi, radians, sin, tau
 from typing import Any
 
-from attrs import frozen
+from attrs import field, frozen
 
 from workhold.conventions import TILT
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
+from workhold.geometry.rational import Pieces, ellipse_pieces, point_at, spline_pieces
 
 __all__ = ["REFUSED", "SHAPES", "RawChain"]
 
 Point3 = tuple[float, float, float]
 
 REFUSED = {
-    "SPLINE": "a spline",
-    "ELLIPSE": "an ellipse",
     "HELIX": "a helix",
     "MLINE": "a multiline",
     "REGION": "a region",
@@ -44,11 +43,16 @@ REFUSED = {
 
 @frozen
 class RawChain:
-    """N + 1 points (x, y, z) and N bulges, in drawing units."""
+    """N + 1 points (x, y, z) and N bulges, in drawing units.
+
+    ``curved`` has the segments that are curves, by their numbers, and ``heights`` the z of what else makes these.
+    """
 
     points: Sequence[Point3]
     bulges: Sequence[float]
     numbered: bool = False
+    curved: Mapping[int, Pieces] = field(factory=dict)
+    heights: Sequence[float] = ()
 
 
 def seen_from_below(entity: Any) -> bool:
@@ -164,10 +168,58 @@ def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple
     return points, bulges[: max(len(points) - 1, 0)]
 
 
+def spline(entity: Any) -> RawChain:
+    """A SPLINE by its control points; its numbers are never in OCS.
+
+    Raises
+    ------
+    InputError
+        For one of fit points alone, through which each program draws another curve, and one whose numbers do not agree.
+    """
+    control = [tuple(map(float, point)) for point in entity.control_points]
+    if not control:
+        raise InputError(
+            "is a spline of fit points alone, through which each program draws another curve: let the CAD program write "
+            "its control points, or convert it to lines and arcs."
+        )
+    weights = list(entity.weights) or None
+    pieces = spline_pieces([point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree))
+    return curve(pieces, [z for _, _, z in control])
+
+
+def ellipse(entity: Any) -> RawChain:
+    """An ELLIPSE or a part of one; its numbers are never in OCS.
+
+    Raises
+    ------
+    InputError
+        When its axes are not those of an ellipse.
+    """
+    seen_from_below(entity)
+    center, major = entity.dxf.center, entity.dxf.major_axis
+    minor = entity.dxf.extrusion.normalize().cross(major) * float(entity.dxf.ratio)
+    if not (abs(minor) > 0 and abs(major) > 0):
+        raise InputError("has an axis without length: delete it, or draw a line.")
+    start = float(entity.dxf.start_param)
+    sweep = (float(entity.dxf.end_param) - start) % tau
+    if min(sweep, tau - sweep) < 1e-9:
+        sweep = 2 * pi
+    pieces = ellipse_pieces((center.x, center.y), (major.x, major.y), (minor.x, minor.y), start, sweep)
+    return curve(pieces, [center.z, center.z + major.z, center.z + minor.z])
+
+
+def curve(pieces: Pieces, heights: Sequence[float]) -> RawChain:
+    """A chain of one curve."""
+    ends = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
+    return RawChain([(x, y, heights[0]) for x, y in ends], [0.0], curved={0: pieces}, heights=heights)
+
+
 SHAPES: dict[str, Callable[[Any], RawChain]] = {
     "LINE": line,
     "ARC": arc,
     "CIRCLE": circle,
     "LWPOLYLINE": lwpolyline,
     "POLYLINE": polyline,
+    "SPLINE": spline,
+    "ELLIPSE": ellipse,
 }

@@ -40,7 +40,13 @@ INSUNITS = {
 
 
 def read_dxf(
-    path: Path, content: bytes, *, unit: str | None, usual_unit: str | None = None, layers: Sequence[str] | None
+    path: Path,
+    content: bytes,
+    *,
+    unit: str | None,
+    usual_unit: str | None = None,
+    layers: Sequence[str] | None,
+    fit: float | None = None,
 ) -> Drawing:
     """Read the outline entities of a DXF file's model space.
 
@@ -51,6 +57,7 @@ def read_dxf(
     unit : overrides the file's unit.
     usual_unit : the unit of a file that does not say.
     layers : layers to read; all visible ones when None.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
 
     Raises
     ------
@@ -62,10 +69,10 @@ def read_dxf(
     # Into a file without a header ezdxf writes one of its own, with metres in it.
     code = document.header.get("$INSUNITS", 0) if b"$INSUNITS" in content else 0
     scale, unit_remarks = scale_of(code, unit, usual_unit)
-    walk = Walk(document, layers)
+    walk = Walk(document, layers, fit)
     walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
     walk.refuse_missing_layers()
-    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()))
+    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()), walk.curves.found)
 
 
 def refuse_other_formats(content: bytes) -> None:

@@ -18,6 +18,7 @@ from workhold.conventions import LEVEL
 from workhold.errors import InputError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, counted, listed
+from workhold.files.outline.curves import Curves
 from workhold.files.outline.placement import Placement
 from workhold.files.questions import LAYERS
 
@@ -53,8 +54,9 @@ class Nest:
 class Walk:
     """Collects the chains of a document's entities, and what was left out."""
 
-    def __init__(self, document: Any, layers: Sequence[str] | None) -> None:
+    def __init__(self, document: Any, layers: Sequence[str] | None, fit: float | None = None) -> None:
         self.document = document
+        self.curves = Curves(fit)
         self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
@@ -127,7 +129,7 @@ class Walk:
         Raises
         ------
         InputError
-            For kinds that are refused, entities out of the plane, and arcs that a placement makes elliptical.
+            For kinds that are refused, and entities out of the plane.
         """
         if kind in REFUSED:
             x, y = placement(place_of(entity))
@@ -139,16 +141,12 @@ class Walk:
         if not raw.bulges:
             raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
         self.check_level(raw, placement, label)
-        points = tuple(placement(point) for point in raw.points)
-        if any(raw.bulges) and not placement.keeps_circles:
-            x, y = points[0]
-            raise InputError(
-                f"{label} at ({x:.6g}, {y:.6g}) has arcs that unequal scales turn into ellipses: give the block equal "
-                "scales, or explode it and redraw the arcs."
-            )
         count = len(raw.bulges)
         labels = tuple(numbered(label, k) for k in range(count)) if raw.numbered and count > 1 else (label,) * count
-        self.chains.append(Chain(points, placement.bulges(raw.bulges), labels))
+        chain = self.curves.chain(raw.points, raw.bulges, labels, raw.curved, placement)
+        if chain is None:
+            chain = Chain((placement(raw.points[0]),) * 2, (0.0,), (label,))
+        self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
         """Refuse entities that are not level, or lie at another height than those before.
@@ -158,7 +156,7 @@ class Walk:
         InputError
             Naming both heights.
         """
-        for _, _, z in raw.points:
+        for z in (*(z for _, _, z in raw.points), *raw.heights):
             height = placement.height_scale * z + placement.height
             if self.level is None:
                 self.level = (height, label)

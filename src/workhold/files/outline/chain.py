@@ -12,17 +12,18 @@ drawing : what a file held: chains in mm, and remarks for the user.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import copysign, hypot, isfinite, pi, sqrt, tan
 
-from attrs import frozen
+from attrs import field, frozen
 
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
+from workhold.geometry.rational import Pieces
 from workhold.geometry.segment import Point
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["Chain", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
+__all__ = ["Chain", "CurveReading", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
 
 # How many places a remark names before it only counts.
 NAMED = 10
@@ -60,6 +61,26 @@ class Chain:
 
 
 @frozen
+class CurveReading:
+    """How a curve was read.
+
+    Parameters
+    ----------
+    place : where it begins, in mm.
+    departure : bound of the distance between it and its lines and arcs, in mm.
+    is_disguise : whether it is lines and arcs but for a hair, see ``geometry.curve_fit``.
+    pieces : the curve itself, in mm.
+    arcs : how many lines and arcs stand for it.
+    """
+
+    place: Point
+    departure: float
+    is_disguise: bool
+    pieces: Pieces
+    arcs: int
+
+
+@frozen
 class Drawing:
     """What a drawing file held.
 
@@ -67,10 +88,12 @@ class Drawing:
     ----------
     chains : open and closed chains, in mm.
     remarks : what the user should know, one sentence each.
+    curves : how the curves among them were read, by their labels.
     """
 
     chains: tuple[Chain, ...]
     remarks: tuple[str, ...] = ()
+    curves: Mapping[str, CurveReading] = field(factory=dict)
 
 
 def arc_bulges(sweep: float) -> list[float]:

@@ -20,6 +20,7 @@ class WorkpieceForm(BaseModel):
 
     name: str | None = None
     units: str
+    departure: FiniteFloat | None = Field(default=None, ge=0)
     loops: list[list[Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]]] = Field(min_length=1)
 
 
@@ -45,6 +46,8 @@ def in_words(error: ValidationError) -> str:
         return 'The workpiece gives no units: write "units": "mm" or "units": "inch".'
     if place == ["loops"]:
         return 'The workpiece has no loops: write "loops": [[[x, y, bulge], ...], ...], the outer loop first.'
+    if place == ["departure"]:
+        return 'The workpiece\'s "departure" must be a length, 0 or more.'
     if place == ["name"]:
         return 'The workpiece\'s "name" must be text.'
     # Numbers in messages are those of the file: loops and vertices count from 0.

@@ -16,10 +16,11 @@ __all__ = ["JsonWorkpiece", "read_json"]
 
 @frozen
 class JsonWorkpiece:
-    """Name (None when the file gives none) and loops as rows x, y (mm) and bulge."""
+    """Name (None when the file gives none), loops as rows x, y (mm) and bulge, how far these depart from a drawing in mm."""
 
     name: str | None
     loops: list[list[tuple[float, float, float]]]
+    departure: float = 0.0
 
 
 def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
@@ -49,4 +50,4 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
     scale = unit_named(units).millimetres
     loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
-    return JsonWorkpiece(content.get("name"), loops)
+    return JsonWorkpiece(content.get("name"), loops, scale * (content.get("departure") or 0.0))

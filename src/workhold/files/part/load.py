@@ -11,11 +11,12 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing, cleaned
+from workhold.files.outline.curves import checked_fit, curve_remarks, refuse_true_curves
 from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
-from workhold.files.questions import AXIS, DRAWING_UNIT, LAYERS, PART_NUMBER, SECTION, worded
+from workhold.files.questions import AXIS, DRAWING_UNIT, FIT, LAYERS, PART_NUMBER, SECTION, worded
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 
@@ -51,6 +52,7 @@ def load(
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
     join_tolerance: float = 1e-3,
+    fit: float | None = None,
     axis: str | None = None,
     section: float | None = None,
 ) -> Workpiece:
@@ -63,6 +65,8 @@ def load(
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when None.
     join_tolerance : largest gap between loose ends to close, in mm.
+    fit : how far lines and arcs may be from splines, ellipses and Bézier curves that they are put in place of, in mm; None
+        refuses those that are no lines or arcs. The workpiece's ``departure`` tells how far they are.
     axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None.
     section : take the section of a STEP file's solid at this height in mm above its lowest point, not its silhouette.
 
@@ -84,6 +88,7 @@ def load(
         layers=layers,
         part_number=part_number,
         join_tolerance=join_tolerance,
+        fit=fit,
         axis=axis,
         section=section,
     ).workpiece
@@ -97,6 +102,7 @@ def read_workpiece(
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
     join_tolerance: float = 1e-3,
+    fit: float | None = None,
     axis: str | None = None,
     section: float | None = None,
     called: Mapping[str, str] | None = None,
@@ -116,6 +122,7 @@ def read_workpiece(
     """
     if not (isfinite(join_tolerance) and join_tolerance >= 0):
         raise InputError(f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more.")
+    checked_fit(fit)
     for name in (unit, usual_unit):
         if name is not None:
             unit_named(name)
@@ -124,23 +131,24 @@ def read_workpiece(
         content = read_bytes(path)
         kind = kind_of(path, content)
         if kind == "step":
-            loaded = from_step(path, content, unit, layers, part_number, axis, section)
+            loaded = from_step(path, content, unit, layers, part_number, axis, section, fit)
         else:
             refuse_axis(axis, section)
             if kind == "json":
+                refuse_fit(fit)
                 own = path == builtin_path(path.stem)
                 loaded = from_json(path, content, unit, layers, part_number, own)
             elif kind == "dxf":
                 from workhold.files.dxf.reader import read_dxf
 
-                drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers)
-                loaded = from_drawing(path, drawing, part_number, join_tolerance)
+                drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
+                loaded = from_drawing(path, drawing, part_number, join_tolerance, fit, layered=True)
             else:
                 refuse_layers(layers)
                 from workhold.files.svg.reader import read_svg
 
-                drawing = read_svg(content, unit=unit, usual_unit=usual_unit)
-                loaded = from_drawing(path, drawing, part_number, join_tolerance)
+                drawing = read_svg(content, unit=unit, usual_unit=usual_unit, fit=fit)
+                loaded = from_drawing(path, drawing, part_number, join_tolerance, fit)
     except InputError as error:
         raise InputError(f"{path.name}: {worded(str(error), called)}") from error
     return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
@@ -233,6 +241,18 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
         raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
 
 
+def refuse_fit(fit: float | None) -> None:
+    """Refuse a fit for a file that holds lines and arcs only.
+
+    Raises
+    ------
+    InputError
+        When a fit was given.
+    """
+    if fit is not None:
+        raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
+
+
 def refuse_axis(axis: str | None, section: float | None) -> None:
     """Refuse a view of a solid for a file that holds a flat drawing.
 
@@ -269,7 +289,7 @@ def from_json(
     name = read.name or path.stem
     rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
     refuse_large(sum(len(loop) for loop in rows))
-    workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False)
+    workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False, departure=read.departure)
     part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
     chosen_part(part, part_number)
     return Loaded(workpiece, workpiece.remarks, part)
@@ -283,6 +303,7 @@ def from_step(
     part_number: int | None,
     axis: str | None,
     section: float | None,
+    fit: float | None,
 ) -> Loaded:
     """A workpiece from the bytes of a STEP file.
 
@@ -296,17 +317,25 @@ def from_step(
     refuse_layers(layers)
     if unit is not None:
         raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
-    drawing = read_step_apart(content, axis=axis, section_height=section, part_number=part_number)
-    return from_drawing(path, drawing, None, 0.0)
+    drawing = read_step_apart(content, axis=axis, section_height=section, part_number=part_number, fit=fit)
+    return from_drawing(path, drawing, None, 0.0, fit)
 
 
-def from_drawing(path: Path, drawing: Drawing, part_number: int | None, tolerance: float) -> Loaded:
-    """A workpiece from a drawing's chains.
+def from_drawing(
+    path: Path,
+    drawing: Drawing,
+    part_number: int | None,
+    tolerance: float,
+    fit: float | None,
+    *,
+    layered: bool = False,
+) -> Loaded:
+    """A workpiece from a drawing's chains; ``layered`` tells whether its layers can be chosen.
 
     Raises
     ------
     InputError
-        When no usable closed outline remains.
+        When no usable closed outline remains, or one with curves that nobody has allowed to be replaced.
     """
     clean = cleaned(drawing.chains)
     joined = join(clean.chains, tolerance)
@@ -317,16 +346,20 @@ def from_drawing(path: Path, drawing: Drawing, part_number: int | None, toleranc
     if part_number is None:
         refuse_open_outline(part, joined.strays)
     refuse_large(part.segment_count)
+    labels = [label for loop in part.loops for label in loop.labels]
+    refuse_true_curves(labels, drawing.curves, fit, layered)
+    departure, of_curves = curve_remarks(labels, drawing.curves)
     try:
-        workpiece = built(path.stem, part.loops)
+        workpiece = built(path.stem, part.loops, departure=departure)
         refuse_loops_across(part, [other for other in parts if other is not part])
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
-    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *workpiece.remarks, *stray_remarks(joined.strays))
+    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *workpiece.remarks)
+    remarks += tuple(stray_remarks(joined.strays))
     return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts)
 
 
-def built(name: str, loops: Sequence[Loop], with_labels: bool = True) -> Workpiece:
+def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure: float = 0.0) -> Workpiece:
     """Build the workpiece; its complaints lose the part's name, since the file's name stands before them.
 
     Raises
@@ -336,7 +369,7 @@ def built(name: str, loops: Sequence[Loop], with_labels: bool = True) -> Workpie
     """
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
-        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels)
+        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure)
     except InputError as error:
         raise InputError(str(error).replace(f"{name}: ", "")) from error
 

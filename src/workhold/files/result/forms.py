@@ -51,6 +51,7 @@ class WorkpiecePart(Part):
     name: str
     units: Literal["mm"]
     loops: list[list[list[float]]]
+    departure: float = 0.0
 
 
 class VisePart(Part):
@@ -149,6 +150,7 @@ class TolerancePart(Part):
     peg: float
     face: float
     fit: FitPart | None = None
+    departure: float = 0.0
 
     def tolerance(self) -> Tolerance:
         """The tolerance.
@@ -158,7 +160,7 @@ class TolerancePart(Part):
         InputError
             When it is none.
         """
-        return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit())
+        return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
 class LoadPart(Part):
@@ -269,7 +271,7 @@ class Head(Part):
             When a part of it cannot be.
         """
         return Query(
-            Workpiece.from_loops(self.workpiece.name, self.workpiece.loops),
+            Workpiece.from_loops(self.workpiece.name, self.workpiece.loops, departure=self.workpiece.departure),
             self.asked_toolkit(),
             self.types,
             contact_margin=self.contact_margin,

@@ -151,6 +151,7 @@ def head(result: Result) -> dict[str, Any]:
             "name": query.workpiece.name,
             "units": "mm",
             "loops": [(loop + 0.0).tolist() for loop in query.workpiece.loops],
+            "departure": query.workpiece.departure,
         },
         **toolkit_entry(query.toolkit),
         "types": list(query.arrangements),
@@ -177,9 +178,9 @@ def head(result: Result) -> dict[str, Any]:
 
 
 def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:
-    """How far pegs and faces may be off, and the fit of the dowels where it is known."""
+    """How far pegs and faces may be off, the fit of the dowels where it is known, and what of the faces is departure."""
     fit = None if tolerance.fit is None else asdict(tolerance.fit)
-    return {"peg": tolerance.peg, "face": tolerance.face, "fit": fit}
+    return {"peg": tolerance.peg, "face": tolerance.face, "fit": fit, "departure": tolerance.departure}
 
 
 def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:

@@ -41,6 +41,7 @@ class Outline:
     area : in mm².
     low, high : z of the solid's lowest and highest point, in mm.
     insets, overhangs : of each face, in mm.
+    departure : how far lines and arcs may be from curves of the border, in mm; a face may lie off them by as much.
     """
 
     area: float
@@ -48,6 +49,7 @@ class Outline:
     high: float
     insets: tuple[float, ...]
     overhangs: tuple[float, ...]
+    departure: float = 0.0
 
     @classmethod
     def of(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
@@ -59,10 +61,11 @@ class Outline:
             When the borders do not enclose one region of that area, so that the library's work cannot be right.
         """
         parts = nest([closed_loop(chain) for chain in edges.chains])
-        tolerance = FREE_AREA if edges.recognised else 1e-6
-        if len(parts) != 1 or abs(parts[0].area - area) > tolerance * area:
+        allowed = (FREE_AREA if edges.curves else 1e-6) * area + edges.departure * lengths_of(parts)
+        if len(parts) != 1 or abs(parts[0].area - area) > allowed:
             raise InputError(
-                f"the sections of the solid do not make one outline: repair it in the CAD program, or give {SECTION}."
+                f"the sections of the solid do not make one outline: give another {AXIS}, or {SECTION}, or repair the solid "
+                "in the CAD program."
             )
         rows = oriented_rows(parts[0])
         insets, overhangs = [], []
@@ -73,7 +76,13 @@ class Outline:
             insets.append(float(np.where(inside, away, 0.0).max(initial=0.0)))
             overhangs.append(float(np.where(inside, 0.0, away).max(initial=0.0)))
         low, high = min(face.low for face in faces), max(face.high for face in faces)
-        return cls(area, low, high, tuple(insets), tuple(overhangs))
+        return cls(area, low, high, tuple(insets), tuple(overhangs), edges.departure)
+
+
+def lengths_of(parts: Sequence[Part]) -> float:
+    """Length of all loops of some parts, in mm."""
+    loops = [loop for part in parts for loop in part.loops]
+    return sum(segment.length for loop in loops for segment in loop_segments(loop.vertices))
 
 
 def oriented_rows(part: Part) -> NDArray[np.float64]:
@@ -96,7 +105,7 @@ def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, ax
         Naming the face that reaches farthest out, and the remedy.
     """
     worst = int(np.argmax(outline.overhangs))
-    if outline.overhangs[worst] <= OVERHANG:
+    if outline.overhangs[worst] <= OVERHANG + outline.departure:
         return
     face = faces[worst]
     another = other_axis(solid, axis, f", or {AXIS} ")
@@ -119,12 +128,16 @@ def departure_remarks(
     """What is not prismatic about a part, how far it departs, and where pegs have to touch; nothing for a prism."""
     groups = departures(outline, faces)
     chosen = section_height is not None
-    if not groups and max(outline.overhangs) <= OVERHANG:
+    if not groups and max(outline.overhangs) <= OVERHANG + outline.departure:
         return ["The part is prismatic: its section is the same at every height."] if chosen else []
     remarks = [f"Not prismatic along {axis}: {listed(groups)}."] if groups else []
     if chosen:
         over = max(outline.overhangs)
-        reach = f", and at other heights the part reaches up to {over:.3g} mm out of it" if over > OVERHANG else ""
+        reach = (
+            f", and at other heights the part reaches up to {over:.3g} mm out of it"
+            if over > OVERHANG + outline.departure
+            else ""
+        )
         remarks.append(f"The outline is the section at height {section_height:g} mm{reach}: pegs have to touch there.")
     else:
         remarks.append(silhouette_remark(outline, layers, shape))
@@ -138,7 +151,7 @@ def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
     """Faces that are no part of the outline, alike ones together, deepest first."""
     together: dict[tuple[str, str], list[float]] = defaultdict(list)
     for face, inset, overhang in zip(faces, outline.insets, outline.overhangs, strict=True):
-        if face.lie != "level" and (face.lie == "leaning" or inset > DEPARTS):
+        if face.lie != "level" and (face.lie == "leaning" or inset > DEPARTS + outline.departure):
             together[face.kind, heights(outline, face)].append(max(inset, overhang))
     ordered = sorted(together.items(), key=lambda item: (-max(item[1]), item[0]))
     return [

@@ -17,7 +17,7 @@ import numpy as np
 from workhold.conventions import EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
-from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
 from workhold.files.step.library import load_step_library
@@ -41,7 +41,11 @@ def read_step_apart(content: bytes, **options: Any) -> Drawing:
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels)) for points, bulges, labels in told[0]
     ]
-    return Drawing(tuple(chains), tuple(told[1]))
+    curves = {
+        label: CurveReading((x, y), departure, is_disguise, np.array(pieces), arcs)
+        for label, (x, y), departure, is_disguise, pieces, arcs in told[2]
+    }
+    return Drawing(tuple(chains), tuple(told[1]), curves)
 
 
 def prepare() -> None:
@@ -68,11 +72,21 @@ def plain(content: bytes, **options: Any) -> Any:
         if not type(error).__module__.startswith("OCP"):
             raise
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
-    return [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains], drawing.remarks
+    chains = [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains]
+    curves = [
+        [label, one.place, one.departure, one.is_disguise, one.pieces.tolist(), one.arcs]
+        for label, one in drawing.curves.items()
+    ]
+    return chains, drawing.remarks, curves
 
 
 def read_step(
-    content: bytes, *, axis: str | None = None, section_height: float | None = None, part_number: int | None = None
+    content: bytes,
+    *,
+    axis: str | None = None,
+    section_height: float | None = None,
+    part_number: int | None = None,
+    fit: float | None = None,
 ) -> Drawing:
     """Read the outline of a solid in a STEP file.
 
@@ -83,11 +97,12 @@ def read_step(
         the axis's far end: x and y of the outline are y and z of the file for "x", z and x for "y", x and y for "z".
     section_height : take the section at this height in mm above the part's lowest point, instead of the silhouette.
     part_number : which solid to take of several, from 1 by decreasing volume; the largest when None.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
 
     Raises
     ------
     InputError
-        For files that cannot be read, and parts whose outline is not made of lines and circles.
+        For files that cannot be read, and parts whose silhouette is not that of their upright faces.
     """
     axis = "z" if axis is None else axis.strip().lower()
     if axis not in AXES:
@@ -102,7 +117,7 @@ def read_step(
         region = silhouette(shape, solid.volume, faces, layers)
     else:
         region = chosen_section(shape, faces, section_height)
-    edges = borders(region)
+    edges = borders(region, fit)
     outline = Outline.of(edges, area_of(region), faces)
     if section_height is None:
         refuse_overhang(outline, faces, solid.shape, axis)
@@ -112,7 +127,7 @@ def read_step(
         *border_remarks(edges),
         *departure_remarks(outline, faces, layers, shape, solid.shape, axis, section_height),
     ]
-    return Drawing(edges.chains, tuple(remarks))
+    return Drawing(edges.chains, tuple(remarks), edges.curves)
 
 
 def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
@@ -206,13 +221,6 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
 def border_remarks(edges: Borders) -> list[str]:
     """What was done to the borders."""
     remarks = []
-    if edges.recognised:
-        count = (
-            "1 free-form edge is a line or circle"
-            if edges.recognised == 1
-            else (f"{edges.recognised} free-form edges are lines or circles")
-        )
-        remarks.append(f"{count} to within 1e-6 mm and taken as such.")
     if edges.gap > EDGE_GAP:
         remarks.append(f"Closed gaps of up to {edges.gap:.2g} mm between edges of the outline.")
     return remarks

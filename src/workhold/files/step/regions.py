@@ -5,25 +5,23 @@ A region is an Open CASCADE shape of one or more flat faces at z = 0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import atan2, dist, hypot, pi
+from collections.abc import Mapping, Sequence
+from math import dist, hypot
 from typing import Any
 
 import numpy as np
 from attrs import frozen
-from numpy.typing import NDArray
 
-from workhold.conventions import SAME_CURVE, SHORTEST
+from workhold.conventions import SHORTEST
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, arc_bulges, at, rebulged
-from workhold.files.questions import AXIS, SECTION
+from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
+from workhold.files.outline.curves import Curves
+from workhold.files.questions import SECTION
+from workhold.files.step.free_form import edge_curve
 from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.geometry.segment import Point
 
 __all__ = ["Borders", "area_of", "borders", "level_region", "section", "union"]
-
-# Points by which a free-form edge is compared with a line and a circle.
-CURVE_POINTS = 33
 
 
 @frozen
@@ -33,13 +31,18 @@ class Borders:
     Parameters
     ----------
     chains : closed chains in mm.
-    recognised : how many edges were free-form curves that are lines or circles to within 1e-6 mm.
+    curves : how the edges that are curves were read, by their labels.
     gap : largest gap between consecutive edges, in mm, that was closed.
     """
 
     chains: tuple[Chain, ...]
-    recognised: int
+    curves: Mapping[str, CurveReading]
     gap: float
+
+    @property
+    def departure(self) -> float:
+        """How far the chains may be from the region's border, in mm."""
+        return max((one.departure for one in self.curves.values()), default=0.0)
 
 
 def section(solid: Any, z: float) -> Any:
@@ -121,27 +124,31 @@ def union(regions: Sequence[Any]) -> Any:
     return whole
 
 
-def borders(region: Any) -> Borders:
+def borders(region: Any, fit: float | None = None) -> Borders:
     """The borders of a region as closed chains of lines and arcs.
+
+    Parameters
+    ----------
+    fit : how far they may be from curves that are neither, see ``files.outline.curves``.
 
     Raises
     ------
     InputError
-        For a curve that is neither a line nor a circle, naming its ends.
+        For an edge that cannot be read.
     """
     chains: list[Chain] = []
-    recognised, gap = 0, 0.0
+    curves = Curves(fit)
+    gap = 0.0
     for wire in sub_shapes(region, "WIRE"):
-        pieces = []
+        pieces: list[Piece] = []
         for edge in wire_edges(wire):
-            piece, was_free = edge_piece(edge)
+            piece = edge_piece(edge, curves, f"curved edge {len(pieces)} of border {len(chains)}")
             if piece is not None:
                 pieces.append(piece)
-                recognised += was_free
         chain, chain_gap = closed(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
-    return Borders(tuple(chains), recognised, gap)
+    return Borders(tuple(chains), curves.found, gap)
 
 
 def wire_edges(wire: Any) -> list[Any]:
@@ -156,18 +163,17 @@ def wire_edges(wire: Any) -> list[Any]:
     return edges
 
 
-Piece = tuple[list[Point], list[float]]
+# Points, bulges and what messages call the curve that they stand for; None for a line and an arc.
+Piece = tuple[list[Point], list[float], str | None]
 
 
-def edge_piece(edge: Any) -> tuple[Piece | None, bool]:
-    """An edge as points and bulges in the direction its wire runs, and whether it was a free-form curve.
-
-    None for an edge of zero length.
+def edge_piece(edge: Any, curves: Curves, label: str) -> Piece | None:
+    """An edge in the direction its wire runs; None for an edge of zero length.
 
     Raises
     ------
     InputError
-        For a curve that is neither a line nor a circle.
+        For an edge that cannot be read.
     """
     from OCP.BRepAdaptor import BRepAdaptor_Curve
     from OCP.GeomAbs import GeomAbs_CurveType
@@ -176,21 +182,23 @@ def edge_piece(edge: Any) -> tuple[Piece | None, bool]:
     curve = BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
-    free = False
+    name = None
     if kind == GeomAbs_CurveType.GeomAbs_Line:
-        piece = line_piece(points_of(curve, [first, last]))
+        points, bulges = points_of(curve, [first, last]), [0.0]
+        if dist(points[0], points[-1]) < SHORTEST:
+            return None
     elif kind == GeomAbs_CurveType.GeomAbs_Circle:
         up = curve.Circle().Axis().Direction().Z()
         bulges = arc_bulges((last - first) * (1.0 if up > 0 else -1.0))
-        piece = points_of(curve, list(np.linspace(first, last, len(bulges) + 1))), bulges
+        points = points_of(curve, list(np.linspace(first, last, len(bulges) + 1)))
     else:
-        free = True
-        piece = recognised_piece(points_of(curve, list(np.linspace(first, last, CURVE_POINTS))), str(kind.name))
-    if piece is None:
-        return None, False
+        read = curves.read(edge_curve(edge), label)
+        if read is None:
+            return None
+        name, points, bulges = label, list(read[0]), list(read[1])
     if edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
-        piece = piece[0][::-1], [-bulge if bulge else 0.0 for bulge in reversed(piece[1])]
-    return piece, free
+        points, bulges = points[::-1], [-bulge if bulge else 0.0 for bulge in reversed(bulges)]
+    return points, bulges, name
 
 
 def points_of(curve: Any, parameters: Sequence[float]) -> list[Point]:
@@ -199,87 +207,19 @@ def points_of(curve: Any, parameters: Sequence[float]) -> list[Point]:
     return [(value.X(), value.Y()) for value in values]
 
 
-def line_piece(points: list[Point]) -> Piece | None:
-    """A straight piece, or None when it has no length."""
-    return (points, [0.0]) if dist(points[0], points[-1]) >= SHORTEST else None
-
-
-def recognised_piece(points: list[Point], name: str) -> Piece | None:
-    """The line or circle that a free-form curve is.
-
-    Raises
-    ------
-    InputError
-        When it is neither.
-    """
-    array = np.array(points)
-    if float(np.hypot(*(array - array[0]).T).max()) < SHORTEST:
-        return None
-    if is_straight(array):
-        return line_piece([points[0], points[-1]])
-    arc = arc_through(array)
-    if arc is not None:
-        return arc
-    what = "an ellipse" if name.endswith("Ellipse") else "a free-form curve"
-    raise InputError(
-        f"the outline has {what} from {at(points[0])} over {at(points[len(points) // 2])} to {at(points[-1])}, which is "
-        f"neither a line nor a circle: replace it by lines and arcs in the CAD program, or look along another {AXIS}."
-    )
-
-
-def is_straight(points: NDArray[np.float64]) -> bool:
-    """Whether (N, 2) points lie on the line from the first to the last, in order."""
-    chord = points[-1] - points[0]
-    length = float(np.hypot(*chord))
-    if length < SHORTEST:
-        return False
-    away = points - points[0]
-    off = np.abs(away[:, 0] * chord[1] - away[:, 1] * chord[0]) / length
-    return bool(off.max() <= SAME_CURVE and (np.diff(away @ chord) > 0).all())
-
-
-def arc_through(points: NDArray[np.float64]) -> Piece | None:
-    """The circular arc through (N, 2) points in order, or None when they lie on none."""
-    third = len(points) // 3
-    a, b, c = points[0], points[third], points[2 * third]
-    (bx, by), (cx, cy) = b - a, c - a
-    twice = 2 * (bx * cy - by * cx)
-    if twice == 0:
-        return None
-    center = (
-        a
-        + np.array([cy * (b - a) @ (b - a) - by * (c - a) @ (c - a), bx * (c - a) @ (c - a) - cx * (b - a) @ (b - a)])
-        / twice
-    )
-    radii = np.hypot(*(points - center).T)
-    if float(np.ptp(radii)) > SAME_CURVE:
-        return None
-    angles = [atan2(y - center[1], x - center[0]) for x, y in points]
-    steps = np.diff(angles)
-    steps = (steps + pi) % (2 * pi) - pi
-    if not ((steps > 0).all() or (steps < 0).all()):
-        return None
-    bulges = arc_bulges(float(steps.sum()))
-    middle = [points[len(points) // 2]] if len(bulges) == 2 else []
-    ends = [(float(x), float(y)) for x, y in (points[0], *middle, points[-1])]
-    if len(bulges) == 2:
-        half = float(steps[: len(points) // 2].sum())
-        bulges = [arc_bulges(half)[0], arc_bulges(float(steps.sum()) - half)[0]]
-    return ends, bulges
-
-
 def closed(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
     """One closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
     points: list[Point] = []
     bulges: list[float] = []
     gap = 0.0
-    for k, (own, own_bulges) in enumerate(pieces):
+    labels: list[str] = []
+    for k, (own, own_bulges, name) in enumerate(pieces):
         following = pieces[(k + 1) % len(pieces)][0][0]
         end = own[-1]
         step = hypot(following[0] - end[0], following[1] - end[1])
         gap = max(gap, step)
         points += own[:-1]
         last = own_bulges[-1] if step == 0 else rebulged(own[-2], end, own_bulges[-1], own[-2], following)
+        labels += [name or f"edge {len(bulges)} of border {number}"] * len(own_bulges)
         bulges += [*own_bulges[:-1], last]
-    labels = tuple(f"edge {k} of border {number}" for k in range(len(bulges)))
-    return Chain((*points, points[0]), tuple(bulges), labels), gap
+    return Chain((*points, points[0]), tuple(bulges), tuple(labels)), gap

@@ -1,4 +1,4 @@
-"""Paths of lines and circular arcs: path data as chains. svgelements resolves relative and shortened commands."""
+"""Paths of lines, arcs and Bézier curves: path data as chains. svgelements resolves relative and shortened commands."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
 from workhold.files.svg.lengths import NUMBER, Figure
-from workhold.files.svg.shape import Shape, near, refused
+from workhold.files.svg.shape import Shape, near
+from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
 from workhold.geometry.segment import Point
 
 __all__ = ["path"]
@@ -31,7 +32,7 @@ def path(figure: Figure) -> Iterator[Shape]:
     Raises
     ------
     InputError
-        For Bézier curves, elliptical arcs, and path data that cannot be read.
+        For path data that cannot be read.
     """
     from svgelements import Path
 
@@ -43,14 +44,22 @@ def path(figure: Figure) -> Iterator[Shape]:
     points: list[Point] = []
     bulges: list[float] = []
     labels: list[str] = []
+    curved: dict[int, Pieces] = {}
     for number, segment in enumerate(segments):
         kind = type(segment).__name__
         if kind == "Move":
             if bulges:
-                yield Shape(tuple(points), tuple(bulges), tuple(labels))
-            points, bulges, labels = [xy(segment.end, label)], [], []
+                yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
+            points, bulges, labels, curved = [xy(segment.end, label)], [], [], {}
             continue
         name = f"{label} segment {number}"
+        curve = curve_of(segment, kind, name)
+        if curve is not None:
+            curved[len(bulges)] = curve
+            points.append(xy(segment.end, name))
+            bulges.append(0.0)
+            labels.append(name)
+            continue
         for end, bulge in path_segment(segment, kind, name):
             # Closing a path that is back at its start adds nothing.
             if not (kind == "Close" and near(end, points[-1])):
@@ -59,10 +68,10 @@ def path(figure: Figure) -> Iterator[Shape]:
                 labels.append(name)
         if kind == "Close":
             if bulges:
-                yield Shape(tuple(points), tuple(bulges), tuple(labels))
-            points, bulges, labels = [points[-1]], [], []
+                yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
+            points, bulges, labels, curved = [points[-1]], [], [], {}
     if bulges:
-        yield Shape(tuple(points), tuple(bulges), tuple(labels))
+        yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
 
 
 def path_data(figure: Figure) -> str:
@@ -116,24 +125,19 @@ def plain_commands(data: str) -> Iterator[str]:
 
 
 def path_segment(segment: Any, kind: str, label: str) -> list[tuple[Point, float]]:
-    """End points and bulges of one path command.
+    """End points and bulges of one path command that is no curve.
 
     Raises
     ------
     InputError
-        For Bézier curves and elliptical arcs.
+        For numbers that are missing or not finite.
     """
     if kind in ("Line", "Close"):
         return [(xy(segment.end, label), 0.0)]
-    start = xy(segment.start, label)
-    if kind != "Arc":
-        raise refused(label, "is a Bézier curve", start)
-    end = xy(segment.end, label)
+    start, end = xy(segment.start, label), xy(segment.end, label)
     if end == start:
         return []  # SVG 2, 9.5.1
-    radius, other = float(segment.rx), float(segment.ry)
-    if not abs(radius - other) <= CIRCULAR * max(radius, other):
-        raise refused(label, "is an elliptical arc", start)
+    radius = float(segment.rx)
     sweep = arc_sweep(start, end, radius, float(segment.sweep))
     bulges = arc_bulges(sweep)
     if len(bulges) == 1:
@@ -142,6 +146,30 @@ def path_segment(segment: Any, kind: str, label: str) -> list[tuple[Point, float
     c, s = cos(sweep / 2), sin(sweep / 2)
     dx, dy = start[0] - cx, start[1] - cy
     return [((cx + c * dx - s * dy, cy + s * dx + c * dy), bulges[0]), (end, bulges[1])]
+
+
+def curve_of(segment: Any, kind: str, label: str) -> Pieces | None:
+    """A Bézier curve or the arc of an ellipse; None for a line and the arc of a circle.
+
+    Raises
+    ------
+    InputError
+        For numbers that are missing or not finite.
+    """
+    if kind in ("Line", "Close"):
+        return None
+    start, end = xy(segment.start, label), xy(segment.end, label)
+    if kind == "Arc":
+        radius, other = float(segment.rx), float(segment.ry)
+        if end == start or abs(radius - other) <= CIRCULAR * max(radius, other):
+            return None
+        center = xy(segment.center, label)
+        major, minor = ((x - center[0], y - center[1]) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
+        pieces = ellipse_pieces(center, major, minor, float(segment.get_start_t()), float(segment.sweep))
+        pieces[0, 0], pieces[-1, -1] = (*start, 1.0), (*end, 1.0)
+        return pieces
+    between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
+    return polynomial_pieces([start, *(xy(point, label) for point in between), end])
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:

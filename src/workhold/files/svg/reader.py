@@ -26,7 +26,7 @@ from workhold.model.units import unit_named
 __all__ = ["read_svg"]
 
 
-def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None) -> Drawing:
+def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None) -> Drawing:
     """Read the visible outlines of an SVG file.
 
     Parameters
@@ -34,25 +34,26 @@ def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None)
     content : the file's bytes.
     unit : what one user unit is; None to go by the file's physical size.
     usual_unit : what it is in a file without a physical size.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
 
     Raises
     ------
     InputError
-        For files that are no SVG, unknown units, Bézier curves, ellipses, and values that make no sense.
+        For files that are no SVG, unknown units, and values that make no sense.
     """
     document = read_document(content)
     styles = Styles(document)
     root = Figure(document.root, document.name(document.root), styles.of(document.root), (None, None))
     box = viewbox_of(document.root.get("viewBox"), root.label)
     placement, remarks = page(root, box, unit, usual_unit)
-    walk = SvgWalk(document, styles)
+    walk = SvgWalk(document, styles, fit)
     viewport = (box[2], box[3]) if box is not None else (pixels(root, "width"), pixels(root, "height"))
     walk.visit(document.root, Nest(placement, viewport))
     if walk.hidden and not walk.chains:
         raise InputError(
             "no shape of the drawing is seen: each is switched off, transparent, or without fill and stroke."
         )
-    return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()))
+    return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()), walk.curves.found)
 
 
 def page(root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | None) -> tuple[Placement, list[str]]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import pi, tan
+from math import cos, pi, tan
+
+import numpy as np
 
 from workhold.conventions import CIRCULAR
 from workhold.errors import InputError
 from workhold.files.svg.lengths import Figure, numbers
 from workhold.files.svg.path import path
-from workhold.files.svg.shape import Shape, near, refused
+from workhold.files.svg.shape import Shape, near
+from workhold.geometry.rational import Pieces, ellipse_pieces
 
 __all__ = ["SHAPES"]
 
@@ -28,19 +31,15 @@ def circle(figure: Figure) -> Iterator[Shape]:
 
 
 def ellipse(figure: Figure) -> Iterator[Shape]:
-    """An <ellipse> whose radii are equal; one that is not given is the other (SVG 2, 10.4).
-
-    Raises
-    ------
-    InputError
-        When they are not.
-    """
+    """An <ellipse>, a circle where its radii are equal; one that is not given is the other (SVG 2, 10.4)."""
     x, y = (figure.length(a) for a in ("cx", "cy"))
     rx, ry = radii(figure)
     if not (rx > 0 and ry > 0):
         return
     if abs(rx - ry) > CIRCULAR * max(rx, ry):
-        raise refused(figure.label, "is an ellipse", (x, y))
+        whole = ellipse_pieces((x, y), (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
+        yield Shape(((x + rx, y), (x + rx, y)), (0.0,), (figure.label,), {0: whole})
+        return
     yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (figure.label, figure.label))
 
 
@@ -51,13 +50,7 @@ def radii(figure: Figure) -> tuple[float, float]:
 
 
 def rect(figure: Figure) -> Iterator[Shape]:
-    """A <rect>, its corners sharp or round (SVG 1.1, section 9.2).
-
-    Raises
-    ------
-    InputError
-        For elliptical corners.
-    """
+    """A <rect>, its corners sharp, round or elliptical (SVG 1.1, section 9.2)."""
     x, y, w, h = (figure.length(a) for a in ("x", "y", "width", "height"))
     if not (w > 0 and h > 0):
         return
@@ -67,8 +60,6 @@ def rect(figure: Figure) -> Iterator[Shape]:
         corners = ((x, y), (x + w, y), (x + w, y + h), (x, y + h), (x, y))
         yield Shape(corners, (0.0,) * 4, segment_labels(figure.label, 4))
         return
-    if abs(rx - ry) > CIRCULAR * max(rx, ry):
-        raise refused(figure.label, "has elliptical corners", (x, y))
     quarter = tan(pi / 8)
     stations = [
         ((x + rx, y), 0.0),
@@ -85,7 +76,16 @@ def rect(figure: Figure) -> Iterator[Shape]:
         s for s, after in zip(stations, stations[1:] + stations[:1], strict=True) if s[1] or not near(s[0], after[0])
     ]
     points = (*(point for point, _ in kept), kept[0][0])
-    yield Shape(points, tuple(bulge for _, bulge in kept), segment_labels(figure.label, len(kept)))
+    curved: dict[int, Pieces] = {}
+    if abs(rx - ry) > CIRCULAR * max(rx, ry):
+        for k, (point, bulge) in enumerate(kept):
+            if bulge:
+                # Every second corner is left vertically.
+                (px, py), (qx, qy) = point, points[k + 1]
+                corner, weight = ((px, qy) if len(curved) % 2 else (qx, py)), cos(pi / 4)
+                rows = [(px, py, 1.0), (corner[0] * weight, corner[1] * weight, weight), (qx, qy, 1.0)]
+                curved[k] = np.array([rows])
+    yield Shape(points, tuple(bulge for _, bulge in kept), segment_labels(figure.label, len(kept)), curved)
 
 
 def polyline(figure: Figure, close: bool = False) -> Iterator[Shape]:

@@ -10,6 +10,7 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, counted
+from workhold.files.outline.curves import Curves
 from workhold.files.outline.placement import Placement
 from workhold.files.svg.cascade import Declared, Styles
 from workhold.files.svg.document import DEEPEST, Document, href, local_name, short
@@ -56,7 +57,8 @@ class Nest:
 class SvgWalk:
     """Collects the chains of a document's elements, and what was left out."""
 
-    def __init__(self, document: Document, styles: Styles) -> None:
+    def __init__(self, document: Document, styles: Styles, fit: float | None) -> None:
+        self.curves = Curves(fit)
         self.document = document
         self.styles = styles
         self.chains: list[Chain] = []
@@ -131,7 +133,7 @@ class SvgWalk:
         Raises
         ------
         InputError
-            For transforms that crush the drawing or make arcs elliptical.
+            For transforms that crush the drawing.
         """
         style, label = nest.style, figure.label
         if not style.shown or not (style.stroked or style.filled):
@@ -159,26 +161,15 @@ class SvgWalk:
         self.chains += found
 
     def placed(self, figure: Figure, placement: Placement) -> Iterator[Chain]:
-        """The chains of a shape in mm; of a shape without stroke, what bounds its fill.
-
-        Raises
-        ------
-        InputError
-            For arcs that a transform makes elliptical.
-        """
+        """The chains of a shape in mm; of a shape without stroke, what bounds its fill."""
         for shape in SHAPES[local_name(figure.element)](figure):
             if figure.closed:
-                if len(shape.bulges) == 1 and not shape.bulges[0]:
+                if len(shape.bulges) == 1 and not shape.bulges[0] and not shape.curved:
                     continue  # a line has nothing to fill
                 shape = shape.closed()
-            if any(shape.bulges) and not placement.keeps_circles:
-                x, y = shape.points[0]
-                raise InputError(
-                    f"{figure.label} at ({x:.6g}, {y:.6g}) has arcs that its transform turns into ellipses: scale x and "
-                    "y equally, without skew."
-                )
-            points = tuple(placement(point) for point in shape.points)
-            yield Chain(points, placement.bulges(shape.bulges), shape.labels)
+            chain = self.curves.chain(shape.points, shape.bulges, shape.labels, shape.curved, placement)
+            if chain is not None:
+                yield chain
 
     def visit_use(self, figure: Figure, nest: Nest) -> None:
         """Visit what a <use> shows.

@@ -1,0 +1,196 @@
+"""Curves of a drawing as lines and arcs, and what to say about it.
+
+Glossary
+--------
+curve : a segment of a drawing that is drawn as a spline, an ellipse or a Bézier curve.
+disguise : a curve that is a line or an arc but for a hair, see ``geometry.curve_fit``; others are true curves.
+fit : how far lines and arcs may be from a true curve that they stand for, in mm; None where true curves are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
+
+from workhold.conventions import READING
+from workhold.errors import InputError
+from workhold.files.outline.chain import Chain, CurveReading, at, counted, listed
+from workhold.files.outline.placement import Placement
+from workhold.files.questions import FIT, LAYERS
+from workhold.geometry.curve_fit import fitted_curve
+from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
+from workhold.geometry.segment import Point
+
+__all__ = ["Curves", "checked_fit", "curve_remarks", "refuse_true_curves"]
+
+# In mm: what a refusal proposes, finest first, and the finest that is worth anything.
+PROPOSED, LEAST_FIT = (0.01, 0.1, 1.0), 1e-4
+# Arcs and lines of one outline beyond which a coarser fit is proposed.
+MANY_ARCS = 400
+# Pieces of curves in one drawing: more are a picture, and would take minutes.
+MOST_PIECES = 20_000
+
+
+def checked_fit(fit: float | None) -> float | None:
+    """A fit that can be used.
+
+    Raises
+    ------
+    InputError
+        When it is no length, or too small a one.
+    """
+    if fit is not None and not (isfinite(fit) and fit >= LEAST_FIT):
+        raise InputError(f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01.")
+    return fit
+
+
+class Curves:
+    """Turns the curves of one drawing into lines and arcs, and keeps how each was read, by its label."""
+
+    def __init__(self, fit: float | None) -> None:
+        self.fit = PROPOSED[0] if fit is None else fit
+        self.found: dict[str, CurveReading] = {}
+        self.count = 0
+
+    def chain(
+        self,
+        points: Sequence[Sequence[float]],
+        bulges: Sequence[float],
+        labels: Sequence[str],
+        curved: Mapping[int, Pieces],
+        placement: Placement,
+    ) -> Chain | None:
+        """The chain of placed segments; None where nothing is left of it.
+
+        Parameters
+        ----------
+        points, bulges, labels : of N segments, in the coordinates they are drawn in.
+        curved : the segments that are curves, by their numbers, in these coordinates; their bulges mean nothing.
+        placement : the map to mm; arcs that it makes elliptical are curves.
+
+        Raises
+        ------
+        InputError
+            For more curves than a drawing has.
+        """
+        bent = dict(curved)
+        if not placement.keeps_circles:
+            ends = [(float(p[0]), float(p[1])) for p in points]
+            bent |= {k: arc_pieces(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent}
+        turned = placement.bulges(bulges)
+        matrix = ((placement.a, placement.c, placement.e), (placement.b, placement.d, placement.f))
+        out_points, out_bulges, out_labels = [placement(points[0])], [], []
+        k = 0
+        while k < len(bulges):
+            last = k
+            while last in bent:
+                last += 1
+            if last == k:
+                out_points.append(placement(points[k + 1]))
+                out_bulges.append(turned[k])
+                out_labels.append(labels[k])
+                k += 1
+                continue
+            run = mapped(joined_pieces([bent[j] for j in range(k, last)]), matrix)
+            read = self.read(run, labels[k])
+            if read is not None:
+                if not out_bulges:
+                    out_points = [read[0][0]]
+                out_points += read[0][1:]
+                out_bulges += read[1]
+                out_labels += [labels[k]] * len(read[1])
+            k = last
+        if not out_bulges:
+            return None
+        return Chain(tuple(out_points), tuple(out_bulges), tuple(out_labels))
+
+    def read(self, pieces: Pieces, label: str) -> tuple[tuple[Point, ...], tuple[float, ...]] | None:
+        """Points and bulges of the lines and arcs for a curve in mm; None for a curve of no length.
+
+        Raises
+        ------
+        InputError
+            For more curves than a drawing has.
+        """
+        self.count += len(pieces)
+        if self.count > MOST_PIECES:
+            raise InputError(
+                f"the curves of the drawing have more than {MOST_PIECES} pieces: export the part's outline only."
+            )
+        fitted = fitted_curve(pieces, self.fit)
+        if fitted is None:
+            return None
+        self.found[label] = CurveReading(
+            fitted.points[0], fitted.departure, fitted.is_disguise, pieces, len(fitted.bulges)
+        )
+        return fitted.points, fitted.bulges
+
+
+def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
+    """How the curves among some labelled segments were read."""
+    return {label: found[label] for label in labels if label in found}
+
+
+def refuse_true_curves(
+    labels: Iterable[str], found: Mapping[str, CurveReading], fit: float | None, layered: bool
+) -> None:
+    """Refuse an outline with curves that are no lines or arcs, unless a fit is given.
+
+    Parameters
+    ----------
+    labels : of the outline's segments.
+    layered : whether the file has layers to choose.
+
+    Raises
+    ------
+    InputError
+        Naming the first curves, and a fit that would do.
+    """
+    true = {label: one for label, one in readings_of(labels, found).items() if not one.is_disguise}
+    if fit is not None or not true:
+        return
+    for proposed in PROPOSED:
+        fitted = [
+            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed) for one in true.values()
+        ]
+        arcs, away = sum(count for count, _ in fitted), max(departure for _, departure in fitted)
+        if arcs <= MANY_ARCS:
+            break
+    names = listed([f"{label} at {at(one.place)}" for label, one in true.items()][:3])
+    more = f" and {len(true) - 3} more" if len(true) > 3 else ""
+    one_of = "is a true curve, which is" if len(true) == 1 else "are true curves, which are"
+    it = "it" if len(true) == 1 else "them"
+    leave = f", or leave {'its layer' if len(true) == 1 else 'their layers'} out with {LAYERS}" if layered else ""
+    raise InputError(
+        f"{names}{more} {one_of} not made of lines and arcs: give {FIT} {proposed:g} to put "
+        f"{counted(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} mm off{leave}."
+    )
+
+
+def refitted(one: CurveReading, fit: float) -> tuple[int, float]:
+    """How many lines and arcs stand for a curve with another fit, and their departure."""
+    fitted = fitted_curve(one.pieces, fit)
+    return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
+
+
+def curve_remarks(labels: Iterable[str], found: Mapping[str, CurveReading]) -> tuple[float, list[str]]:
+    """The largest departure of the curves among an outline's segments in mm, and what to say of them."""
+    read = readings_of(labels, found)
+    remarks = []
+    for is_disguise in (True, False):
+        some = [one for one in read.values() if one.is_disguise == is_disguise]
+        if not some:
+            continue
+        away = max(one.departure for one in some)
+        curves, off = counted(len(some), "curve", "curves"), f"nowhere farther than {away:.2g} mm off"
+        if is_disguise:
+            remarks.append(
+                f"Read {curves} as the lines and arcs that they stand for{'' if away < READING else ', ' + off}."
+            )
+        else:
+            arcs = counted(sum(one.arcs for one in some), "line or arc", "lines and arcs")
+            remarks.append(
+                f"Put {arcs} in place of {curves}, {off}: what is found holds for the outline of lines and arcs, and this "
+                "departure counts in the tolerance of its faces."
+            )
+    return max((one.departure for one in read.values()), default=0.0), remarks

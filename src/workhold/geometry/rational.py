@@ -1,0 +1,275 @@
+"""Rational Bézier pieces: what splines, ellipses and Bézier curves of any drawing are, exactly.
+
+Glossary
+--------
+piece : a rational Bézier curve of degree n, given by n + 1 rows (x w, y w, w) with weights w > 0; parameter 0 to 1.
+pieces : (P, n + 1, 3) array of pieces of one degree, each beginning where the one before ends: a curve.
+parameter : of a curve of P pieces, from 0 to P; its whole part is the number of the piece.
+blossom : the symmetric function of n arguments that a polynomial of degree n is the diagonal of; the control points of
+    any stretch are its values (Ramshaw, "Blossoms are polar forms", Computer Aided Geometric Design 6 (1989) 323-358).
+"""
+
+from __future__ import annotations
+
+from math import ceil, comb, cos, pi, sin
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from workhold.errors import InputError
+from workhold.geometry.segment import Point
+
+__all__ = [
+    "Pieces",
+    "arc_pieces",
+    "cut",
+    "direction_at",
+    "ellipse_pieces",
+    "end_curvatures",
+    "end_directions",
+    "halved",
+    "joined_pieces",
+    "mapped",
+    "point_at",
+    "points_along",
+    "polynomial_pieces",
+    "spline_pieces",
+    "without_points",
+]
+
+Pieces = NDArray[np.float64]
+# Degrees above this are no drawing's, and cost more to bound than they are worth.
+MOST_DEGREE = 12
+
+
+def spline_pieces(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike, degree: int) -> Pieces:
+    """The pieces of a B-spline between its knots.
+
+    Parameters
+    ----------
+    points : (N, 2) control points.
+    weights : (N,) weights; None for ones.
+    knots : (N + degree + 1,) knots, not falling.
+    degree : at least 1.
+
+    Raises
+    ------
+    InputError
+        When the numbers do not make a spline: what is wrong, in words that follow the name of an entity.
+    """
+    control, knot = np.asarray(points, dtype=np.float64), np.asarray(knots, dtype=np.float64)
+    weight = np.ones(len(control)) if weights is None else np.asarray(weights, dtype=np.float64)
+    count = len(control)
+    if not 1 <= degree <= MOST_DEGREE:
+        raise InputError(f"is a spline of degree {degree}: draw it with one of 1 to {MOST_DEGREE}.")
+    if count <= degree or len(knot) != count + degree + 1 or len(weight) != count:
+        raise InputError("is a spline whose control points, weights and knots do not agree in number: draw it again.")
+    if not (np.isfinite(control).all() and np.isfinite(knot).all() and np.isfinite(weight).all()):
+        raise InputError("is a spline with a number that is not finite: draw it again.")
+    if (np.diff(knot) < 0).any() or (weight <= 0).any():
+        raise InputError("is a spline with falling knots, or weights that are not positive: draw it again.")
+    rows = np.column_stack([control * weight[:, None], weight])
+    spans = np.flatnonzero(knot[degree:count] < knot[degree + 1 : count + 1]) + degree
+    if not len(spans):
+        raise InputError("is a spline without length: delete it.")
+    low, high = knot[spans], knot[spans + 1]
+    near = spans[:, None] + np.arange(-degree, 1)
+    found = np.empty((len(spans), degree + 1, 3))
+    for number in range(degree + 1):
+        # De Boor's algorithm with the arguments of the blossom instead of one parameter.
+        values = rows[near]
+        for level in range(1, degree + 1):
+            at = (low if level <= degree - number else high)[:, None]
+            first, last = knot[near[:, level:]], knot[near[:, level:] + degree + 1 - level]
+            share = ((at - first) / (last - first))[:, :, None]
+            values = (1 - share) * values[:, :-1] + share * values[:, 1:]
+        found[:, number] = values[:, 0]
+    ends, starts = found[:-1, -1], found[1:, 0]
+    gaps = np.abs(ends[:, :2] / ends[:, 2:] - starts[:, :2] / starts[:, 2:])
+    if gaps.size and gaps.max() > 1e-9 * (1.0 + np.abs(control).max()):
+        raise InputError("is a spline in separate pieces: explode it.")
+    found[1:, 0, :] = found[:-1, -1, :]
+    return found
+
+
+def polynomial_pieces(points: ArrayLike) -> Pieces:
+    """The one piece of a Bézier curve of (n + 1, 2) control points."""
+    control = np.asarray(points, dtype=np.float64)
+    return np.column_stack([control, np.ones(len(control))])[None]
+
+
+def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
+    """The pieces of center + major cos t + minor sin t for t from ``start`` over a signed ``sweep`` in radians, exactly.
+
+    Each covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that (Piegl and Tiller,
+    The NURBS Book, 1997, section 7.3).
+    """
+    count = max(1, ceil(abs(sweep) / (pi / 2) - 1e-9))
+    step = sweep / count
+    half = cos(step / 2)
+
+    def at(angle: float, weight: float) -> tuple[float, float, float]:
+        c, s = cos(angle) / weight, sin(angle) / weight
+        x, y = center[0] + major[0] * c + minor[0] * s, center[1] + major[1] * c + minor[1] * s
+        return x * weight, y * weight, weight
+
+    places = [start + k * step for k in range(count)]
+    rows = [[at(t, 1.0), at(t + step / 2, half), at(t + step, 1.0)] for t in places]
+    found = np.array(rows)
+    found[1:, 0] = found[:-1, -1]
+    if abs(abs(sweep) - 2 * pi) < 1e-9:
+        found[-1, -1] = found[0, 0]
+    return found
+
+
+def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
+    """The pieces of the arc of a bulge from one point to another, or of a line for a bulge of 0."""
+    if bulge == 0.0:
+        return polynomial_pieces([start, end])
+    from workhold.geometry.segment import Arc, segment_from_bulge
+
+    segment = segment_from_bulge(start, end, bulge)
+    if not isinstance(segment, Arc):
+        return polynomial_pieces([start, end])
+    radius, first = segment.radius, segment.mid_angle - segment.sign * segment.half_sweep
+    found = ellipse_pieces(segment.center, (radius, 0.0), (0.0, radius), first, segment.sign * 2 * segment.half_sweep)
+    found[0, 0], found[-1, -1] = (*start, 1.0), (*end, 1.0)
+    return found
+
+
+def raised(pieces: Pieces, degree: int) -> Pieces:
+    """The same curves with so high a degree (Farin, Curves and Surfaces for CAGD, section 6.1)."""
+    while pieces.shape[1] <= degree:
+        n = pieces.shape[1]
+        share = (np.arange(n + 1) / n)[:, None]
+        before = np.concatenate([pieces[:, :1], pieces], axis=1)
+        after = np.concatenate([pieces, pieces[:, -1:]], axis=1)
+        pieces = share * before + (1 - share) * after
+    return pieces
+
+
+def joined_pieces(curves: list[Pieces]) -> Pieces:
+    """One curve of several that follow each other."""
+    degree = max(pieces.shape[1] for pieces in curves) - 1
+    return np.concatenate([raised(pieces, degree) for pieces in curves])
+
+
+def mapped(pieces: Pieces, matrix: ArrayLike) -> Pieces:
+    """The image under an affine map with the (2, 3) matrix (a, c, e), (b, d, f), exactly."""
+    out = np.empty_like(pieces)
+    out[..., :2] = pieces @ np.asarray(matrix, dtype=np.float64).T
+    out[..., 2] = pieces[..., 2]
+    return out
+
+
+def without_points(pieces: Pieces, shortest: float) -> Pieces:
+    """The pieces that reach farther than ``shortest``, their ends moved onto each other."""
+    places = pieces[..., :2] / pieces[..., 2:]
+    kept: Pieces = pieces[np.ptp(places, axis=1).max(axis=1) >= shortest].copy()
+    if len(kept) > 1:
+        kept[1:, 0] = kept[:-1, -1] / kept[:-1, -1, 2:] * kept[1:, 0, 2:]
+    return kept
+
+
+def halved(pieces: Pieces) -> Pieces:
+    """The (2 P, n + 1, 3) halves of pieces, in order (de Casteljau)."""
+    left, right = split(pieces, 0.5)
+    return np.stack([left, right], axis=1).reshape(-1, *pieces.shape[1:])
+
+
+def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
+    """The parts of pieces before and after a parameter within each (de Casteljau)."""
+    n = pieces.shape[1]
+    left, right = np.empty_like(pieces), np.empty_like(pieces)
+    values = pieces
+    for k in range(n):
+        left[:, k], right[:, n - 1 - k] = values[:, 0], values[:, -1]
+        values = (1 - at) * values[:, :-1] + at * values[:, 1:]
+    return left, right
+
+
+def cut(pieces: Pieces, first: float, last: float) -> Pieces:
+    """The stretch of a curve between two parameters, the first smaller."""
+    low, high = min(int(first), len(pieces) - 1), min(int(ceil(last)), len(pieces))
+    stretch = pieces[low : max(high, low + 1)]
+    begin, end = first - low, last - (low + len(stretch) - 1)
+    if end < 1.0:
+        stretch = np.concatenate([stretch[:-1], split(stretch[-1:], end)[0]])
+        begin = begin / end if len(stretch) == 1 else begin
+    if begin > 0.0:
+        stretch = np.concatenate([split(stretch[:1], begin)[1], stretch[1:]])
+    return stretch
+
+
+def point_at(pieces: Pieces, parameter: float) -> Point:
+    """The point of a curve at a parameter."""
+    number = min(int(parameter), len(pieces) - 1)
+    t = parameter - number
+    n = pieces.shape[1] - 1
+    basis = np.array([comb(n, k) * t**k * (1 - t) ** (n - k) for k in range(n + 1)])
+    x, y, w = basis @ pieces[number]
+    return float(x / w), float(y / w)
+
+
+def direction_at(pieces: Pieces, parameter: float, after: bool) -> Point:
+    """Unit tangent of a curve at a parameter, seen from the stretch after it or before it.
+
+    Where the derivative vanishes, as at a control point given twice, it is the direction to the next one that differs.
+    """
+    number = min(int(parameter), len(pieces) - 1)
+    if parameter == number and not after and number > 0:
+        number -= 1
+    one, t = pieces[number : number + 1], parameter - number
+    if 0.0 < t < 1.0:
+        one = split(one, t)[1 if after else 0]
+    leaving, entering = end_directions(one)
+    x, y = (leaving if after else entering)[0]
+    return float(x), float(y)
+
+
+def end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(P, 2) unit tangents where each piece begins and where it ends, see :func:`direction_at`."""
+
+    def leaving(rows: Pieces) -> NDArray[np.float64]:
+        places = rows[..., :2] / rows[..., 2:]
+        steps = places[:, 1:] - places[:, :1]
+        sizes = np.hypot(steps[..., 0], steps[..., 1])
+        far = np.argmax(sizes > 1e-9 * sizes.max(axis=1, keepdims=True), axis=1)
+        every = np.arange(len(rows))
+        found: NDArray[np.float64] = steps[every, far] / np.maximum(sizes[every, far], 1e-300)[:, None]
+        return found
+
+    return leaving(pieces), -leaving(pieces[:, ::-1])
+
+
+def points_along(pieces: Pieces, each: int) -> NDArray[np.float64]:
+    """(each * P + 1, 2) points of a curve at equal parameters, ``each`` to a piece."""
+    n = pieces.shape[1] - 1
+    t = (np.arange(each) / each)[:, None]
+    k = np.arange(n + 1)
+    basis = np.array([comb(n, j) for j in k]) * t**k * (1 - t) ** (n - k)
+    rows = np.concatenate([(basis @ pieces).reshape(-1, 3), pieces[-1:, -1]])
+    found: NDArray[np.float64] = rows[:, :2] / rows[:, 2:]
+    return found
+
+
+def end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(P,) signed curvatures in 1/mm where each piece begins and ends; NaN where its derivative vanishes.
+
+    kappa = (n - 1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 - p0|³ (Farin, section 12.5).
+    """
+
+    def curvature(rows: Pieces) -> NDArray[np.float64]:
+        n = rows.shape[1] - 1
+        if n < 2:
+            return np.zeros(len(rows))
+        places, w = rows[:, :3, :2] / rows[:, :3, 2:], rows[:, :3, 2]
+        a, b = places[:, 1] - places[:, 0], places[:, 2] - places[:, 1]
+        size = np.hypot(*a.T)
+        flat = size <= 1e-9 * np.ptp(rows[..., :2] / rows[..., 2:], axis=1).max(axis=1)
+        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        factor = (n - 1) / n * w[:, 0] * w[:, 2] / w[:, 1] ** 2
+        found: NDArray[np.float64] = np.where(flat, np.nan, factor * cross / np.where(flat, 1.0, size) ** 3)
+        return found
+
+    return curvature(pieces), -curvature(pieces[:, ::-1])

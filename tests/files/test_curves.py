@@ -1,0 +1,236 @@
+"""Lines and arcs in disguise, and true curves, in drawings as programs write them."""
+
+from __future__ import annotations
+
+import json
+from math import cos, pi, sin, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from ezdxf.math import ConstructionEllipse, closed_uniform_bspline, rational_bspline_from_ellipse
+from reading_helpers import area, read_dxf, read_svg, rectangle
+
+import workhold
+from workhold.errors import InputError
+from workhold.files.part.load import read_workpiece
+from workhold.geometry.segment import Arc
+from workhold.model.tolerance import Tolerance
+from workhold.model.workpiece import Workpiece
+
+MM = 'width="200mm" height="200mm" viewBox="0 0 200 200"'
+HANDLE = 4 / 3 * tan(pi / 8)
+CORNERS = [(0, 0), (50, -10), (80, 20), (60, 60), (20, 50), (-10, 30)]
+
+
+def circle_path(x: float, y: float, r: float, digits: int = 4) -> str:
+    """A circle as drawing programs export it: four cubics, with rounded numbers."""
+    ends = [(1, 0), (0, 1), (-1, 0), (0, -1)]
+    words = [f"M{x + r:.{digits}f} {y:.{digits}f}"]
+    for (px, py), (qx, qy) in zip(ends, ends[1:] + ends[:1], strict=True):
+        rows = [(px + HANDLE * qx, py + HANDLE * qy), (qx + HANDLE * px, qy + HANDLE * py), (qx, qy)]
+        words.append("C" + " ".join(f"{x + r * u:.{digits}f},{y + r * v:.{digits}f}" for u, v in rows))
+    return f'<path d="{" ".join(words)} Z"/>'
+
+
+def circles(part: Workpiece) -> list[float]:
+    """Radii of the faces that are whole circles."""
+    return [face.segment.radius for face in part.faces if isinstance(face.segment, Arc) and face.segment.is_full]
+
+
+def test_circles_as_beziers_are_circles(tmp_path: Path) -> None:
+    """A disc with a hole, both four cubics: two faces of the radii drawn; how far off they are is told and counts."""
+    loaded = read_svg(tmp_path, circle_path(60, 60, 50) + circle_path(60, 60, 10), MM)
+    assert circles(loaded.workpiece) == [pytest.approx(50, abs=1e-4), pytest.approx(10, abs=1e-4)]
+    assert loaded.workpiece.departure == pytest.approx(2.725e-4 * 50, rel=0.02)
+    assert (
+        "Read 2 curves as the lines and arcs that they stand for, nowhere farther than 0.014 mm off." in loaded.remarks
+    )
+
+
+def test_round_corners_as_beziers_are_arcs(tmp_path: Path) -> None:
+    """A rectangle with round corners made a path, as Inkscape does it."""
+    r, k = 8.0, 8 * (1 - HANDLE)
+    d = (
+        f"M8 0 H52 C{60 - k} 0 60 {k} 60 8 V32 C60 {40 - k} {60 - k} 40 52 40 H8 "
+        f"C{k} 40 0 {40 - k} 0 32 V8 C0 {k} {k} 0 8 0 Z"
+    )
+    part = read_svg(tmp_path, f'<path d="{d}"/>', MM).workpiece
+    arcs = [face.segment for face in part.faces if isinstance(face.segment, Arc)]
+    assert [arc.radius for arc in arcs] == pytest.approx([r] * 4, abs=1e-3)
+    assert area(part) == pytest.approx(2400 - (4 - pi) * r * r, abs=0.01)
+
+
+def test_a_spline_that_is_a_circle_is_one(tmp_path: Path) -> None:
+    """The exact rational spline of a circle: one face, no departure."""
+
+    def draw(space: Any) -> None:
+        rectangle(space, w=80, h=60)
+        circle = rational_bspline_from_ellipse(ConstructionEllipse((40, 30), (0, 20), (0, 0, 1), 1.0))
+        space.add_spline().apply_construction_tool(circle)
+
+    loaded = read_dxf(tmp_path, draw)
+    assert circles(loaded.workpiece) == [pytest.approx(20, abs=1e-9)]
+    assert loaded.workpiece.departure == 0
+    assert loaded.remarks == ("Read 1 curve as the lines and arcs that they stand for.",)
+
+
+@pytest.mark.parametrize("extrusion", [(0, 0, 1), (0, 0, -1)])
+def test_ellipses_of_equal_axes_are_arcs(tmp_path: Path, extrusion: tuple[float, float, float]) -> None:
+    """A half ellipse of ratio 1 closes a line; seen from below it runs the other way round."""
+
+    def draw(space: Any) -> None:
+        space.add_line((-10, 0), (10, 0))
+        space.add_ellipse((0, 0), (10, 0), 1.0, 0, pi, dxfattribs={"extrusion": extrusion})
+
+    part = read_dxf(tmp_path, draw).workpiece
+    assert area(part) == pytest.approx(50 * pi, rel=1e-12)
+    side = extrusion[2]
+    assert part.bounds == pytest.approx((-10, min(0, 10 * side), 10, max(0, 10 * side)), abs=1e-9)
+
+
+def test_an_elliptical_slot_is_refused_and_fitted(tmp_path: Path) -> None:
+    """A slot whose ends are half ellipses 20 high and 6 wide: refused with a fit that does, and read with it."""
+
+    def draw(space: Any) -> None:
+        rectangle(space, -40, -30, 140, 80)
+        space.add_line((0, 0), (60, 0))
+        space.add_line((0, 20), (60, 20))
+        space.add_ellipse((60, 10), (0, 10), 0.6, pi, 2 * pi)
+        space.add_ellipse((0, 10), (0, 10), 0.6, 0, pi)
+
+    with pytest.raises(
+        InputError, match=r"ELLIPSE \w+ at \(60, 0\); ELLIPSE \w+ at .* are true curves.*give fit 0\.01"
+    ):
+        read_dxf(tmp_path, draw)
+    with pytest.raises(
+        InputError, match=r"nowhere farther than 0\.0\d+ mm off, or leave their layers out with --layer"
+    ):
+        read_dxf(tmp_path, draw, called={"layers": "--layer", "fit": "--fit"})
+    loaded = read_dxf(tmp_path, draw, fit=0.005)
+    part = loaded.workpiece
+    assert 0.002 < part.departure <= 0.005
+    assert area(part) == pytest.approx(140 * 80 - 60 * 20 - pi * 60, abs=0.005 * 60)
+    assert any("in place of 2 curves, nowhere farther than 0.005 mm off" in remark for remark in loaded.remarks)
+
+
+def test_a_closed_spline_is_fitted(tmp_path: Path) -> None:
+    """A free-form outline of one periodic spline."""
+
+    def draw(space: Any) -> None:
+        space.add_spline().apply_construction_tool(closed_uniform_bspline(CORNERS))
+
+    with pytest.raises(InputError, match=r"SPLINE \w+ at .* is a true curve"):
+        read_dxf(tmp_path, draw)
+    coarse, fine = (read_dxf(tmp_path, draw, fit=fit).workpiece for fit in (0.1, 0.001))
+    assert len(coarse.segments) < 0.4 * len(fine.segments)
+    assert area(coarse) == pytest.approx(area(fine), abs=(coarse.departure + fine.departure) * 220)
+
+
+def test_a_spline_of_fit_points_is_refused(tmp_path: Path) -> None:
+    """Programs draw different curves through the same points."""
+
+    def draw(space: Any) -> None:
+        rectangle(space)
+        space.add_spline([(5, 5), (20, 30), (40, 10)])
+
+    with pytest.raises(InputError, match=r"SPLINE \w+ is a spline of fit points alone"):
+        read_dxf(tmp_path, draw, fit=0.01)
+
+
+def test_splines_off_the_plane_are_refused(tmp_path: Path) -> None:
+    """A 3D sketch: one control point is higher than the rest."""
+
+    def draw(space: Any) -> None:
+        rectangle(space)
+        space.add_open_spline([(5, 5, 0), (20, 30, 0), (30, 10, 4), (40, 10, 0)])
+
+    with pytest.raises(InputError, match=r"SPLINE \w+ reaches the height z = 4 mm"):
+        read_dxf(tmp_path, draw, fit=0.01)
+
+
+def test_open_curves_beside_the_outline_are_left_out(tmp_path: Path) -> None:
+    """A spline that is no part of an outline asks for no fit."""
+
+    def draw(space: Any) -> None:
+        rectangle(space)
+        space.add_open_spline([(5, 5), (20, 30), (30, 10), (40, 10)])
+
+    loaded = read_dxf(tmp_path, draw)
+    assert area(loaded.workpiece) == pytest.approx(2400) and loaded.workpiece.departure == 0
+    assert "Left out 1 open piece" in loaded.remarks[0]
+
+
+def test_curves_of_another_part_ask_for_no_fit(tmp_path: Path) -> None:
+    """An ellipse beside the part that is used."""
+
+    def draw(space: Any) -> None:
+        rectangle(space)
+        space.add_ellipse((200, 0), (20, 0), 0.5)
+
+    assert read_dxf(tmp_path, draw).workpiece.departure == 0
+    with pytest.raises(InputError, match="true curve"):
+        read_dxf(tmp_path, draw, part_number=2)
+
+
+def test_elliptical_arcs_of_a_path_lie_where_they_are_drawn(tmp_path: Path) -> None:
+    """Half an ellipse with radii 30 and 20, turned by 90 degrees and large or small as its flags say."""
+    half = '<path d="M20 50 A30 20 90 0 {} 60 50 Z"/>'
+    for sweep, low, high in ((1, 150, 180), (0, 120, 150)):
+        part = read_svg(tmp_path, half.format(sweep), MM, fit=0.001).workpiece
+        assert area(part) == pytest.approx(300 * pi, abs=0.001 * 120)
+        assert part.bounds == pytest.approx((20, low, 60, high), abs=0.002)
+
+
+@pytest.mark.parametrize("fit", [0.0, -1.0, 1e-6, float("nan"), float("inf")])
+def test_a_fit_is_a_length(tmp_path: Path, fit: float) -> None:
+    """Too small and no number at all."""
+    with pytest.raises(InputError, match=r"The fit \S+ is not usable: give a length of 0\.0001 mm or more"):
+        read_dxf(tmp_path, rectangle, fit=fit)
+
+
+def test_a_fit_is_for_drawings(tmp_path: Path) -> None:
+    """JSON has lines and arcs only."""
+    with pytest.raises(InputError, match="leave fit out"):
+        workhold.load("widget", fit=0.01)
+
+
+def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
+    """It is in the tolerance of the faces and so in the location error, in the result file, and in what is read from it."""
+
+    def draw(space: Any) -> None:
+        space.add_lwpolyline([(0, 0, 0), (60, 0, 0), (60, 25, 0)], format="xyb")
+        space.add_open_spline([(60, 25), (45, 46), (15, 44), (0, 35)])
+        space.add_line((0, 35), (0, 0))
+
+    part = read_dxf(tmp_path, draw, fit=0.05).workpiece
+    bare = Workpiece.from_loops(part.name, part.loops)
+    assert part.departure > 0.02 and part != bare
+    vise = workhold.Vise(pitch=10, columns=1, peg_radius=3)
+    result = workhold.design(part, vise, best=5)
+    added = workhold.design(bare, vise, best=5, tolerance=Tolerance(0.01, 0.01 + part.departure))
+    assert result.query.tolerance == Tolerance(0.01, 0.01 + part.departure, departure=part.departure)
+    assert len(result)
+    np.testing.assert_array_equal(result.table.quality, added.table.quality)
+    for name in ("result.json", "result.npz"):
+        workhold.save(result, tmp_path / name)
+        again = workhold.open(tmp_path / name)
+        assert again.query.tolerance == result.query.tolerance
+        assert again.workpiece.departure == part.departure
+    written = json.loads((tmp_path / "result.json").read_text())
+    assert written["workpiece"]["departure"] == part.departure
+    assert written["tolerance"] == {
+        "peg": 0.01,
+        "face": 0.01 + part.departure,
+        "fit": None,
+        "departure": part.departure,
+    }
+    assert read_workpiece(tmp_path / "result.json").workpiece == part
+
+
+def test_a_fine_polyline_is_exactly_what_it_was(tmp_path: Path) -> None:
+    """Chords farther than a micrometre from any arc stay the polygon that was drawn."""
+    points = [(30 * cos(k * pi / 8), 30 * sin(k * pi / 8)) for k in range(16)]
+    loaded = read_dxf(tmp_path, lambda space: space.add_lwpolyline(points, close=True))
+    assert len(loaded.workpiece.segments) == 16 and loaded.remarks == ()
