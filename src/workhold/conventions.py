@@ -62,6 +62,8 @@ STRAIGHT = 2e-6
 # mm. A curve, or a chain of chords and arcs, that is nowhere farther from a line or an arc is one in disguise: less than
 # machines hold. The departure counts in the tolerance of the faces all the same.
 DISGUISE = 1e-3
+# mm. Vertices of chords nearer than this to a line or an arc are drawn on it: the digits of a file.
+DRAWN_ON = 1e-5
 # A share of the radius. The cubics by which programs write quarter circles are this far off at most (2.73e-4, and what is
 # left of it with other handles).
 AS_ARC = 3e-4

@@ -229,6 +229,43 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
     assert read_workpiece(tmp_path / "result.json").workpiece == part
 
 
+def test_a_circle_of_720_chords_is_a_circle(tmp_path: Path) -> None:
+    """Chords of 0.44 mm are off a circle of 50 mm by its sagitta, 0.48 µm; in single lines as well as in a polyline."""
+    points = [(50 * cos(k * pi / 360), 50 * sin(k * pi / 360)) for k in range(720)]
+    loaded = read_dxf(tmp_path, lambda space: space.add_lwpolyline(points, close=True))
+    assert circles(loaded.workpiece) == [pytest.approx(50, abs=1e-6)]
+    assert loaded.workpiece.departure == pytest.approx(50 * (1 - cos(pi / 720)), rel=1e-3)
+    read, told = loaded.remarks
+    assert read.startswith(
+        "Read 720 segments as the longer lines and arcs that they are part of, nowhere farther than 0.00048"
+    )
+    assert read.endswith("mm off: the outline has 2 segments.")
+    assert told.startswith(
+        "Fixtures are found for this outline, which is up to 0.00048 mm off the drawing; that counts"
+    )
+
+    def loose(space: Any) -> None:
+        for k in range(720):
+            space.add_line(points[k - 1], points[k])
+
+    assert circles(read_dxf(tmp_path, loose).workpiece) == [pytest.approx(50, abs=1e-6)]
+
+
+def test_coarse_chords_become_arcs_with_a_fit(tmp_path: Path) -> None:
+    """A plate with a slot whose ends are 12 chords each: 26 faces as drawn, four with a fit above the sagitta."""
+
+    def draw(space: Any) -> None:
+        rectangle(space, -20, -20, 100, 60)
+        ends = [(40 + 10 * sin(k * pi / 12), 10 - 10 * cos(k * pi / 12)) for k in range(13)]
+        space.add_lwpolyline([*ends, *((40 - x, 20 - y) for x, y in ends)], close=True)
+
+    assert len(read_dxf(tmp_path, draw).workpiece.faces) == 4 + 26
+    part = read_dxf(tmp_path, draw, fit=0.1).workpiece
+    assert len(part.faces) == 4 + 4
+    assert part.departure == pytest.approx(10 * (1 - cos(pi / 24)), rel=1e-6)
+    assert area(part) == pytest.approx(6000 - 800 - 100 * pi, rel=1e-9)
+
+
 def test_a_fine_polyline_is_exactly_what_it_was(tmp_path: Path) -> None:
     """Chords farther than a micrometre from any arc stay the polygon that was drawn."""
     points = [(30 * cos(k * pi / 8), 30 * sin(k * pi / 8)) for k in range(16)]

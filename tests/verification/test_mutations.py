@@ -31,6 +31,7 @@ SAID = "a name, from which nothing follows"
 ANOTHER = "another query, which what is listed meets as well; a search of it tells what it lacks"
 WORK = "how much work the search was, within the order that its numbers keep; a search tells"
 LESS = "it claims less"
+NONE = "a departure of nothing, which the lack of it says as well"
 PLACE = "the clamp would touch that face, or a face from that line, as well"
 ORDER = "what is listed stands in this order as well"
 
@@ -54,6 +55,7 @@ ALWAYS: Changes = {
         "loads.0.name": "emptied changed text",
         "tolerance.fit": "deleted",
     },
+    NONE: {"workpiece.departure": "deleted", "tolerance.departure": "deleted"},
     LESS: {"complete": "emptied", "proof.undecided.0.reach_deg": "more"},
     ORDER: {"ranking.2": "deleted"},
     ANOTHER: ZONES_AND_ANGLES,

@@ -9,7 +9,18 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-__all__ = ["AXIS", "DRAWING_UNIT", "FIT", "JOIN_TOLERANCE", "LAYERS", "MARK", "PART_NUMBER", "SECTION", "UNIT", "worded"]
+__all__ = [
+    "AXIS",
+    "DRAWING_UNIT",
+    "FIT",
+    "JOIN_TOLERANCE",
+    "LAYERS",
+    "MARK",
+    "PART_NUMBER",
+    "SECTION",
+    "UNIT",
+    "worded",
+]
 
 # The unit of a drawing that does not say its own, and the one that counts whatever it says.
 UNIT, DRAWING_UNIT = "<unit>", "<drawing_unit>"

@@ -13,6 +13,7 @@ from math import atan2, cos, dist, isfinite, pi, sin, sqrt, tan
 
 import numpy as np
 from attrs import frozen
+from numpy.typing import NDArray
 
 from workhold.conventions import AS_ARC, CURVATURE_JUMP, DISGUISE, SHORTEST
 from workhold.geometry.biarc import Run, biarcs, corners_of
@@ -27,7 +28,7 @@ from workhold.geometry.rational import (
 from workhold.geometry.segment import Arc, Line, Point
 from workhold.limits import MOST_RADIUS
 
-__all__ = ["FittedCurve", "fitted_curve"]
+__all__ = ["FittedCurve", "circle_of_points", "fitted_curve"]
 
 
 @frozen
@@ -199,13 +200,17 @@ def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:
 
 
 def circle_near(pieces: Pieces) -> tuple[Point, float] | None:
-    """Centre and radius of the circle of least squares through points of a curve (Kasa 1976); None for a line.
+    """Centre and radius of the circle of least squares through points of a curve; None for a line.
 
-    The points are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too; and
+    They are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too; and
     quarters of other pieces.
     """
     each = 4 if pieces.shape[1] != 4 else 1 if len(pieces) > 2 else 2
-    points = points_along(pieces, each)
+    return circle_of_points(points_along(pieces, each))
+
+
+def circle_of_points(points: NDArray[np.float64]) -> tuple[Point, float] | None:
+    """Centre and radius of the circle of least squares through (N, 2) points (Kasa 1976); None for a line."""
     middle = points.mean(axis=0)
     x, y = (points - middle).T
     size = float(np.hypot(x, y).max())

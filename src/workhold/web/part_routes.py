@@ -75,7 +75,8 @@ PartGiven = Annotated[int | None, Query(ge=1, le=100_000)]
 LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
 JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
 FitGiven = Annotated[
-    float | None, Query(ge=0.0001, le=100, description="how far arcs may be from true curves that they stand for, in mm")
+    float | None,
+    Query(ge=0.0001, le=100, description="how far arcs may be from true curves that they stand for, in mm"),
 ]
 AxisGiven = Literal["x", "y", "z"] | None
 

@@ -12,16 +12,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 
-from workhold.conventions import READING
+from workhold.conventions import READING, SAME_POINT
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, at, counted, listed
+from workhold.files.outline.joining import Loop
 from workhold.files.outline.placement import Placement
 from workhold.files.questions import FIT, LAYERS
+from workhold.geometry.chords import merged_chords
 from workhold.geometry.curve_fit import fitted_curve
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
 from workhold.geometry.segment import Point
 
-__all__ = ["Curves", "checked_fit", "curve_remarks", "refuse_true_curves"]
+__all__ = ["Curves", "checked_fit", "curve_remarks", "departure_remark", "refuse_true_curves", "with_chords_merged"]
 
 # In mm: what a refusal proposes, finest first, and the finest that is worth anything.
 PROPOSED, LEAST_FIT = (0.01, 0.1, 1.0), 1e-4
@@ -173,6 +175,30 @@ def refitted(one: CurveReading, fit: float) -> tuple[int, float]:
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
 
 
+def with_chords_merged(
+    loops: Sequence[Loop], found: Mapping[str, CurveReading], fit: float | None
+) -> tuple[tuple[Loop, ...], float, list[str]]:
+    """Loops with one line or arc for each chain of short ones, their largest departure in mm, and what to say of it.
+
+    The biarcs of true curves stay as they are.
+    """
+    out, away, merged = [], 0.0, 0
+    for loop in loops:
+        kept = [label in found and not found[label].is_disguise for label in loop.labels]
+        one = merged_chords(loop.vertices, kept, fit)
+        out.append(Loop(one.vertices, tuple(loop.labels[k] for k in one.firsts)))
+        away = max(away, one.departure)
+        merged += (one.merged + len(one.firsts)) * (one.departure > SAME_POINT)
+    total = sum(len(loop.labels) for loop in out)
+    remark = f"Read {merged} segments as the longer lines and arcs that they are part of"
+    off = f", nowhere farther than {away:.2g} mm off" if away >= READING else ""
+    return (
+        tuple(out),
+        away,
+        [f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else [],
+    )
+
+
 def curve_remarks(labels: Iterable[str], found: Mapping[str, CurveReading]) -> tuple[float, list[str]]:
     """The largest departure of the curves among an outline's segments in mm, and what to say of them."""
     read = readings_of(labels, found)
@@ -189,8 +215,15 @@ def curve_remarks(labels: Iterable[str], found: Mapping[str, CurveReading]) -> t
             )
         else:
             arcs = counted(sum(one.arcs for one in some), "line or arc", "lines and arcs")
-            remarks.append(
-                f"Put {arcs} in place of {curves}, {off}: what is found holds for the outline of lines and arcs, and this "
-                "departure counts in the tolerance of its faces."
-            )
+            remarks.append(f"Put {arcs} in place of {curves}, {off}.")
     return max((one.departure for one in read.values()), default=0.0), remarks
+
+
+def departure_remark(departure: float) -> list[str]:
+    """What to say of an outline that is so far, in mm, from what was drawn."""
+    if departure < READING:
+        return []
+    return [
+        f"Fixtures are found for this outline, which is up to {departure:.2g} mm off the drawing; that counts in the "
+        "tolerance of its faces."
+    ]

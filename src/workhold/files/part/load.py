@@ -11,7 +11,13 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing, cleaned
-from workhold.files.outline.curves import checked_fit, curve_remarks, refuse_true_curves
+from workhold.files.outline.curves import (
+    checked_fit,
+    curve_remarks,
+    departure_remark,
+    refuse_true_curves,
+    with_chords_merged,
+)
 from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
@@ -345,16 +351,20 @@ def from_drawing(
     part = chosen_part(parts, part_number)
     if part_number is None:
         refuse_open_outline(part, joined.strays)
-    refuse_large(part.segment_count)
     labels = [label for loop in part.loops for label in loop.labels]
     refuse_true_curves(labels, drawing.curves, fit, layered)
     departure, of_curves = curve_remarks(labels, drawing.curves)
+    loops, more, of_chords = with_chords_merged(part.loops, drawing.curves, fit)
+    departure += more
+    merged = evolve(part, loops=loops)
+    refuse_large(merged.segment_count)
     try:
-        workpiece = built(path.stem, part.loops, departure=departure)
-        refuse_loops_across(part, [other for other in parts if other is not part])
+        workpiece = built(path.stem, loops, departure=departure)
+        refuse_loops_across(merged, [other for other in parts if other is not part])
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
-    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *workpiece.remarks)
+    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
+    remarks += tuple(departure_remark(departure))
     remarks += tuple(stray_remarks(joined.strays))
     return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts)
 
