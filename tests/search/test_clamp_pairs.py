@@ -75,9 +75,7 @@ def counted(n: int) -> int:
     return (n - 1) * n * (2 * n - 1) // 6
 
 
-@pytest.mark.parametrize(
-    ("size", "pitch"), [((100.0, 60.0), (20, 20)), ((57.0, 45.0), (16, 14))]
-)
+@pytest.mark.parametrize(("size", "pitch"), [((100.0, 60.0), (20, 20)), ((57.0, 45.0), (16, 14))])
 def test_a_square_rectangle_is_counted_by_hand(size: tuple[float, float], pitch: tuple[float, float]) -> None:
     """Two locators below, one beside, clamps opposite, and every other way; without limits of the plate."""
     result = design(rectangle(*size), Plate(pitch, 3, clamps=2, directions=[("-x", "-y")]), listing="all")
