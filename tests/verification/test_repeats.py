@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from math import pi
+
 import attrs
 import pytest
 
 from workhold import Fixture, Pose, Result
+from workhold.verification.hardware import Key, Place
 from workhold.verification.kinds import hardware_of
 from workhold.verification.repeats import Seen
 
@@ -61,3 +65,32 @@ def test_not_the_same(widget_result: Result) -> None:
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
     assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [None, None, None]
     assert seen.add(3, moved(fixture, 1e-8)) == 0
+
+
+@attrs.frozen
+class Placed:
+    """A fixture as far as its place counts."""
+
+    place: Place
+    type: str = "I"
+
+
+class OnePattern:
+    """Hardware on which every fixture stands in the same holes."""
+
+    def patterns(self, fixture: Placed) -> Iterator[tuple[Key, Place]]:
+        """The one pattern."""
+        yield ("holes",), fixture.place
+
+
+@pytest.mark.parametrize(("off", "sets"), [(0.0, 1), (3e-6, 1), (5e-6, 2)])
+@pytest.mark.parametrize("number", range(4))
+def test_one_set_when_a_rotation_carries_one_to_the_other(number: int, off: float, sets: int) -> None:
+    """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
+    that it carries into each other."""
+    seen = Seen(OnePattern(), [pi / 2], (10.0, -4.0))  # type: ignore[arg-type]
+    image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
+    image[number] += off
+    assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]
+    assert seen.add(1, Placed(tuple(image))) is None  # type: ignore[arg-type]
+    assert seen.sets == {"I": sets}

@@ -10,7 +10,9 @@ import pytest
 from undecided_examples import as_undecided
 from workhold import Result
 from workhold.model.fixture import Fixture
+from workhold.model.notes import undecided_note
 from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.verification import verify
 from workhold.verification.undecided import undecided_faults
 
 
@@ -89,3 +91,14 @@ def test_chords_that_are_none(widget_result: Result) -> None:
 )
 def test_what_an_entry_says(widget_result: Result, changes: dict[str, Any], words: str) -> None:
     assert words in faults(attrs.evolve(as_undecided(widget_result[0]), **changes), widget_result)[0]
+
+
+@pytest.mark.parametrize(("escalated", "said"), [(0, True), (1, False)])
+def test_what_is_undecided_was_escalated(widget_result: Result, escalated: int, said: bool) -> None:
+    """Nothing is left open before ball arithmetic has tried."""
+    assert widget_result.proof is not None
+    counts = {"candidates": widget_result.proof.candidates + 1, "escalated": escalated}
+    proof = attrs.evolve(widget_result.proof, undecided=(as_undecided(widget_result[0]),), **counts)
+    result = attrs.evolve(widget_result, proof=proof, notes=(*widget_result.notes, undecided_note(1)))
+    words = "the proof says that 1 candidates are undecided, but none was escalated"
+    assert (words in verify(result).faults) == said
