@@ -10,16 +10,23 @@ import json
 import resource
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import attrs
+import numpy as np
 import pytest
 
-from workhold import Vise, Workpiece, load
+from workhold import Vise, Workpiece, answer, load
+from workhold.cli.values import optional_force
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.limits import lacks_memory
+from workhold.model.load import Load
 from workhold.model.query import Query
+from workhold.model.tolerance import Tolerance
+from workhold.search.cells import thread_count
+from workhold.statics.loads import load_cases
 from workhold.web.worker import said_of
 
 Loops = list[list[list[float]]]
@@ -50,7 +57,11 @@ import json, sys
 from workhold import Workpiece, design
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
+from workhold.model.load import Load
 from workhold.model.query import Query
+from workhold.model.tolerance import Tolerance
+from workhold.search.cells import thread_count
+from workhold.statics.loads import load_cases
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.reader import described_vise
 
@@ -156,3 +167,39 @@ def test_too_little_memory_is_known_by_what_libraries_say(error: Exception, lack
     """On the command line, and to a client of the server, which is told no more."""
     assert lacks_memory(error) is lacks
     assert said_of(error, 5 << 20).startswith("This needs more than the 5 MiB of memory") is lacks
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (lambda: Load(points=[(0, 0)], force=1e308), "force 1e+308 is beyond 1e+09 N: check the number and its unit."),
+        (lambda: Load(moment=-1.1e9), "moment -1.1e+09 is beyond 1e+09 N mm"),
+        (lambda: Load(points=[(0, 0), (1, -2e6)], force=1), "a load's point -2e+06 is beyond 1e+06 mm"),
+        (lambda: Tolerance(peg=1e300), "peg tolerance 1e+300 is beyond 1e+06 mm"),
+        (lambda: Query(load("widget"), Vise(**VISE), contact_margin=1e300), "contact margin 1e+300 is beyond 1e+06 mm"),  # type: ignore[arg-type]
+        (lambda: Query(load("widget"), Vise(**VISE), jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),  # type: ignore[arg-type]
+        (lambda: load_cases_of(jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),
+        (lambda: load_cases_of(friction=1e300), "friction 1e+300 is beyond 100: give the coefficient"),
+        (lambda: optional_force("--jaw-force", "1e9kN"), "--jaw-force 1e+12 is beyond 1e+09 N"),
+        (lambda: thread_count(1_001), "1,001 threads are more than the 1,000"),
+    ],
+)
+def test_numbers_whose_products_are_none_are_refused(asked: Callable[[], object], words: str) -> None:
+    """Before any reckoning with them warns of an overflow."""
+    with pytest.raises(InputError) as caught:
+        asked()
+    assert str(caught.value).startswith(words)
+
+
+def test_the_largest_load_is_answered_without_a_warning() -> None:
+    """RuntimeWarnings are errors in tests."""
+    loads = [Load([(1e6, -1e6)], 1e9, moment=1e9)]
+    query = Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), loads=loads, best=1)
+    result = answer(attrs.evolve(query, jaw_force=1e9, tolerance=Tolerance(1e6, 1e6), contact_margin=0.0))
+    assert np.isfinite([*result[0].quality.values()]).all()
+
+
+def load_cases_of(**asked: float) -> object:
+    """Load cases of a fixture."""
+    result = answer(Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), best=1))
+    return load_cases(result[0], result.workpiece, result.toolkit, [Load(moment=1.0)], **asked)  # type: ignore[arg-type]

@@ -13,21 +13,29 @@ from workhold.errors import InputError
 __all__ = [
     "MOST_BLOCKED",
     "MOST_CHORDS",
+    "MOST_FORCE",
+    "MOST_FRICTION",
     "MOST_HOLES",
     "MOST_LENGTH",
     "MOST_PEG_PAIRS",
     "MOST_RADIUS",
     "MOST_STEPS",
+    "MOST_THREADS",
     "lacks_memory",
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
+    "refuse_strong",
 ]
 
 # Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's edge.
 MOST_LENGTH = 1e6
 # Radii in mm: the centre of such an arc, and so each point reckoned from it, is known to no better than points that touch.
 MOST_RADIUS = 1e9
+# Forces in N and moments in N mm: more than any machine has, and far from where products of them are no numbers.
+MOST_FORCE = 1e9
+# Coefficients of friction.
+MOST_FRICTION = 100.0
 # Holes of one carrier, rows without end counted once: what is drawn, and looked through for pairs of free holes.
 MOST_HOLES = 25_000
 # Holes and columns that are blocked, which every fixture is held against.
@@ -38,6 +46,8 @@ MOST_STEPS = 250_000
 MOST_CHORDS = 5_000_000
 # Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some 6,000 bytes.
 MOST_PEG_PAIRS = 500_000
+# Threads of one search.
+MOST_THREADS = 1_000
 
 # What the system's loader, libraries and threads say where there is no memory for them.
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
@@ -77,6 +87,18 @@ def refuse_long(name: str, value: float) -> None:
     """
     if abs(value) > MOST_LENGTH:
         raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
+
+
+def refuse_strong(name: str, value: float, unit: str = "N") -> None:
+    """Refuse a force in N or a moment in N mm that is too large.
+
+    Raises
+    ------
+    InputError
+        With its name, value and limit.
+    """
+    if abs(value) > MOST_FORCE:
+        raise InputError(f"{name} {value:g} is beyond {MOST_FORCE:g} {unit}: check the number and its unit.")
 
 
 def refuse_many_steps(

@@ -8,6 +8,7 @@ from math import inf, isfinite, nan
 from pathlib import Path
 
 from workhold.errors import InputError
+from workhold.limits import refuse_strong
 from workhold.model.real import counting_number
 from workhold.model.units import MILLIMETRE, POUND, Unit, unit_named
 
@@ -201,6 +202,7 @@ def optional_force(option: str, text: str | None) -> float | None:
         raise InputError(
             f"{option} {text!r} is not a force above 0: give it in N, or with its unit, such as 3kN or 700lbf."
         )
+    refuse_strong(option, value)
     return value
 
 

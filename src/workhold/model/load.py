@@ -8,6 +8,7 @@ from math import hypot, isfinite
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.limits import refuse_long, refuse_strong
 from workhold.model.real import real
 
 __all__ = ["ANY_DIRECTION", "Load"]
@@ -57,7 +58,8 @@ class Load:
     Raises
     ------
     InputError
-        For numbers that are not finite, a negative force, a force without a point, and a load that does nothing.
+        For numbers that are not finite or beyond the limits, a negative force, a force without a point, and a load that
+        does nothing.
 
     Examples
     --------
@@ -79,9 +81,12 @@ class Load:
             )
         if not isfinite(self.moment):
             raise InputError(f"moment {self.moment:g} is not a number: give it in N mm, positive counter-clockwise.")
+        refuse_strong("force", self.force)
+        refuse_strong("moment", self.moment, "N mm")
         for x, y in self.points:
             if not isfinite(hypot(x, y)):
                 raise InputError(f"the point ({x:g}, {y:g}) of a load is not a place: give finite coordinates in mm.")
+            refuse_long("a load's point", max(x, y, key=abs))
         if self.force > 0 and not self.points:
             raise InputError(f"a force of {self.force:g} N needs the point it acts at: give at=X,Y or path=X,Y;X,Y.")
         if self.force == 0 and self.moment == 0:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.limits import refuse_long, refuse_strong
 from workhold.model.load import Load
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -156,12 +157,14 @@ class Query:
         margin = self.contact_margin
         if not (isinstance(margin, int | float) and isfinite(real(margin)) and margin >= 0):
             raise InputError(f"contact margin {margin} is not a length: give 0 or more, in mm.")
+        refuse_long("contact margin", margin)
         object.__setattr__(self, "contact_margin", float(margin))
         object.__setattr__(self, "best", counting_number("best", self.best))
         if self.jaw_force is not None:
             force = real(self.jaw_force)
             if not (isfinite(force) and force >= 0):
                 raise InputError(f"jaw force {force:g} cannot be used: give 0 or more, in N.")
+            refuse_strong("jaw force", force)
             object.__setattr__(self, "jaw_force", force)
 
     @property

@@ -7,6 +7,7 @@ from math import isfinite
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
+from workhold.limits import refuse_long
 from workhold.model.dowel import Fit
 from workhold.model.real import real
 
@@ -27,7 +28,7 @@ class Tolerance:
     Raises
     ------
     InputError
-        For lengths that are negative or not finite.
+        For lengths that are negative, not finite or beyond the limits.
     """
 
     peg: float = field(default=0.01, converter=real)
@@ -39,6 +40,7 @@ class Tolerance:
         for name, value in (("peg", self.peg), ("face", self.face), ("departure in the face", self.departure)):
             if not (isfinite(value) and value >= 0):
                 raise InputError(f"{name} tolerance {value} is not a length: give 0 or more, in mm.")
+            refuse_long(f"{name} tolerance", value)
 
     def with_departure(self, departure: float) -> Tolerance:
         """The same tolerance for an outline that departs by so much, in mm, from the drawn one.

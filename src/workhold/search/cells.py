@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
+from workhold.errors import InputError
+from workhold.limits import MOST_THREADS
 
 __all__ = ["Block", "cell_edges", "member_counts", "members_of_cell", "run_blocks", "thread_count"]
 
@@ -66,8 +68,18 @@ def member_counts(table: CurveTable, low: NDArray[np.float64], high: NDArray[np.
 
 
 def thread_count(threads: int | None) -> int:
-    """The number of threads to use: as asked for, or one for each processor this process may use."""
+    """The number of threads to use: as asked for, or one for each processor this process may use.
+
+    Raises
+    ------
+    InputError
+        For more than ``MOST_THREADS``.
+    """
     if threads is not None:
+        if threads > MOST_THREADS:
+            raise InputError(
+                f"{threads:,} threads are more than the {MOST_THREADS:,} this program starts: leave them out."
+            )
         return threads
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

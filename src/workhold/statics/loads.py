@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
+from workhold.limits import MOST_FRICTION, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.real import real
@@ -111,6 +112,9 @@ def load_cases(
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
         if value is not None and not (isfinite(real(value)) and value >= 0):
             raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
+    refuse_strong("jaw force", jaw_force or 0.0)
+    if friction is not None and friction > MOST_FRICTION:
+        raise InputError(f"friction {friction:g} is beyond {MOST_FRICTION:g}: give the coefficient, such as 0.15.")
     stiffness, touched = jaw_stiffness(jaw), Touched.of(workpiece, toolkit)
     contact_matrices = touched.of_fixture(fixture, toolkit)
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.statics.contact_matrix.
