@@ -8,10 +8,10 @@ import attrs
 import pytest
 
 from undecided_examples import as_undecided
-from workhold import Result
+from workhold import OpeningVise, Query, Result, Workpiece
 from workhold.model.fixture import Fixture
 from workhold.model.notes import undecided_note
-from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.model.proof import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.verification import verify
 from workhold.verification.undecided import undecided_faults
 
@@ -102,3 +102,25 @@ def test_what_is_undecided_was_escalated(widget_result: Result, escalated: int, 
     result = attrs.evolve(widget_result, proof=proof, notes=(*widget_result.notes, undecided_note(1)))
     words = "the proof says that 1 candidates are undecided, but none was escalated"
     assert (words in verify(result).faults) == said
+
+
+# What a search of a plate with four holes left open: two pegs a hair farther apart than two of its holes let them stand.
+NEARLY = [
+    ((8, 10, 10, 8), (0, -2, -2, 0), (0, 7, 6, 0), 294.39014311339105, 0.013995803483447906),
+    ((8, 10, 10, 4), (0, 2, 2, 0), (0, -7, -6, -4), 114.36015210775835, 0.015995203858968774),
+    ((8, 10, 10, 4), (0, -2, -3, 0), (0, -7, -6, -6), 82.4973519111698, 0.011996403107927043),
+]
+
+
+@pytest.mark.parametrize(("faces", "columns", "rows", "theta", "reach"), NEARLY)
+def test_what_is_undecided_need_not_be_a_solution(
+    faces: Any, columns: Any, rows: Any, theta: float, reach: float
+) -> None:
+    """It may miss one by as much as pegs move within its range of orientations, and by no more."""
+    holes = [[[x - r, y, 1], [x + r, y, 1]] for x, y, r in ((26, 24, 9), (78, 23, 11), (85, 55, 10), (14, 66, 11))]
+    part = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]], *holes])
+    query = Query(part, OpeningVise(pitch=10, columns=4, peg_radius=3))
+    entry = Undecided("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)
+    assert list(undecided_faults([entry], query)) == []
+    known = attrs.evolve(entry, reach_deg=1e-8)
+    assert "is no place where" in next(undecided_faults([known], query))

@@ -5,12 +5,15 @@ two of them: in the workpiece's frame each moves on the line or circle of its fa
 on that of any other one moved back by the step between their holes; where the two cross is found in balls. Every other peg
 must then touch its face, inside the ends; pegs of two jaws must stand in rows as far apart as the entry says, and the
 smallest gap apart. What certainly is not so anywhere in the range is a fault; where ways run parallel nothing is said.
+What is undecided need not be a solution, but may miss one by as much as pegs move within the range: it was not excluded
+because the search knew no better.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import product
+from math import hypot, radians
 
 from attrs import evolve, frozen
 from flint import arb, ctx
@@ -38,11 +41,13 @@ REASONS = (AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED)
 
 @frozen(eq=False)
 class Touching:
-    """A peg that touches a side: the side, the step to it from the first peg in the workpiece's frame in mm, its column."""
+    """A peg that touches a side: the side, the step to it from the first peg in the workpiece's frame in mm, its column, and
+    how far in mm it may be off."""
 
     side: Side
     step: Point
     column: int
+    loose: float
 
 
 def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str]:
@@ -130,6 +135,7 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
     entry, carriers = along_x(entry, query)
     theta = arb(entry.theta_deg, (entry.reach_deg or 0.0) + WRITTEN)
     sine, cosine = (theta / 180).sin_cos_pi()
+    loose = LOOSE + radians(entry.reach_deg or 0.0) * outline_size(query)
     groups = groups_of(entry, query)
     radii = [arb(carriers[group[0]].peg_radius) for group in groups]
     pegs = []
@@ -140,7 +146,7 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
         ]
         sides = [outline.faces[entry.faces[k]] for k in group]
         turns = [turned(step, cosine, -sine) for step in steps]
-        pegs.append([Touching(s, t, entry.columns[k]) for s, t, k in zip(sides, turns, group, strict=True)])
+        pegs.append([Touching(s, t, entry.columns[k], loose) for s, t, k in zip(sides, turns, group, strict=True)])
     held = [first_pegs(group, radius) if len(group) > 1 else None for group, radius in zip(pegs, radii, strict=True)]
     if any(places is not None and not places for places in held):
         return "is no place where its pegs touch their faces"
@@ -153,17 +159,23 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
     gap = query.toolkit.gap
     ahead = None if gap is None else reach * first.pitch[0] + gap
     if len(pegs[1]) == 1:
-        rows = [on_row(pegs[1][0].side, radii[1], tail, up, (cosine, sine)) for tail in standing]
+        rows = [on_row(pegs[1][0], radii[1], tail, up, (cosine, sine)) for tail in standing]
         moving = None if None in rows else [place for row in rows for place in row or ()]
     if moving is None:
         return ""
     for tail, place in product(standing, moving):
         apart = turned((place[0] - tail[0], place[1] - tail[1]), cosine, sine)
-        if not (abs(apart[1] - up) > LOOSE or (ahead is not None and apart[0] < ahead - LOOSE)):
+        if not (abs(apart[1] - up) > loose or (ahead is not None and apart[0] < ahead - loose)):
             return ""
     if gap is None:
         return "is no place where the clamp's tip is on its line"
     return "is no place where the pegs of both jaws stand in their rows, the smallest gap apart"
+
+
+def outline_size(query: Query) -> float:
+    """How far apart in mm any two points of the workpiece, or pegs that touch it, are at most, or a little more."""
+    x0, y0, x1, y1 = query.workpiece.bounds
+    return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
 def first_pegs(group: Sequence[Touching], radius: arb) -> list[Point] | None:
@@ -172,11 +184,11 @@ def first_pegs(group: Sequence[Touching], radius: arb) -> list[Point] | None:
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
     if other is None:
         return None if all(may_slide_with(one, peg, radius) for peg in group[1:]) else []
-    side, (x, y) = other.side, other.step
+    side, (x, y), spare = other.side, other.step, arb(0, other.loose)
     if isinstance(side, LineSide):
-        points = on_line(one.side, radius, side.normal, side.level + radius - dot(side.normal, (x, y)))
+        points = on_line(one.side, radius, side.normal, side.level + radius + spare - dot(side.normal, (x, y)))
     else:
-        points = on_circle(one.side, radius, (side.center[0] - x, side.center[1] - y), side.reach(radius))
+        points = on_circle(one.side, radius, (side.center[0] - x, side.center[1] - y), side.reach(radius) + spare)
     return [point for point in points if all(may_touch(peg, point, radius) for peg in group)]
 
 
@@ -187,7 +199,7 @@ def are_across(one: Touching, other: Touching) -> bool:
         return bool(abs(cross(a.tangent, b.tangent)) > PARALLEL)
     if isinstance(a, ArcSide) and isinstance(b, ArcSide):
         x, y = b.center[0] - other.step[0] - a.center[0], b.center[1] - other.step[1] - a.center[1]
-        return bool(norm((x, y)) > LOOSE)
+        return bool(norm((x, y)) > one.loose)
     return True
 
 
@@ -195,9 +207,9 @@ def may_slide_with(one: Touching, other: Touching, radius: arb) -> bool:
     """Whether two pegs whose ways run parallel may touch both at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
-        return not abs(a.reach(radius) - b.reach(radius)) > LOOSE if isinstance(b, ArcSide) else True
+        return not abs(a.reach(radius) - b.reach(radius)) > one.loose if isinstance(b, ArcSide) else True
     point = a.start[0] + radius * a.normal[0] + other.step[0], a.start[1] + radius * a.normal[1] + other.step[1]
-    return not abs(b.gap(point) - radius) > LOOSE + PARALLEL * (a.length + norm(other.step))
+    return not abs(b.gap(point) - radius) > one.loose + PARALLEL * (a.length + norm(other.step))
 
 
 def may_touch(peg: Touching, first: Point, radius: arb) -> bool:
@@ -205,18 +217,18 @@ def may_touch(peg: Touching, first: Point, radius: arb) -> bool:
     side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
     if isinstance(side, ArcSide) and not side.reach(radius) > 0:
         return False
-    if abs(side.gap(point) - radius) > LOOSE:
+    if abs(side.gap(point) - radius) > peg.loose:
         return False
-    return not any(slack < -LOOSE for slack in side.slacks(point, radius))
+    return not any(slack < -peg.loose for slack in side.slacks(point, radius))
 
 
-def on_row(side: Side, radius: arb, tail: Point, up: arb, turn: Point) -> list[Point] | None:
-    """Where a peg on a side may be that stands ``up`` mm above another in the toolkit; None where the side runs along."""
-    across = turned((arb(0), arb(1)), turn[0], -turn[1])
+def on_row(moved: Touching, radius: arb, tail: Point, up: arb, turn: Point) -> list[Point] | None:
+    """Where a peg may be that stands ``up`` mm above another in the toolkit; None where its side runs along."""
+    side, across = moved.side, turned((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):
         slope = dot(across, side.tangent)
         if not (slope > 0 or slope < 0):
             return None
-    peg = Touching(side, (arb(0), arb(0)), 0)
-    points = on_line(side, radius, across, dot(across, tail) + up)
+    peg = evolve(moved, step=(arb(0), arb(0)))
+    points = on_line(side, radius, across, dot(across, tail) + up + arb(0, moved.loose))
     return [point for point in points if may_touch(peg, point, radius)]
