@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -39,6 +41,11 @@ PartArgument = Annotated[
     ),
 ]
 SHOWN_UNIT = option(None, "UNIT", "Unit of the lengths shown (mm, cm, m, inch); mm if not given.", "--unit")
+
+
+def at_terminal() -> bool:
+    """Whether somebody can be asked."""
+    return sys.stdin.isatty() and sys.stderr.isatty()
 
 
 @frozen
@@ -94,10 +101,11 @@ class PartWords:
         axis = None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z"))
         section = optional_length(CALLED["section"], self.section, unit)
         from workhold.files.part.load import read_workpiece
+        from workhold.files.questions import UnitAskedError
 
-        loaded = read_workpiece(
+        read = partial(
+            read_workpiece,
             part,
-            unit=self.drawing_unit,
             usual_unit=self.unit,
             layers=self.layer or None,
             part_number=part_number,
@@ -107,6 +115,13 @@ class PartWords:
             section=section,
             called=CALLED,
         )
+        try:
+            loaded = read(unit=self.drawing_unit)
+        except UnitAskedError as question:
+            if not at_terminal():
+                raise
+            tell(str(question))
+            loaded = read(unit=typer.prompt("Unit of the drawing (mm, inch, cm, m)", err=True))
         for remark in loaded.remarks:
             tell(remark)
         return loaded

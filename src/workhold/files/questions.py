@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from workhold.errors import InputError
+
 __all__ = [
     "AXIS",
     "DRAWING_UNIT",
@@ -19,6 +21,7 @@ __all__ = [
     "PART_NUMBER",
     "SECTION",
     "UNIT",
+    "UnitAskedError",
     "worded",
 ]
 
@@ -37,6 +40,10 @@ MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERA
 IN_PYTHON = {"drawing_unit": "unit"}
 
 
+class UnitAskedError(InputError):
+    """A drawing whose unit is not known: whoever can ask for it may read the drawing again."""
+
+
 def worded(sentence: str, called: Mapping[str, str] | None) -> str:
     """A sentence with what questions are called in place of their marks; None and what is not given is for Python.
 
@@ -48,4 +55,8 @@ def worded(sentence: str, called: Mapping[str, str] | None) -> str:
     'leave unit out.'
     """
     names = IN_PYTHON | dict(called or {})
+    if not names.get("layers", "").startswith("--"):
+        # Only a command takes a question as often as there are answers.
+        first, mark, rest = sentence.partition(LAYERS)
+        sentence = first + mark + rest.replace(f" {LAYERS} ", ", ")
     return MARK.sub(lambda mark: names.get(mark[0][1:-1], mark[0][1:-1]), sentence)

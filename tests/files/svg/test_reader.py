@@ -52,7 +52,10 @@ def test_y_points_up_and_the_page_corner_is_the_origin(tmp_path: Path) -> None:
 def test_files_without_physical_size_need_a_unit(tmp_path: Path, unit: str, mm: float) -> None:
     """Pixels are no length: without width and height in mm the user says what a user unit is."""
     for root in ("", 'width="100" height="50"', 'width="100px" height="50px" viewBox="0 0 100 50"', 'width="100%"'):
-        with pytest.raises(InputError, match=r"drawn\.svg: the drawing has no physical size.*unit mm"):
+        with pytest.raises(
+            InputError,
+            match=r"drawn\.svg: the drawing has no physical size.*: it is 50 mm wide, or 50 in = 1,270 mm; say which",
+        ):
             read_svg(tmp_path, D, root)
         assert area(read_svg(tmp_path, D, root, unit=unit).workpiece) == pytest.approx((800 + 50 * pi) * mm**2)
 

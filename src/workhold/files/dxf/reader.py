@@ -16,8 +16,9 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.dxf.walk import Nest, Walk
 from workhold.files.outline.chain import Drawing
+from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
-from workhold.files.questions import DRAWING_UNIT, UNIT
+from workhold.files.questions import DRAWING_UNIT
 from workhold.model.units import unit_named
 
 __all__ = ["read_dxf"]
@@ -68,11 +69,20 @@ def read_dxf(
     document, remarks = opened(path)
     # Into a file without a header ezdxf writes one of its own, with metres in it.
     code = document.header.get("$INSUNITS", 0) if b"$INSUNITS" in content else 0
-    scale, unit_remarks = scale_of(code, unit, usual_unit)
+    known = scale_of(code, unit, usual_unit)
+    scale, unit_remarks = known or (1.0, [])
     walk = Walk(document, layers, fit)
-    walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
-    walk.refuse_missing_layers()
-    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()), walk.curves.found)
+    try:
+        walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
+        walk.refuse_missing_layers()
+    except InputError:
+        if known is not None:
+            raise
+        walk.chains = []
+    if known is None:
+        lacking = f"is not one for parts ($INSUNITS {code})" if code else "is not said"
+        raise unit_asked(f"the drawing's unit {lacking}", walk.chains)
+    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()), walk.curves.found, walk.layers)
 
 
 def refuse_other_formats(content: bytes) -> None:
@@ -124,13 +134,10 @@ def one_line(error: Exception) -> str:
     return text[:120].rstrip(".")
 
 
-def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]]:
+def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
     """Millimetres per drawing unit, and a remark when the user's unit is not the file's ($INSUNITS, 0 for none).
 
-    Raises
-    ------
-    InputError
-        When neither the file nor the user gives a unit.
+    None when neither the file nor the user gives a unit.
     """
     known = INSUNITS.get(code)
     if unit is not None:
@@ -145,8 +152,4 @@ def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float
         return known[1], []
     if usual_unit is not None:
         return unit_named(usual_unit).millimetres, []
-    if code:
-        raise InputError(
-            f"the drawing's unit ($INSUNITS {code}) is not one for parts: give it with {UNIT} mm (or inch)."
-        )
-    raise InputError(f"the drawing does not say its unit: give it with {UNIT} mm (or inch, cm, m).")
+    return None

@@ -60,6 +60,7 @@ class Walk:
         self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
+        self.layers: dict[str, str] = {}
         self.hidden: Counter[str] = Counter()
         self.ignored: Counter[str] = Counter()
         self.missing_blocks: Counter[str] = Counter()
@@ -99,6 +100,7 @@ class Walk:
             elif kind in SHAPES or kind in REFUSED:
                 if self.is_used(entity, layer, nest):
                     self.add(entity, kind, nest.placement, label)
+                    self.layers.update(dict.fromkeys(self.chains[-1].labels, layer))
             elif self.wanted is None or layer.casefold() in self.wanted:
                 self.ignored[kind] += 1
         except InputError:

@@ -89,11 +89,13 @@ class Drawing:
     chains : open and closed chains, in mm.
     remarks : what the user should know, one sentence each.
     curves : how the curves among them were read, by their labels.
+    layers : the layers that segments are on, by their labels; nothing for files without layers.
     """
 
     chains: tuple[Chain, ...]
     remarks: tuple[str, ...] = ()
     curves: Mapping[str, CurveReading] = field(factory=dict)
+    layers: Mapping[str, str] = field(factory=dict)
 
 
 def arc_bulges(sweep: float) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import isfinite
 from pathlib import Path
 
@@ -19,10 +20,11 @@ from workhold.files.outline.curves import (
     with_chords_merged,
 )
 from workhold.files.outline.joining import Loop, join
+from workhold.files.outline.layers import with_layers_named
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
-from workhold.files.questions import AXIS, DRAWING_UNIT, FIT, LAYERS, PART_NUMBER, SECTION, worded
+from workhold.files.questions import AXIS, DRAWING_UNIT, FIT, LAYERS, PART_NUMBER, SECTION, UnitAskedError, worded
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 
@@ -156,7 +158,8 @@ def read_workpiece(
                 drawing = read_svg(content, unit=unit, usual_unit=usual_unit, fit=fit)
                 loaded = from_drawing(path, drawing, part_number, join_tolerance, fit)
     except InputError as error:
-        raise InputError(f"{path.name}: {worded(str(error), called)}") from error
+        kind_of_error = UnitAskedError if isinstance(error, UnitAskedError) else InputError
+        raise kind_of_error(f"{path.name}: {worded(str(error), called)}") from error
     return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
 
 
@@ -342,6 +345,33 @@ def from_drawing(
     ------
     InputError
         When no usable closed outline remains, or one with curves that nobody has allowed to be replaced.
+    """
+    try:
+        return outline_of(path, drawing, part_number, tolerance, fit, layered)
+    except InputError as error:
+        if not drawing.layers:
+            raise
+        raise with_layers_named(error, drawing, partial(is_usable, path, part_number, tolerance, fit)) from error
+
+
+def is_usable(path: Path, part_number: int | None, tolerance: float, fit: float | None, drawing: Drawing) -> bool:
+    """Whether a part can be read of a drawing."""
+    try:
+        outline_of(path, drawing, part_number, tolerance, fit, True)
+    except InputError:
+        return False
+    return True
+
+
+def outline_of(
+    path: Path, drawing: Drawing, part_number: int | None, tolerance: float, fit: float | None, layered: bool
+) -> Loaded:
+    """The workpiece, see :func:`from_drawing`.
+
+    Raises
+    ------
+    InputError
+        See there.
     """
     clean = cleaned(drawing.chains)
     joined = join(clean.chains, tolerance)

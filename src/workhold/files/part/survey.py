@@ -19,12 +19,11 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing, cleaned
+from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
 from workhold.files.outline.nesting import Part, nest
 from workhold.files.part.load import Loaded, kind_of, read_bytes, read_workpiece
 from workhold.files.questions import MARK, UNIT, worded
-from workhold.geometry.intersect import bounding_box
-from workhold.geometry.segment import segment_from_bulge
 
 __all__ = ["Survey", "survey"]
 
@@ -110,21 +109,6 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
     except InputError:
         pass
     return Drawing(())
-
-
-def size_of(chains: tuple[Chain, ...]) -> tuple[float, float] | None:
-    """Width and height in mm of the smallest upright rectangle around chains; None without any."""
-    boxes = [
-        bounding_box(segment_from_bulge(start, end, bulge))
-        for chain in chains
-        for start, end, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
-        if start != end
-    ]
-    if not boxes:
-        return None
-    all_boxes = np.array(boxes)
-    low, high = all_boxes[:, :2].min(axis=0), all_boxes[:, 2:].max(axis=0)
-    return float(high[0] - low[0]), float(high[1] - low[1])
 
 
 def gaps_and_parts(

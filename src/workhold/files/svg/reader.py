@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing
+from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
-from workhold.files.questions import UNIT
 from workhold.files.svg.cascade import Styles
 from workhold.files.svg.document import read_document
 from workhold.files.svg.lengths import Figure, absolute, millimetres, physical
@@ -45,10 +45,18 @@ def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None,
     styles = Styles(document)
     root = Figure(document.root, document.name(document.root), styles.of(document.root), (None, None))
     box = viewbox_of(document.root.get("viewBox"), root.label)
-    placement, remarks = page(root, box, unit, usual_unit)
+    known = page(root, box, unit, usual_unit)
+    placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit)
     viewport = (box[2], box[3]) if box is not None else (pixels(root, "width"), pixels(root, "height"))
-    walk.visit(document.root, Nest(placement, viewport))
+    try:
+        walk.visit(document.root, Nest(placement, viewport))
+    except InputError:
+        if known is not None:
+            raise
+        walk.chains = []
+    if known is None:
+        raise unit_asked("the drawing has no physical size (width and height in mm, cm or in)", walk.chains)
     if walk.hidden and not walk.chains:
         raise InputError(
             "no shape of the drawing is seen: each is switched off, transparent, or without fill and stroke."
@@ -56,13 +64,17 @@ def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None,
     return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()), walk.curves.found)
 
 
-def page(root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | None) -> tuple[Placement, list[str]]:
+def page(
+    root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | None
+) -> tuple[Placement, list[str]] | None:
     """The map from user units to mm with y up, and a remark when the user's unit overrides the file's size.
+
+    None when the size of a user unit is not known.
 
     Raises
     ------
     InputError
-        When the size of a user unit is not known, or differs between x and y.
+        When the size of a user unit differs between x and y.
     """
     given = [root.given(name) for name in ("width", "height")]
     sized = any(side is not None and physical(side.text) for side in given)
@@ -77,10 +89,7 @@ def page(root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | 
             remarks.append(f"The file's size makes a user unit {scale:.6g} mm; it was read as 1 {unit} as asked.")
         scale = asked
     if scale is None:
-        raise InputError(
-            "the drawing has no physical size (width and height in mm, cm or in): give the size of its user unit with "
-            f"{UNIT} mm (or inch, cm, m)."
-        )
+        return None
     left, low = 0.0, 0.0
     if box is not None:
         left, low = box[0], box[1] + box[3]
