@@ -40,41 +40,35 @@ def turned(point: Point, angle: float) -> Point:
     return cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
 
 
-def lowest(part: Workpiece, angle: float) -> Point:
-    """The lowest point of the part, in its own frame, when it is turned by an angle."""
+def lowest(part: Workpiece, angle: float) -> tuple[int, Point]:
+    """The lowest point of the part, in its own frame, when it is turned by an angle, and which corner or arc it is of."""
     down = atan2(*reversed(turned((0.0, -1.0), -angle)))
     points = []
-    for segment in part.loop_segments[0]:
-        points.append(segment.start)
-        if (
-            isinstance(segment, Arc)
-            and segment.sign > 0
-            and abs((down - segment.mid_angle + pi) % tau - pi) <= segment.half_sweep
-        ):
-            points.append(
-                (segment.center[0] + segment.radius * cos(down), segment.center[1] + segment.radius * sin(down))
-            )
-    return min(points, key=lambda point: turned(point, angle)[1])
+    for number, segment in enumerate(part.loop_segments[0]):
+        points.append((2 * number, segment.start))
+        convex = isinstance(segment, Arc) and segment.sign > 0
+        if convex and abs((down - segment.mid_angle + pi) % tau - pi) <= segment.half_sweep:
+            (x, y), r = segment.center, segment.radius
+            points.append((2 * number + 1, (x + r * cos(down), y + r * sin(down))))
+    return min(points, key=lambda one: turned(one[1], angle)[1])
 
 
-def orientations(part: Workpiece, steps: int = 3600) -> Iterator[tuple[float, Point, Point]]:
+def orientations(part: Workpiece, steps: int = 720) -> Iterator[tuple[float, Point, Point]]:
     """Orientations in which two points lie on the wall, with these, the left one first."""
     for k in range(steps):
-        low, high = tau * (k + 0.3217) / steps, tau * (k + 1.3217) / steps
-        yield from jumps(part, low, high)
+        yield from jumps(part, tau * (k + 0.3217) / steps, tau * (k + 1.3217) / steps)
 
 
 def jumps(part: Workpiece, low: float, high: float) -> Iterator[tuple[float, Point, Point]]:
-    """Orientations between two in which the lowest point jumps."""
-    one, other = lowest(part, low), lowest(part, high)
-    reach = max(hypot(*point) for point in (one, other)) * 4 + 400
-    if hypot(one[0] - other[0], one[1] - other[1]) <= reach * (high - low):
-        return
-    if high - low < 1e-13:
-        middle = (low + high) / 2
-        yield middle, *sorted((one, other), key=lambda point: turned(point, middle)[0])
+    """Orientations between two in which the lowest point jumps: from a corner or an arc to another one that is apart."""
+    (first, one), (last, other) = lowest(part, low), lowest(part, high)
+    if first == last:
         return
     middle = (low + high) / 2
+    if high - low < 1e-13:
+        if hypot(one[0] - other[0], one[1] - other[1]) > 1e-6:
+            yield middle, *sorted((one, other), key=lambda point: turned(point, middle)[0])
+        return
     yield from jumps(part, low, middle)
     yield from jumps(part, middle, high)
 

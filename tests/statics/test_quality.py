@@ -12,6 +12,7 @@ from scipy.optimize import linprog, root
 from scipy.spatial import ConvexHull
 
 from held import contacts, force_directions, held, load_wrench
+from workhold import Plate, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.model.diameter import outline_diameter
@@ -239,3 +240,14 @@ def test_no_fixtures_no_figures() -> None:
     assert quality_of(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, len(FIGURES))
     quality = quality_of(result.table, result.workpiece, result.toolkit)
     assert np.isnan(quality[:, LOAD_REACTION]).all() and not np.isnan(quality[:, :LOAD_REACTION]).any()
+
+
+def test_figures_take_the_direction_of_the_fixtures_own_clamp() -> None:
+    """Of a plate that was asked for several directions each fixture is measured as if its own had been the only one."""
+    part = Workpiece.from_loops("part", [[[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]])
+    plate = Plate((20, 16), 3, directions=["-y", "-x", "+y"])
+    result = design(part, plate, best=40)
+    assert {fixture.direction for fixture in result} == {"-x", "-y"}
+    again = quality_of(result.table, part, plate)
+    known = ~np.isnan(again)
+    assert np.allclose(again[known], result.table.quality[known], rtol=1e-9, atol=1e-12)

@@ -87,7 +87,9 @@ def explore(
                 found.append(item)
                 progress(len(found) / len(vises), sum(one.fixtures for one in found))
     types = list(dict.fromkeys(name for one in found for name in one.found))
-    print_explored(found, types, asked["ranking"], shown)
+    # Toolkits with one clamp and with two have a default ranking each; the first that can be asked tells the columns.
+    ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
+    print_explored(found, types, ranking, shown)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))

@@ -1,0 +1,65 @@
+"""Pairs of locator and clamp decided in balls: the same as by bounds in doubles, and what those leave open."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from workhold import Fence, Query, Workpiece
+from workhold.contact.problem import Problem
+from workhold.listing.on_fence import Pressed
+from workhold.proof.flush import Candidate, pressing
+from workhold.search import fence_search
+from workhold.search.fence_search import FenceSearch
+
+KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
+ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
+SLOT = [[0, 0, 0], [30, 4, 1], [28, 18, 0], [0, 14, 0.3]]
+
+
+def searched(
+    loop: list[list[float]], direction: str, margin: float = 0.0
+) -> tuple[FenceSearch, set[tuple[object, ...]]]:
+    """A search that is done, and what it found."""
+    fence = Fence((9, 7), 2, wall_offset=4, clamp_radius=2.5, directions=[direction])
+    search = FenceSearch(Problem.of(Query(Workpiece.from_loops("part", [loop]), fence, contact_margin=margin)))
+    parts = [part for edge in search.edges for part in search.pressed(edge)]
+    found = Pressed.joined(parts)
+    columns = (found.edge, found.row, found.line, *found.feature.T, *np.round(found.tip.T, 6))
+    return search, set(zip(*(column.tolist() for column in columns), strict=True))
+
+
+@pytest.mark.parametrize("loop", [KITE, ARCH, SLOT], ids=["kite", "arch", "slot"])
+@pytest.mark.parametrize("direction", ["-x", "+x", "-y"])
+@pytest.mark.parametrize("margin", [0.0, 3.0])
+def test_balls_and_bounds_agree_on_every_pair(
+    loop: list[list[float]], direction: str, margin: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With rounding taken for as large as lengths are, everything is left to the balls."""
+    search, found = searched(loop, direction, margin)
+    with monkeypatch.context() as patched:
+        patched.setattr(fence_search, "ROUNDING", 1e3)
+        in_balls, also = searched(loop, direction, margin)
+    assert in_balls.escalated == in_balls.examined == search.examined > 10
+    assert found == also and len(found) == search.verified == in_balls.verified > 0
+    assert search.escalated < search.examined / 3 and search.undecided == in_balls.undecided == []
+
+
+def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
+    """A row at the very top of the arch, 40 high with the peg: a contact whose normal is upright presses nothing."""
+    part = Workpiece.from_loops("arch", [ARCH])
+    fence = Fence((10, 42 - 4), 2, wall_offset=4, directions=["-x", "-y"])
+    for way in fence.ways:
+        search = FenceSearch(Problem.of(Query(part, fence.changed({"directions": way.directions}))))
+        tops = [p for e in search.edges for found in search.pressed(e) for p in found.locator.tolist() if e == 0]
+        assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
+        assert search.escalated > 0 and not search.undecided
+
+
+def test_a_line_that_misses_an_arc_has_no_contact() -> None:
+    """What the search would never ask."""
+    part = Workpiece.from_loops("arch", [ARCH])
+    problem = Problem.of(Query(part, Fence(10, 2, wall_offset=5, directions=["-x"])))
+    arc = int(np.flatnonzero(problem.rows[:, 0] != 0.0)[0])
+    far = Candidate(edge=0, row=9, line=1, is_upright=False, features=(arc, arc), branches=(-1.0, 1.0))
+    assert pressing(far, problem, problem.toolkit.carriers[0], (-1.0, 0.0)) is False
