@@ -70,6 +70,7 @@ class Described:
     closes : what the button says that shows how it closes.
     fields : in the order of the page.
     start : see the glossary.
+    single : fields of which only the usual value can be.
     """
 
     name: str
@@ -77,6 +78,7 @@ class Described:
     closes: str
     fields: tuple[Field, ...]
     start: Mapping[str, Any]
+    single: tuple[str, ...] = ()
 
     @property
     def said(self) -> Mapping[str, Any]:
@@ -158,7 +160,7 @@ IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
 DESCRIBED = (
     Described(
         "translating-clamp",
-        "Plate with a clamp",
+        "Plate with one clamp or two",
         "Close clamp",
         PLATE,
         {"pitch": [20.0, 20.0], "peg_radius": 3.0, "clamps": 1},
@@ -169,6 +171,7 @@ DESCRIBED = (
         "Close clamp",
         FENCE,
         {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0},
+        single=("clamps",),
     ),
     Described("vise", "Vise, pegs on both jaws", "Close vise", VISE, IN_JAWS),
     Described("opening-vise", "Vise that holds by opening", "Open vise", VISE, IN_JAWS),
