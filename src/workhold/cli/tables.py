@@ -30,6 +30,7 @@ __all__ = [
     "figure_text",
     "fixture_tables",
     "heading",
+    "jumps_sentence",
     "Table",
     "plural",
     "print_tables",
@@ -40,6 +41,8 @@ __all__ = [
     "unfit_sentence",
 ]
 
+# Numbers of further pieces of faces that are named on the terminal.
+MOST_FURTHER = 8
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
 UNDECIDED = (
@@ -330,6 +333,19 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
     for face in workpiece.faces:
         table.add_row(str(face.number), *face_words(face, unit), loop_of[face.number])
     return table
+
+
+def jumps_sentence(workpiece: Workpiece) -> list[str]:
+    """Why some numbers are not in the table of faces; nothing where none is missing."""
+    further = [str(number) for face in workpiece.faces for number in face.segments if number != face.number]
+    if not further:
+        return []
+    shown = ", ".join(further[:MOST_FURTHER]) + (" and more" if len(further) > MOST_FURTHER else "")
+    one = len(further) == 1
+    return [
+        f"No face is called {shown}: {'that is a further piece' if one else 'these are further pieces'} of a face drawn in "
+        "pieces, such as a circle in two halves, and a face has the number of its first piece."
+    ]
 
 
 def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:

@@ -80,6 +80,8 @@ def draw_header(scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: flo
     if peg_radius is not None:
         size = lengths.short(2 * peg_radius)
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
+    if len(workpiece.segments) > faces:
+        words.append("a face drawn in pieces has the number of the first")
     line = " · ".join(words)
     group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)
 

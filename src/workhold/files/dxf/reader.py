@@ -67,8 +67,7 @@ def read_dxf(
     """
     refuse_other_formats(content)
     document, remarks = opened(path)
-    # Into a file without a header ezdxf writes one of its own, with metres in it.
-    code = document.header.get("$INSUNITS", 0) if b"$INSUNITS" in content else 0
+    code = unit_code(document, content)
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
     walk = Walk(document, layers, fit)
@@ -132,6 +131,12 @@ def one_line(error: Exception) -> str:
     """An error's text without line breaks, not too long, and without a full stop."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text[:120].rstrip(".")
+
+
+def unit_code(document: Any, content: bytes) -> int:
+    """The $INSUNITS of a document; 0 for none."""
+    # Into a file without a header ezdxf writes one of its own, with metres in it.
+    return int(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
 
 
 def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:

@@ -46,11 +46,13 @@ class Loaded:
     workpiece : the part, in mm.
     remarks : one sentence each: what was ignored, closed, dropped or chosen.
     parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
+    number : its number among them, from 1.
     """
 
     workpiece: Workpiece
     remarks: tuple[str, ...]
     parts: tuple[Part, ...]
+    number: int = 1
 
 
 def load(
@@ -396,7 +398,7 @@ def outline_of(
     remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
     remarks += tuple(departure_remark(departure))
     remarks += tuple(stray_remarks(joined.strays))
-    return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts)
+    return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts, part.number)
 
 
 def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure: float = 0.0) -> Workpiece:
