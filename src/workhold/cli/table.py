@@ -94,7 +94,7 @@ class Table:
             if number in self.red:
                 red.update(range(len(lines), len(lines) + len(written)))
             lines += written
-        return Fitted(lines_of(tops, low=True), lines + ([left_out] if left_out else []), red)
+        return Fitted(lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red)
 
 
 def total(widths: list[int], gap: int) -> int:

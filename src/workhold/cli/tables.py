@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from math import degrees, hypot, nan, pi
+from textwrap import wrap
 from typing import TYPE_CHECKING, TextIO
 
 import typer
@@ -52,21 +53,37 @@ UNDECIDED = (
 
 
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
-    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal, and tables as wide as it
-    is at most."""
+    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal, and what is printed is as
+    wide as it is at most, where no single word is longer."""
     stream = stream or sys.stdout
+    width = width_of(stream)
     for part in parts:
         if isinstance(part, Table):
-            fitted = part.fitted(width_of(stream))
+            fitted = part.fitted(width)
             headings, lines, red = fitted.headings, fitted.lines, fitted.red
         else:
-            headings, lines, red = [shortened(part)], [], set()
+            headings, lines, red = sentence_lines(shortened(part), width), [], set()
         headings, lines = list(map(plain, headings)), list(map(plain, lines))
         if lines and stream.isatty():
             headings = [typer.style(line, bold=True) for line in headings]
             lines = [typer.style(line, fg="red") if row in red else line for row, line in enumerate(lines)]
         stream.write("\n".join([*headings, *lines]) + "\n")
     stream.flush()
+
+
+def sentence_lines(sentence: str, width: int | None) -> list[str]:
+    """A sentence as lines of a width, all of them indented as it is.
+
+    >>> sentence_lines("  one two three", 10)
+    ['  one two', '  three']
+    """
+    words = sentence.lstrip(" ")
+    indent = " " * (len(sentence) - len(words))
+    if width is None or len(sentence) <= width or not words:
+        return [sentence]
+    return wrap(
+        words, width, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
 
 
 def width_of(stream: TextIO) -> int | None:
@@ -323,15 +340,17 @@ def setting_sentence(fixture: Fixture, toolkit: Toolkit, unit: Unit) -> str:
 
 
 def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
-    """The numbered faces of a part, with lengths in a unit."""
-    table = Table((">face", "kind", f"size {unit.abbreviation}", "from", "to", "loop"))
+    """The numbered faces of a part, with lengths in a unit; where a face ends the next one begins, so that its end is spared
+    where there is little room."""
+    table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
     first = 0
     loop_of = {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}"))
         first += len(loop)
     for face in workpiece.faces:
-        table.add_row(str(face.number), *face_words(face, unit), loop_of[face.number])
+        kind, size, start, end = face_words(face, unit)
+        table.add_row(str(face.number), kind, size, loop_of[face.number], start, end)
     return table
 
 

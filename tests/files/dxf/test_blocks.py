@@ -232,3 +232,21 @@ def test_a_missing_block_is_remarked(tmp_path: Path) -> None:
     loaded = read_dxf(tmp_path, draw)
     assert "blocks that the file does not contain: GONE" in loaded.remarks[0]
     assert read_workpiece(tmp_path / "drawn.dxf").workpiece.name == "drawn"
+
+
+@pytest.mark.parametrize("bulge", [float("inf"), float("nan"), 1e300, -1e20])
+def test_a_bulge_that_is_none_is_refused_where_its_arc_becomes_an_ellipse_too(tmp_path: Path, bulge: float) -> None:
+    """In the sentence of any other arc, and before a curve without end is fitted."""
+    document, space = new_dxf()
+    block = document.blocks.new("B")
+    block.add_lwpolyline([(0, 0, 0.2), (50, 0, bulge), (50, 40, 0)], format="xyb", close=True)
+    space.add_blockref("B", (7, 7), dxfattribs={"xscale": 2.0, "yscale": 3.0, "rotation": 30.0})
+    document.saveas(tmp_path / "part.dxf")
+    with pytest.raises(InputError, match=r"segment 1 of INSERT .* (is not a finite number|is an arc that bulges by)"):
+        load(tmp_path / "part.dxf")
+
+
+def test_a_curve_far_from_the_drawing_is_refused(tmp_path: Path) -> None:
+    """As a line there is."""
+    with pytest.raises(InputError, match="lies more than 1 km from the origin"):
+        read_dxf(tmp_path, lambda space: space.add_ellipse((0, 0), (1e9, 0), 0.5))

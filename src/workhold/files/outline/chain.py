@@ -180,16 +180,27 @@ def refuse_unusable(chain: Chain) -> None:
         Naming the segment.
     """
     for k, (x, y) in enumerate(chain.points):
-        bulge = chain.bulges[k] if k < len(chain.bulges) else 0.0
-        label = chain.labels[min(k, len(chain.labels) - 1)]
-        if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
-            raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
-        if max(abs(x), abs(y)) > MOST_LENGTH:
-            raise InputError(
-                f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."
-            )
-        if abs(bulge) > MOST_LENGTH / SHORTEST:
-            raise InputError(f"{label} is an arc that bulges by {bulge:.3g} times half its chord: correct it.")
+        refuse_numbers(
+            chain.labels[min(k, len(chain.labels) - 1)], x, y, chain.bulges[k] if k < len(chain.bulges) else 0.0
+        )
+
+
+def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
+    """Refuse a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
+
+    Raises
+    ------
+    InputError
+        Naming the segment.
+    """
+    if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
+        raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
+    if max(abs(x), abs(y)) > MOST_LENGTH:
+        raise InputError(
+            f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."
+        )
+    if abs(bulge) > MOST_LENGTH / SHORTEST:
+        raise InputError(f"{label} is an arc that bulges by {bulge:.3g} times half its chord: correct it.")
 
 
 def without_doubled_points(chain: Chain) -> Chain | None:

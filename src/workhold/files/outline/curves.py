@@ -14,7 +14,7 @@ from math import isfinite
 
 from workhold.conventions import READING, SAME_POINT
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, CurveReading, at, counted, listed
+from workhold.files.outline.chain import Chain, CurveReading, at, counted, listed, refuse_numbers
 from workhold.files.outline.joining import Loop
 from workhold.files.outline.placement import Placement
 from workhold.files.questions import FIT, LAYERS
@@ -78,6 +78,8 @@ class Curves:
         bent = dict(curved)
         if not placement.keeps_circles:
             ends = [(float(p[0]), float(p[1])) for p in points]
+            for label, bulge in zip(labels, bulges, strict=True):
+                refuse_numbers(label, bulge=bulge)
             bent |= {k: arc_pieces(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent}
         turned = placement.bulges(bulges)
         matrix = ((placement.a, placement.c, placement.e), (placement.b, placement.d, placement.f))
@@ -112,8 +114,10 @@ class Curves:
         Raises
         ------
         InputError
-            For more curves than a drawing has.
+            For more curves than a drawing has, and coordinates that are not finite or too large.
         """
+        for x, y in (pieces[..., :2] / pieces[..., 2:]).reshape(-1, 2).tolist():
+            refuse_numbers(label, x, y)
         self.count += len(pieces)
         if self.count > MOST_PIECES:
             raise InputError(
