@@ -38,7 +38,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
     result = design(workpiece, plate_of(truth), listing=truth["listing"])
     assert result.proof is not None and result.proof.undecided == ()
-    assert (result.counts, result.pairs) == (truth["counts"], truth["pairs"])
+    assert (result.counts, result.pairs, result.seats) == (truth["counts"], truth["pairs"], truth["seats"])
     assert ": 0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
@@ -425,8 +425,11 @@ def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
 
 def test_a_symmetric_part_counts_its_copies_once() -> None:
     """Half a turn of a rectangle carries every fixture into another one."""
-    result = design(rectangle(57, 45), Plate((20, 16), 3, clamps=2, columns=4, rows=4), listing="all")
-    assert result.found == {"clamp2": len(result)} and result.distinct == {"clamp2": len(result) // 2}
+    for directions in (None, [("-x", "+x")]):
+        plate = Plate((20, 16), 3, clamps=2, columns=4, rows=4, directions=directions)
+        result = design(rectangle(57, 45), plate, listing="all")
+        assert result.found == {"clamp2": len(result)} and result.distinct == {"clamp2": len(result) // 2}
+        assert len(result) > 10
 
 
 def test_closure_margin_and_ratio_of_a_square_seat() -> None:

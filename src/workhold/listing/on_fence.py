@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
-from attrs import define, fields
+from attrs import define, field, fields
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
@@ -18,7 +18,7 @@ from workhold.geometry.rotation import rotated
 from workhold.kernels.base.capsule import piece_distances
 from workhold.model.result import FixtureTable, unknown_quality
 
-__all__ = ["Pressed", "in_order", "listed_on_fence"]
+__all__ = ["Pressed", "clear_holes", "in_order", "listed_on_fence", "listed_once", "turned"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -39,6 +39,7 @@ class Pressed:
     feature : (N, 2) touched by locator and clamp.
     null : (N, 4) null vectors of the wall's two ends, locator and clamp, not scaled.
     push : (N,) part of its force that the clamp passes on along its direction.
+    doubt : (N,) by how much entries of the null vector may be off, where that matters: of one of two clamps.
     """
 
     edge: IntArray
@@ -49,6 +50,12 @@ class Pressed:
     feature: IntArray
     null: Array
     push: Array
+    doubt: Array = field()
+
+    @doubt.default
+    def none(self) -> Array:
+        """No doubt."""
+        return np.zeros(len(self.edge))
 
     def __len__(self) -> int:
         return len(self.edge)
@@ -79,24 +86,31 @@ def listed_once(pressed: Pressed) -> Pressed:
 def holes_of(pressed: Pressed, problem: Problem) -> tuple[IntArray, BoolArray]:
     """The clamp's hole (N,), its column from the locator's or its row, 0 without a travel; and whether (N,) everything has a
     place on the plate, clear of the rest."""
+    index, number = clear_holes(pressed, problem, every=False)
+    hole, fits = np.zeros(len(pressed), np.int64), np.zeros(len(pressed), np.bool_)
+    hole[index], fits[index] = number, True
+    return hole, fits
+
+
+def clear_holes(pressed: Pressed, problem: Problem, every: bool) -> tuple[IntArray, IntArray]:
+    """Numbers (M,) of pairs and their clamps' holes (M,), as of :func:`holes_of`, the nearest of each first; ``every`` hole
+    that will do, or the nearest alone."""
     plate, clamp = problem.toolkit.carriers[0], problem.toolkit.moving
     along_x, travel = clamp.is_along_x, clamp.travel
     assert travel is not None
     columns = inf if plate.columns is None else plate.columns - 1
     rows = inf if plate.rows is None else plate.rows - 1
-    hole = np.zeros(len(pressed), np.int64)
     on_line = (pressed.line <= rows) if along_x else (np.abs(pressed.line) <= columns)
-    fits = on_line & (pressed.row <= rows)
+    waiting = np.flatnonzero(on_line & (pressed.row <= rows))
     if travel.most is None:
-        fits[fits] = is_clear(pressed.take(fits), pressed.tip[fits], problem)
-        return hole, fits
+        waiting = waiting[is_clear(pressed.take(waiting), pressed.tip[waiting], problem)]
+        return waiting, np.zeros(len(waiting), np.int64)
     pitch, axis = plate.pitch[0 if along_x else 1], 0 if along_x else 1
     back = travel.unit[axis]
     # Place of the tip along the clamp's line, from the locator's column or from row 0.
     tip = pressed.tip[:, 0] - pressed.locator[:, 0] if along_x else pressed.tip[:, 1] - plate.offset[1]
     first = np.ceil((back * tip - travel.most - GAP_SLACK) / pitch).astype(np.int64)
-    waiting = np.flatnonzero(fits)
-    fits = np.zeros(len(tip), np.bool_)
+    found = [np.zeros((2, 0), np.int64)]
     for step in range(int((travel.most - travel.least) / pitch) + 2):
         number = (first[waiting] + step) * int(back)
         stroke = back * (number * pitch - tip[waiting])
@@ -106,9 +120,11 @@ def holes_of(pressed: Pressed, problem: Problem) -> tuple[IntArray, BoolArray]:
         ends = pressed.tip[chosen].copy()
         ends[:, axis] += back * stroke[near]
         good = is_clear(pressed.take(chosen), ends, problem)
-        hole[chosen[good]], fits[chosen[good]] = number[near][good], True
-        waiting = waiting[~fits[waiting]]
-    return hole, fits
+        found.append(np.stack([chosen[good], number[near][good]]))
+        waiting = waiting if every else np.setdiff1d(waiting, chosen[good], assume_unique=True)
+    index, numbers = np.concatenate(found, axis=1)
+    order = np.argsort(index, kind="stable")
+    return index[order], numbers[order].astype(np.int64)
 
 
 def turned(points: Array, angle: Array) -> Array:

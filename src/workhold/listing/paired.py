@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import cos, inf, pi, sin, tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define, evolve, field
@@ -77,6 +77,7 @@ class PairedFixtures:
     tables: list[FixtureTable] = field(init=False)
     seats_looked_at: int = field(default=0, init=False)
     pairs: int = field(default=0, init=False)
+    seats: int = field(default=0, init=False)
     found: IntArray = field(init=False)
     keys: list[tuple[IntArray, Array]] = field(factory=list, init=False)
     undecided: list[Undecided] = field(factory=list, init=False)
@@ -98,24 +99,28 @@ class PairedFixtures:
     def __len__(self) -> int:
         return int(self.found.sum())
 
-    def add(self, seats: Seats) -> None:
-        """Pair the clamps of further seats."""
+    def add(self, seats: Any) -> None:
+        """Pair the clamps of further seats, such as :class:`listing.seats.Seats`."""
         self.seats_looked_at += len(seats)
-        spans = np.stack([seats.column.max(axis=1, initial=0), seats.row.max(axis=1, initial=0)], axis=1)
-        every = self.query.listing == "all"
-        rows = pairs_of(spans, seats.theta < pi - SAME_POSE, seats.clamps, self.hardware, every)
+        every, half = self.query.listing == "all", self.first_half(seats)
+        rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         if (rows[:, OPEN] != 0.0).any():
             seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
-            rows = pairs_of(spans, seats.theta < pi - SAME_POSE, seats.clamps, self.hardware, every)
+            rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         is_open = rows[:, OPEN] != 0.0
         self.undecided += self.named(self.written_out(rows[is_open], seats))
         rows = rows[~is_open]
         table = self.written_out(rows, seats)
         self.pairs += int(rows[:, COUNT].sum())
+        self.seats += len(np.unique(rows[:, SEAT] * len(self.found) + rows[:, KIND]))
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
         if len(self.rotations) > 1:
             self.keys.append(self.smallest(table))
         self.keep(self.measured(table))
+
+    def first_half(self, seats: Seats) -> NDArray[np.bool_]:
+        """Which seats (S,) lie in the first half turn: of opposite directions half a turn makes one fixture another."""
+        return np.asarray(seats.theta < pi - SAME_POSE)
 
     def sharpened(self, seats: Seats, rows: Array) -> Seats:
         """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
@@ -239,7 +244,7 @@ class PairedFixtures:
             statistics=work.statistics,
             proof=proof_of(account, work),
             pairs=self.pairs,
-            seats=len(self),
+            seats=self.seats,
         )
 
     def named(self, table: FixtureTable) -> list[Undecided]:

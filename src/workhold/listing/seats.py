@@ -93,6 +93,11 @@ class Seats:
     def __len__(self) -> int:
         return len(self.theta)
 
+    @property
+    def spans(self) -> IntArray:
+        """The largest columns and rows (S, 2) of the locators."""
+        return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
+
 
 def outward_normals(rows: Array, points: Array) -> Array:
     """Outward unit normals (..., 2) of features (..., 8 or more) at points (..., 2) on them."""

@@ -74,8 +74,6 @@ class Fence(Plate):
 
     def __attrs_post_init__(self) -> None:
         super().__attrs_post_init__()
-        if self.clamps != 1:
-            raise InputError(f"clamps {self.clamps} cannot be: a fence has 1.")
         if not (isfinite(self.wall_offset) and self.wall_offset >= self.peg_radius):
             raise InputError(
                 f"wall offset {self.wall_offset:g} is less than the peg radius {self.peg_radius:g}: a locator in the first "
@@ -89,19 +87,38 @@ class Fence(Plate):
         return tuple(DIRECTIONS)
 
     @property
+    def usual_pairs(self) -> tuple[tuple[str, str], ...]:
+        """One clamp down onto the fence, the other along it."""
+        return ("-x", "-y"), ("+x", "-y")
+
+    @property
     def distinct_directions(self) -> tuple[str, ...]:
         """All directions: the fence turns with the plate."""
+        if self.clamps == 2:
+            return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.directions))
+        return self.directions
+
+    @property
+    def distinct_pairs(self) -> tuple[tuple[str, str], ...]:
+        """All pairs of directions."""
         return self.directions
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """A locator, the two ends of the fence's contact and a clamp, once for each direction."""
-        names = self.directions
-        return tuple(Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names)
+        """A locator, the two ends of the fence's contact and a clamp, once for each direction; or two clamps."""
+        names = self.distinct_directions
+        if self.clamps == 1:
+            return tuple(Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names)
+        return tuple(
+            Arrangement("edge2", (1, 2, *(pair.count(name) for name in names)), " ".join(pair))
+            for pair in self.directions
+        )
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp in all directions, and half the pitch."""
-        if len(self.directions) < len(DIRECTIONS):
+        if self.clamps == 1:
+            yield Change("with a second clamp", {"clamps": 2, "directions": None})
+        if self.clamps == 1 and len(self.directions) < len(DIRECTIONS):
             yield Change("with the clamp in any of the four directions", {"directions": tuple(DIRECTIONS)})
         yield from self.finer()
 

@@ -170,13 +170,18 @@ class Plate(Toolkit):
                 raise InputError("the directions are pairs, but there is one clamp: give two clamps, or no pairs.")
             return names or self.usual_directions
         if not names:
-            return (("-x", "-y"),) if self.is_square else (("-x", "-y"), ("-x", "+y"))
+            return self.usual_pairs
         return tuple(combinations_with_replacement(names, 2)) if isinstance(names[0], str) else names
 
     @property
     def usual_directions(self) -> tuple[str, ...]:
         """All directions that differ by more than a turn of the plate."""
         return ("-x",) if self.is_square else ("-x", "-y")
+
+    @property
+    def usual_pairs(self) -> tuple[tuple[str, str], ...]:
+        """Two clamps square to each other, in all ways that differ by more than a turn of the plate."""
+        return (("-x", "-y"),) if self.is_square else (("-x", "-y"), ("-x", "+y"))
 
     @property
     def distinct_directions(self) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from flint import arb, ctx
 from workhold.kernels.base.given import Limits
 from workhold.proof.interval_newton import PRECISIONS, Box, Frame, Places, places, refined
 
-__all__ = ["SharpReactions", "sharp_reactions"]
+__all__ = ["SharpReactions", "rounded", "sharp_reactions"]
 
 LOCATORS = 3
 # Steps in which a box shrinks to one solution, if it ever does.

@@ -10,9 +10,10 @@ from attrs import frozen
 from flint import arb, ctx
 
 from workhold.contact.problem import Problem
-from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.geometry.hull_edges import HullEdge
 from workhold.model.toolkit import Carrier
+from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
 
 __all__ = ["Candidate", "pressing"]
@@ -63,22 +64,10 @@ def pressing(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple
 
 def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
     """The verdict at the precision in force."""
-    edge = problem.workpiece.hull_edges[candidate.edge]
-    start, tangent, wall = line_of(edge, problem.workpiece.center)
-    level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
-    rows = [problem.rows[k].tolist() for k in candidate.features]
-    locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
-    if locator is None:
+    contacts = contacts_of(candidate, problem, plate)
+    if contacts is None:
         return False
-    (u, v), a, slack = locator
-    if candidate.is_upright:
-        level = u + arb(plate.pitch[0]) * candidate.line
-    else:
-        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.line
-    clamp = touched(rows[1], start, tangent, level, candidate.is_upright, candidate.branches[1])
-    if clamp is None:
-        return False
-    (p, q), b, other = clamp
+    wall, ((u, v), a, slack), ((p, q), b, other) = contacts
     length = arb(problem.wrench_length)
     across, ahead = abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
@@ -86,12 +75,52 @@ def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tup
     null = [both - last, last, ahead * wall / length, across * wall / length]
     size = sum((abs(entry) for entry in null), arb(0))
     margin = arb(problem.contact_margin)
-    rules = [entry - LEAST_CLOSURE * size for entry in null]
-    rules += [-a[0] * b[0], size - LEAST_SPAN, -null[3] * (b[0] * push[0] + b[1] * push[1]) - LEAST_CLAMPING * size]
+    pushes = -(b[0] * push[0] + b[1] * push[1])
+    if problem.pairing:
+        rules = [abs(a[0]) * wall / length - LEAST_SEAT, pushes - LEAST_PUSH]
+    else:
+        rules = [entry - LEAST_CLOSURE * size for entry in null]
+        rules += [-a[0] * b[0], size - LEAST_SPAN, null[3] * pushes - LEAST_CLAMPING * size]
     rules += [end - margin for end in (*slack, *other)]
     if any(rule <= 0 for rule in rules):
         return False
     return True if all(rule > 0 for rule in rules) else None
+
+
+Contact = tuple[Point, Point, list[arb]]
+
+
+def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> tuple[arb, Contact, Contact] | None:
+    """The length of the hull edge, and the contacts of locator and clamp as :func:`touched` tells them; None where one of
+    them touches nothing."""
+    edge = problem.workpiece.hull_edges[candidate.edge]
+    start, tangent, wall = line_of(edge, problem.workpiece.center)
+    level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
+    rows = [problem.rows[k].tolist() for k in candidate.features]
+    locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
+    if locator is None:
+        return None
+    if candidate.is_upright:
+        level = locator[0][0] + arb(plate.pitch[0]) * candidate.line
+    else:
+        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.line
+    clamp = touched(rows[1], start, tangent, level, candidate.is_upright, candidate.branches[1])
+    return None if clamp is None else (wall, locator, clamp)
+
+
+def reactions_on_fence(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpReactions | None:
+    """Forces of the wall's two ends and the locator per unit of that on the clamp's face, to the last digit; None where they
+    cannot be made out."""
+    with BALLS, ctx.workprec(PRECISIONS[-1]):
+        contacts = contacts_of(candidate, problem, plate)
+        if contacts is None:
+            return None
+        wall, ((u, v), a, _), ((p, q), b, _) = contacts
+        if not (abs(a[0]) > 0):
+            return None
+        force = -b[0] / a[0]
+        last = (force * (u * a[1] - v * a[0]) + p * b[1] - q * b[0]) / wall
+        return rounded([force * a[1] + b[1] - last, last, force])
 
 
 def line_of(edge: HullEdge, center: tuple[float, float]) -> tuple[Point, Point, arb]:

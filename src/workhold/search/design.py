@@ -31,6 +31,7 @@ from workhold.search.cells import Block, run_blocks, thread_count
 from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
 from workhold.search.fence import answer_on_fence
+from workhold.search.fence_pairs import answer_of_pairs_on_fence
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
@@ -153,6 +154,8 @@ def answer(
     """
     workers = thread_count(counting_number("threads", threads))
     if query.toolkit.needs_pairs:
+        if query.toolkit.wall is not None:
+            return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
         return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
     ways = query.toolkit.ways
     if len(ways) == 1:

@@ -16,7 +16,17 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_SLACK, CLEARANCE, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, PARALLEL
+from workhold.conventions import (
+    ANGLE_SLACK,
+    CLEARANCE,
+    GAP_SLACK,
+    LEAST_CLAMPING,
+    LEAST_CLOSURE,
+    LEAST_PUSH,
+    LEAST_SEAT,
+    LEAST_SPAN,
+    PARALLEL,
+)
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
@@ -24,7 +34,7 @@ from workhold.kernels.contact.closure import ROUNDING
 from workhold.listing.on_fence import Pressed
 from workhold.model.fixture import Pose
 from workhold.model.toolkit import Carrier
-from workhold.proof.flush import Candidate, pressing
+from workhold.proof.flush import Candidate, pressing, reactions_on_fence
 from workhold.search.fence_places import Laid, Places, laid_on, places_on
 
 __all__ = ["FenceSearch"]
@@ -32,6 +42,8 @@ __all__ = ["FenceSearch"]
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# Forces that may be off by more are told by balls: whether two clamps close is often a matter of an exact zero.
+DOUBTFUL = 1e-10
 # Pairs of locator and clamp looked at together.
 TOGETHER = 1 << 17
 
@@ -50,6 +62,10 @@ class Clamps:
     places: Places
     locator: IntArray
     line: IntArray
+
+    def take(self, order: IntArray) -> Clamps:
+        """The contacts of an index array, in its order."""
+        return Clamps(self.places.take(order), self.locator[order], self.line[order])
 
 
 @define(eq=False)
@@ -180,7 +196,8 @@ class FenceSearch:
         """The pairs of locators and clamps that press the part against the wall."""
         self.examined += len(clamps.line)
         one, two = locators, clamps.places
-        null, push, held, doubtful = closure(laid, one, two, clamps.locator, self.push, self.problem)
+        told = seating if self.problem.pairing else closure
+        null, push, held, doubtful = told(laid, one, two, clamps.locator, self.push, self.problem)
         open_ = np.flatnonzero(doubtful)
         for k in open_.tolist():
             candidate = self.candidate(edge, one, two, clamps, k)
@@ -205,12 +222,26 @@ class FenceSearch:
 
         good = np.flatnonzero(held)
         self.verified += len(good)
+        if self.problem.pairing:
+            return self.sharpened(pairs(good), edge, laid, clamps, good, one)
         if self.verified == 0:
             share = null.min(axis=1) / np.maximum(np.abs(null).sum(axis=1), 1e-300)
             best = int(share.argmax())
             if self.nearest is None or share[best] > self.nearest[0]:
                 self.nearest = float(share[best]), pairs(np.array([best]))
         return pairs(good)
+
+    def sharpened(
+        self, pressed: Pressed, edge: int, laid: Laid, clamps: Clamps, good: IntArray, locators: Places
+    ) -> Pressed:
+        """Contacts with how far their forces may be off; those that doubles do not tell well enough are told by balls."""
+        null, doubt = pressed.null.copy(), reaction_doubts(pressed, laid, clamps.take(good), locators, self.problem)
+        for k in np.flatnonzero(doubt > DOUBTFUL).tolist():
+            candidate = self.candidate(edge, locators, clamps.places, clamps, int(good[k]))
+            sharp = reactions_on_fence(candidate, self.problem, self.plate)
+            if sharp is not None:
+                null[k, :3], doubt[k] = sharp.taken, sharp.doubt
+        return evolve(pressed, null=null, doubt=doubt)
 
     def candidate(self, edge: int, one: Places, two: Places, clamps: Clamps, k: int) -> Candidate:
         """A pair as balls decide it."""
@@ -230,6 +261,47 @@ def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
     place = rows[:, 2 if upward else 1]
     extent = np.where(rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X]))
     return float((place - extent).min()), float((place + extent).max())
+
+
+def seating(
+    laid: Laid, one: Places, two: Places, locator: IntArray, push: tuple[float, float], problem: Problem
+) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """As :func:`closure` of one of two clamps: wall and locator must fix the part, and the clamp must push.
+
+    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the clamp's face. With
+    the notation there the locator's is -b_u / a_u, and the determinant of the three wrenches is |a_u| l.
+    """
+    length = problem.wrench_length
+    a, b = one.normal[locator], two.normal
+    p, q = one.point[locator] / length, two.point / length
+    wall = laid.length / length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        force = -b[:, 0] / a[:, 0]
+        last = (force * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0]) / wall
+        null = np.stack([force * a[:, 1] + b[:, 1] - last, last, force, np.ones(len(force))], axis=1)
+        reach = np.maximum(one.reach[locator], two.reach)
+        swing = np.maximum(one.swing[locator], two.swing)
+        pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
+        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
+        fixed = np.abs(a[:, 0]) * wall - LEAST_SEAT
+        band = 2.0 * swing + ROUNDING
+        worst = np.minimum(
+            slack / (1.2 * reach + 1e-12), np.minimum((pushes - LEAST_PUSH) / band, fixed / (wall * band))
+        )
+    held = worst > 1.0
+    return null, pushes, held, ~held & ~(worst < -1.0)
+
+
+def reaction_doubts(pressed: Pressed, laid: Laid, clamps: Clamps, locators: Places, problem: Problem) -> Array:
+    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
+    reach = np.maximum(locators.reach[clamps.locator], clamps.places.reach)
+    swing = np.maximum(locators.swing[clamps.locator], clamps.places.swing)
+    across = np.abs(locators.normal[clamps.locator, 0])
+    size = 1.0 + np.abs(pressed.null).sum(axis=1)
+    wall = laid.length / problem.wrench_length
+    with np.errstate(invalid="ignore"):
+        doubt = 4.0 * size * (20.0 * swing + 4.0 * (reach + laid.off) / problem.wrench_length + ROUNDING)
+        return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
 
 
 def closure(

@@ -11,12 +11,14 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from attrs import evolve
 
 from workhold.files.result.rounding import ANGLE_STEPS, LENGTH_STEPS, known_figures, rounded
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable
+from workhold.model.result import FixtureTable, peg_places
 from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
 
 __all__ = ["pair_lines"]
 
@@ -24,17 +26,19 @@ BLOCK = 4096
 LOCATORS = 3
 
 
-def pair_lines(table: FixtureTable, toolkit: Toolkit) -> Iterator[list[str]]:
+def pair_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
     """The lines of fixtures with two clamps, block by block; ``pairs`` is given where a fixture stands for its seat."""
     figures = [(figure.key, FIGURES.index(figure)) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
-        travel = rounded(block.jaw_separation, LENGTH_STEPS)
-        x, y = toolkit.places(block.arrangement, block.column, block.row, travel)
-        places = rounded(np.stack([x, y], axis=2), LENGTH_STEPS).tolist()
         theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
         theta[theta >= 360.0] = 0.0
-        poses = np.column_stack([theta, rounded(block.position, LENGTH_STEPS)]).tolist()
+        position, travel = (rounded(values, LENGTH_STEPS) for values in (block.position, block.jaw_separation))
+        # Where a wall is touched follows from the pose as it is written.
+        written = evolve(block, theta=np.radians(theta) % (2 * np.pi), position=position, jaw_separation=travel)
+        x, y = peg_places(written, toolkit, workpiece)
+        places = rounded(np.stack([x, y], axis=2), LENGTH_STEPS).tolist()
+        poses = np.column_stack([theta, position]).tolist()
         # The ratio is that of the forces as they are written, so that reading and writing changes nothing.
         force = np.vectorize(significant, otypes=[np.float64])(block.force) if len(block) else block.force
         ends = zip(*(values.tolist() for values in ratios(force)), strict=True)
@@ -60,12 +64,16 @@ def fixture_entry(
 ) -> dict[str, Any]:
     """One fixture as it is written."""
     arrangement = toolkit.arrangements[kind]
-    pegs = []
+    pegs: list[dict[str, Any]] = []
+    wall: list[dict[str, Any]] = []
     for number, hole, (x, y), face, (one, other) in zip(
         arrangement.carriers, holes, places, faces, forces, strict=True
     ):
         carrier = toolkit.carriers[number]
         contact = {"x": x, "y": y, "segment": face, "force": [one, other]}
+        if carrier.is_wall:
+            wall.append(contact)
+            continue
         if carrier.on is None:
             pegs.append({"role": "locator", "column": hole[0], "row": hole[1], **contact})
             continue
@@ -77,12 +85,19 @@ def fixture_entry(
     return {
         "type": arrangement.name,
         "directions": (arrangement.direction or "").split(),
+        **({"wall": wall_entry(*wall)} if wall else {}),
         "ratio": [significant(low), None if high == inf else significant(high)],
         "pegs": pegs,
         "pose": {"theta_deg": pose[0], "x": pose[1], "y": pose[2]},
         "pairs": pairs,
         "quality": {key: significant(quality[number]) for key, number in figures},
     }
+
+
+def wall_entry(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """What is written of the contact with a wall, from its two ends."""
+    ends = {name: [end["x"], end["y"]] for name, end in (("from", one), ("to", other))}
+    return ends | {"segments": [one["segment"], other["segment"]], "forces": [one["force"], other["force"]]}
 
 
 def significant(value: float) -> float:

@@ -122,7 +122,7 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -
     """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
     separator = "\n"
     if toolkit.needs_pairs:
-        for lines in pair_lines(table, toolkit):
+        for lines in pair_lines(table, toolkit, workpiece):
             yield separator + ",\n".join(lines)
             separator = ",\n"
         return

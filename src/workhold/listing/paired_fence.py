@@ -1,0 +1,201 @@
+"""Fixtures of a fence with two clamps: seats of wall and locator with their clamps, paired and written out.
+
+As on a plate (``listing.paired``), but a seat is a hull edge on the wall and a locator: one orientation each, rows counted
+from the wall, and nothing that a turn makes the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, sin
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import NO_REACTION, SAME_PLACE
+from workhold.kernels.contact.clamp_pairs import (
+    CLAMPS,
+    COUNT,
+    DIRECTION,
+    FREEDOM,
+    HOLES,
+    KIND,
+    LINE,
+    MARGIN,
+    PUSH,
+    SEAT,
+    TAKEN,
+    TIP,
+    Clamps,
+)
+from workhold.listing.canonical_form import changes, packed
+from workhold.listing.on_fence import Pressed, clear_holes, listed_once, turned
+from workhold.listing.paired import FAR, PairedFixtures
+from workhold.listing.seats import NAMES, clusters
+from workhold.model.plate import DIRECTIONS
+from workhold.model.quality import CLAMP_FREEDOM
+from workhold.model.result import FixtureTable, unknown_quality
+
+__all__ = ["PairedOnFence", "SeatsOnFence", "seats_on_fence"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@define(frozen=True, eq=False)
+class SeatsOnFence:
+    """S seats of a hull edge on the wall and a locator, and their clamps.
+
+    Parameters
+    ----------
+    edge, row, feature : (S,) hull edge, row of the locator, and the feature that it touches.
+    locator : (S, 2) its centre along the hull edge from its start and above it, in mm.
+    clamps : all clamps that may push there, but those that hold the part alone; places count along the wall from the
+        locator, columns of holes and lines likewise.
+    clamp_feature : (M,) of each clamp.
+    """
+
+    edge: IntArray
+    row: IntArray
+    feature: IntArray
+    locator: Array
+    clamps: Clamps
+    clamp_feature: IntArray
+
+    def __len__(self) -> int:
+        return len(self.edge)
+
+    @property
+    def spans(self) -> IntArray:
+        """The column 0 and the row (S, 2) of the locators."""
+        return np.stack([np.zeros(len(self), np.int64), self.row], axis=1)
+
+
+def seats_on_fence(parts: Sequence[tuple[Pressed, Problem, str]]) -> SeatsOnFence:
+    """The seats of the contacts that the searches of some directions proved, with their problems and names."""
+    contacts = [one_direction(*part) for part in parts]
+    pressed = Pressed.joined([one for one, _, _, _ in contacts])
+    direction = np.concatenate([np.full(len(one), number) for one, number, _, _ in contacts])
+    starts = np.cumsum([0, *(len(one) for one, _, _, _ in contacts)])
+    contact = np.concatenate([index + start for (_, _, index, _), start in zip(contacts, starts, strict=False)])
+    hole = np.concatenate([numbers for _, _, _, numbers in contacts])
+    words = packed((pressed.edge[:, None], int(pressed.edge.max(initial=0))), (pressed.row[:, None], FAR))
+    order = np.lexsort(words[::-1])
+    order, fresh = clusters(order, changes([word[order] for word in words]), (pressed.locator[:, 0], SAME_PLACE))
+    seat = np.empty(len(order), np.int64)
+    seat[order] = np.cumsum(fresh) - 1
+    by_seat = np.lexsort([pressed.feature[:, 0], seat])
+    first = by_seat[np.diff(seat[by_seat], prepend=-1) > 0]
+    listed = np.lexsort([pressed.feature[:, 1], pressed.line, direction, seat])
+    rank = np.empty(len(listed), np.int64)
+    rank[listed] = np.arange(len(listed))
+    by_clamp = np.argsort(rank[contact], kind="stable")
+    clamp_of, bolted = rank[contact][by_clamp], hole[by_clamp]
+    ends = np.searchsorted(clamp_of, np.arange(len(listed) + 1))
+    chosen = pressed.take(listed)
+    along, toolkit = direction[listed] < NAMES.index("-y"), parts[0][1].toolkit
+    tip = np.stack([chosen.tip[:, 0] - chosen.locator[:, 0], chosen.tip[:, 1]], axis=1)
+    column = np.where(along[clamp_of], bolted, chosen.line[clamp_of])
+    row = np.where(along[clamp_of], chosen.line[clamp_of], bolted)
+    place = np.stack([column, row], axis=1) * np.array(toolkit.carriers[0].pitch) + np.array(toolkit.carriers[0].offset)
+    if not toolkit.moving.has_a_hole:
+        place = tip[clamp_of]
+    clamps = Clamps(
+        starts=np.searchsorted(seat[listed], np.arange(len(first) + 1)).astype(np.int64),
+        integers=np.stack([direction[listed], chosen.line, ends[:-1], ends[1:]], axis=1).astype(np.int64),
+        reals=np.column_stack([chosen.null[:, [2, 0, 1]], chosen.push, chosen.doubt, tip]),
+        holes=np.column_stack([column, row, place, np.hypot(*(tip[clamp_of] - place).T)]).astype(np.float64),
+    )
+    return SeatsOnFence(
+        pressed.edge[first],
+        pressed.row[first],
+        pressed.feature[first, 0],
+        pressed.locator[first],
+        clamps,
+        chosen.feature[:, 1],
+    )
+
+
+def one_direction(pressed: Pressed, problem: Problem, direction: str) -> tuple[Pressed, int, IntArray, IntArray]:
+    """Contacts of one direction, each once, without clamps that hold the part alone or have no hole; the direction's number;
+    and holes, with the numbers of their contacts in front."""
+    pressed = listed_once(pressed)
+    taken = pressed.null[:, :3]
+    pressed = pressed.take(taken.min(axis=1, initial=1.0) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1)))
+    index, hole = clear_holes(pressed, problem, every=True)
+    kept = np.unique(index)
+    return pressed.take(kept), NAMES.index(direction), np.searchsorted(kept, index), hole
+
+
+class PairedOnFence(PairedFixtures):
+    """The fixtures of a fence with two clamps found so far, or the best of them."""
+
+    def first_half(self, seats: SeatsOnFence) -> NDArray[np.bool_]:  # type: ignore[override]
+        """All: no turn makes one fixture another."""
+        return np.ones(len(seats), np.bool_)
+
+    def sharpened(self, seats: SeatsOnFence, rows: Array) -> SeatsOnFence:  # type: ignore[override]
+        """As they are: what doubles do not tell well enough was told by balls."""
+        return seats
+
+    def written_out(self, rows: Array, seats: SeatsOnFence) -> FixtureTable:  # type: ignore[override]
+        """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are known."""
+        whole = rows[:, [SEAT, KIND, CLAMPS, CLAMPS + 1, HOLES, HOLES + 1]].astype(np.int64)
+        seat, kind, chosen, bolted = whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:6]
+        clamps, toolkit, flush, count = seats.clamps, self.toolkit, self.query.workpiece.flush, len(rows)
+        upright = clamps.integers[chosen, DIRECTION] >= NAMES.index("-y")
+        line, hole, in_hole = clamps.integers[chosen, LINE], clamps.holes[bolted, :2].astype(np.int64), toolkit.travel
+        zero = np.zeros((count, 1), np.int64)
+        across = np.where(upright, line, hole[..., 0] if in_hole else FAR)
+        lowest = np.minimum(across.min(axis=1, initial=0), 0)[:, None]
+        across = np.where(across == FAR, 0, across - lowest)
+        column = np.hstack([zero - lowest, zero, zero, across])
+        row = np.hstack([seats.row[seat][:, None], zero, zero, np.where(upright, hole[..., 1] if in_hole else 0, line)])
+        pitch, offset = np.array(toolkit.carriers[0].pitch), np.array(toolkit.carriers[0].offset)
+        # Places along the wall count from the locator, which now stands in this column.
+        shift = np.hstack([-lowest * pitch[0], np.zeros((count, 1))])
+        tip = clamps.reals[chosen, TIP : TIP + 2] + shift[:, None]
+        at = np.stack([column[:, 3:], row[:, 3:]], axis=2) * pitch + offset
+        units = np.array([(round(cos(angle), 15), round(sin(angle), 15)) for angle in DIRECTIONS.values()])
+        travel = ((tip - at) * units[clamps.integers[chosen, DIRECTION]]).sum(axis=2)
+        theta, reals = flush.theta[seats.edge[seat]], clamps.reals[chosen]
+        start = np.stack([shift[:, 0] - seats.locator[seat, 0], np.zeros(count)], axis=1)
+        force = np.zeros((count, 5, 2))
+        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / reals[..., PUSH, None], 1, 2)
+        force[:, 3, 0], force[:, 4, 1] = 1.0 / reals[:, 0, PUSH], 1.0 / reals[:, 1, PUSH]
+        quality = unknown_quality(rows[:, MARGIN])
+        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
+        faces = self.problem.faces
+        one, two = faces[seats.feature[seat]][:, None], faces[seats.clamp_feature[chosen]]
+        return FixtureTable(
+            arrangement=kind.astype(np.int8),
+            column=column.astype(np.int32),
+            row=row.astype(np.int32),
+            face=np.hstack([one, flush.face[seats.edge[seat]], two]).astype(np.int32),
+            theta=theta,
+            position=start - turned(flush.ends[seats.edge[seat], 0], theta),
+            jaw_separation=travel,
+            force=force,
+            quality=quality,
+            pairs=rows[:, COUNT].astype(np.int32),
+        )
+
+    def smallest(self, table: FixtureTable) -> tuple[IntArray, Array]:
+        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K) and angles (N,)."""
+        flush, numbers = self.query.workpiece.flush, np.array([face.number for face in self.query.workpiece.faces])
+        edge = flush.number(table.theta)
+        images = np.array([flush.number(flush.theta - rotation.angle) for rotation in self.rotations])[:, edge]
+        # No rotation but the identity leaves a hull edge where it is, so one alone makes it the first of its images.
+        turn = images.argmin(axis=0)
+        to = np.zeros((len(self.rotations), int(numbers.max()) + 1), np.int64)
+        to[:, numbers] = [numbers[np.array(rotation.image)] for rotation in self.rotations]
+        face = to[turn[:, None], table.face[:, [0, 3, 4]]]
+        pairs = self.toolkit.distinct_pairs
+        upright = np.array([[name.endswith("y") for name in pair] for pair in pairs])[table.arrangement]
+        line = np.where(upright, table.column[:, 3:] - table.column[:, :1] + FAR, table.row[:, 3:])
+        key = np.column_stack([table.arrangement, images.min(axis=0), table.row[:, 0], face[:, 0], line, face[:, 1:]])
+        # Where the locator stands along the wall tells seats of one row and face apart.
+        along = flush.x(table.theta, table.position)[:, 0] - table.column[:, 0] * self.toolkit.pitch[0]
+        return (key if self.query.listing == "all" else key[:, :4]).astype(np.int64), along
