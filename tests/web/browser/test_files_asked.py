@@ -128,6 +128,24 @@ def test_an_outline_that_is_open_says_so_beside_the_slider(walk: Walk, tmp_path:
     assert page.locator("#part-trouble").is_hidden()
 
 
+def test_curves_are_fitted_as_asked(walk: Walk) -> None:
+    """A Bézier curve that is no arc is asked about; how far off the arcs are goes into the search and into the link."""
+    page = walk.page
+    svg = b"""<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
+<path d="M10 10H90C115 10 115 70 90 70H10Z"/></svg>"""
+    page.set_input_files("#file", {"name": "bow.svg", "mimeType": "image/svg+xml", "buffer": svg})
+    assert "Fit curves within" in walk.seen("#part-trouble").inner_text()
+    page.click('#file-asks [data-fit="0.05"]')
+    walk.seen("#faces button")
+    departure = page.evaluate("async () => (await import('/static/state.js')).request().workpiece.departure")
+    assert 0 < departure <= 0.05
+    assert f"{departure:.4f} mm" in page.inner_text("#file-asks")
+    walk.reload()
+    walk.seen("#faces button")
+    again = page.evaluate("async () => (await import('/static/state.js')).request().workpiece.departure")
+    assert again == departure
+
+
 def test_the_example_is_one_click(walk: Walk) -> None:
     """It is the drawing of the examples, on what people have, and its fixtures are shown."""
     page = walk.page

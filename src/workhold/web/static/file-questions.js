@@ -5,13 +5,15 @@ import { byId, make, show } from "./dom.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, join?: number, axis?: string}} How what has been answered so far */
+/** @typedef {{unit?: string, part?: number, join?: number, fit?: number, axis?: string}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;
 const MM_PER_INCH = 25.4;
 /** A gap below this share of the drawing may be meant to be closed. */
 const SLIP = 0.01;
+/** In mm: how far arcs may be from the curves that they stand for. */
+const FITS = [0.01, 0.05, 0.1, 0.5];
 /** Parts that are listed; all of them can be clicked. */
 const LISTED = 24;
 
@@ -45,7 +47,7 @@ export function askQuestions(survey, how, answer) {
   if (!how.unit && !survey.asked.includes("unit")) bare = null;
   const unit = unitQuestion(how, answer);
   // Sizes of parts and gaps mean nothing before there is a unit.
-  const rest = unit && !how.unit ? [] : [partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
+  const rest = unit && !how.unit ? [] : [fitQuestion, partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
   const asked = [unit, ...rest].filter((question) => question !== null);
   byId("file-asks").replaceChildren(...asked);
   any = asked.length > 0;
@@ -104,6 +106,16 @@ function gapQuestion({ asked, gaps, size }, how, answer) {
   slider.addEventListener("change", () => answer({ join: Number(slider.value) ? open[Number(slider.value) - 1] * (1 + 1e-5) : JOINED }));
   tell();
   return question(`There are loose ends, with gaps from ${length(open[0], 3)} to ${length(open[open.length - 1], 3)}. Join gaps up to`, make("div.join", {}, slider, words));
+}
+
+/** How far lines and arcs may be from curves that are neither. */
+function fitQuestion({ asked, part }, how, answer) {
+  if (!asked.includes("fit") && how.fit === undefined) return null;
+  const buttons = FITS.map((fit) => make("button", {
+    type: "button", "data-fit": fit, "aria-pressed": String(how.fit === fit), click: () => answer({ fit }),
+  }, length(fit, 2)));
+  const off = part?.departure ? [make("span", {}, `They are off by ${length(part.departure, 4)} at most, which counts in the location error.`)] : [];
+  return question("Some curves are neither lines nor arcs. Fit curves within", make("div.row-of-buttons", {}, ...buttons, ...off));
 }
 
 /** Along which axis a solid is held, and which of several it is. */

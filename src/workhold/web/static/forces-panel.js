@@ -162,7 +162,8 @@ function write() {
   if (field("force-kind") !== document.activeElement) field("force-kind").value = ratio ? "ratio" : (force.kind ?? "screw");
   if (ratio && field("force-ratio") !== document.activeElement) field("force-ratio").value = String(force.kind);
   show(byId("force-ratio-label"), field("force-kind").value === "ratio");
-  const answer = reactions(part, selected, force);
+  const answer = answered(part, selected, force);
+  if (answer === undefined) return;
   if (!answer) {
     byId("force-words").textContent = "The pegs of this fixture do not determine the forces.";
     return;
@@ -172,6 +173,31 @@ function write() {
   tellForces(answer.forces);
   writeBars(selected, answer);
 }
+
+/** What the server has told of a load on a fixture that the page does not solve. @type {{key: string, answer: any}|null} */
+let told = null;
+
+/** Forces and what is needed: solved here for four pegs, else told by the server; undefined until it has. */
+function answered(part, row, force) {
+  if (row.pegs.length === 4 || !row.rank) return reactions(part, row, force);
+  const key = JSON.stringify([state.job?.job, row.rank, force]);
+  if (told?.key === key) return told.answer;
+  tellSoon(key, row.rank, force);
+  return undefined;
+}
+
+const tellSoon = quiet(async (key, rank, force) => {
+  if (!state.force || !state.job?.job || !(force.size > 0 || force.moment)) return;
+  const body = { loads: [loadOf(force)], jaw_force: force.jaw, jaw: force.kind ?? "screw" };
+  try {
+    const { cases: [worst] } = await send(`jobs/${encodeURIComponent(state.job.job)}/fixtures/${rank}/loads`, body);
+    told = { key, answer: { forces: worst.largest, needed: worst.needed.value, jaw: worst.jaw_force, loose: worst.needed.peg } };
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    told = { key, answer: null };
+  }
+  write();
+}, 80);
 
 /** @param {number} value */
 function rounded(value) {

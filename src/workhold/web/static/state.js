@@ -85,7 +85,7 @@ export function change(patch) {
 /** What the server is asked to search. */
 export function request() {
   return {
-    workpiece: { name: state.part.name, loops: state.part.loops },
+    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0 },
     vise: state.vise,
     types: state.types,
     contact_margin: state.contactMargin,
