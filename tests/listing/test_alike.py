@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from attrs import evolve, fields
 
-from workhold import Vise, Workpiece, design, load
+from workhold import Plate, Vise, Workpiece, design, load
 from workhold.geometry.symmetry import symmetries
 from workhold.listing.alike import alike, entries, smallest_images
 from workhold.model.quality import TILT
@@ -55,6 +55,22 @@ def test_fixtures_of_a_symmetric_part_fall_together() -> None:
         seen.setdefault((fixture.type, tilt > 0, str(min(images))), set()).add(number)
     assert all(len(numbers) == 1 for numbers in seen.values())
     assert len(seen) == len(set(group.tolist())) < len(result)
+
+
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_clamps_keep_their_faces(clamps: int) -> None:
+    """On a lopsided part what is alike touches the same faces with its locators, and the same with each of its clamps."""
+    part = Workpiece.from_loops("lopsided", [[[0, 0, 0], [70, 0, 0], [58, 44, 0], [0, 36, 0]]])
+    plate = Plate(pitch=20, peg_radius=3, columns=6, rows=5, clamps=clamps, directions=["-x", "-y"])
+    result = design(part, plate)
+    group = alike(result.table, part, plate)
+    seen: dict[int, set[object]] = {}
+    for number, fixture in zip(group.tolist(), result, strict=True):
+        locators = tuple(sorted(peg.face for peg in fixture.pegs[:3]))
+        pushed = tuple(sorted((peg.carrier, peg.face) for peg in fixture.pegs[3:]))
+        seen.setdefault(number, set()).add((fixture.direction, locators, pushed))
+    assert all(len(kinds) == 1 for kinds in seen.values())
+    assert 1 < len(seen) < len(result)
 
 
 @pytest.mark.parametrize("corners", [5, 12])

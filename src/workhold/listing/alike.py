@@ -93,11 +93,11 @@ def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Of each row (K, 6) of arrangement, tilt and four faces the first of its images under the symmetries of the part."""
+    """Of each row (K, 6) of arrangement, tilt and faces the first of its images under the symmetries of the part."""
     numbers = np.array([face.number for face in workpiece.faces])
     carriers = toolkit.peg_carriers(keys[:, 0].astype(np.int8))
     # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
-    swaps = (carriers.sum(axis=1) * 2 == carriers.shape[1])[:, None]
+    swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
     images = np.array(symmetries([face.segment for face in workpiece.faces]))
     to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)
     to[:, numbers] = numbers[images]
@@ -109,7 +109,7 @@ def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> I
     if len(tried) >= len(images):
         tried = np.repeat(np.arange(len(images))[:, None], len(keys), axis=1)
     best = keys
-    for symmetry, turned in product(tried, (False, True)):
+    for symmetry, turned in product(tried, (False, True) if swaps.any() else (False,)):
         there = to[symmetry[:, None], keys[:, 2:]]
         if turned:
             there = np.where(swaps, there[:, [2, 3, 0, 1]], there)
