@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import pickle
 from math import cos, pi, sin, tan
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 from ezdxf.math import ConstructionEllipse, closed_uniform_bspline, rational_bspline_from_ellipse
@@ -207,6 +209,7 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
     part = read_dxf(tmp_path, draw, fit=0.05).workpiece
     bare = Workpiece.from_loops(part.name, part.loops)
     assert part.departure > 0.02 and part != bare
+    assert pickle.loads(pickle.dumps(part)) == part and attrs.evolve(part, name="another").departure == part.departure
     vise = workhold.Vise(pitch=10, columns=1, peg_radius=3)
     result = workhold.design(part, vise, best=5)
     added = workhold.design(bare, vise, best=5, tolerance=Tolerance(0.01, 0.01 + part.departure))

@@ -85,6 +85,15 @@ def test_a_line_that_runs_back_is_kept() -> None:
     assert merged([(0, 0), (40, 0), (30, 0.0002), (60, 0), (60, 40), (0, 40)]).merged == 0
 
 
+def test_a_hairpin_smaller_than_the_tolerance_is_kept() -> None:
+    """A line that turns round in small steps, runs back by half its length and turns again is within 0.001 mm of a line."""
+    turn = [(0.0002 * sin(k * pi / 12), 0.0002 - 0.0002 * cos(k * pi / 12)) for k in range(13)]
+    there = [(40 + x, y) for x, y in turn]
+    back = [(20 - x, 0.0004 + y) for x, y in turn]
+    loop = merged([(0, 0), *there, *back, (60, 0.0008), (60, 40), (0, 40)])
+    assert {20, 40} <= {round(float(x), 2) for x in loop.vertices[:, 0]}
+
+
 def test_arcs_of_one_circle_become_one() -> None:
     """Four quarters with four digits, a half circle in two parts, and none of two fillets of different radius."""
     rough = merged([(10, 0, 0.4142), (0, 10.0003, 0.4143), (-10, 0, 0.41415), (0, -10, 0.4142)])

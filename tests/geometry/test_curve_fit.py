@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import atan2, cos, dist, hypot, pi, sin, tan
+from math import atan2, cos, dist, hypot, pi, radians, sin, tan
 
 import numpy as np
 import pytest
@@ -242,6 +242,12 @@ def test_corners_of_a_curve_stay_corners() -> None:
     fitted = fitted_curve(pieces, 0.05)
     assert fitted is not None
     assert min(dist(point, (30, 0)) for point in fitted.points) < 1e-12
+    # Straight on either side of the corner, so that nothing else tells of it.
+    ahead = polynomial_pieces([(0, 0), (5, 20), (15, 20), (20, 10), (25, 0)])
+    aside = polynomial_pieces([(25, 0), (30, -1), (35, -2), (50, 10), (50, 30)])
+    straight = fitted_curve(joined_pieces([ahead, aside]), 0.05)
+    assert straight is not None and not straight.is_disguise
+    assert min(dist(point, (25, 0)) for point in straight.points) < 1e-12
 
 
 def test_a_bound_is_never_below_the_distance() -> None:
@@ -271,6 +277,15 @@ def test_a_curve_that_goes_round_once_more_is_not_the_arc() -> None:
     """Five quarters of a circle end where one quarter does."""
     turns = ellipse_pieces((0, 0), (10, 0), (0, 10), 0, 2.5 * pi)
     assert departure(turns, Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0), 1.0) == np.inf
+
+
+def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
+    """Forward by 60 degrees, back by 20, and on to 90: on the circle everywhere, and past some places three times."""
+    steps = [(0, 60), (60, -20), (40, 50)]
+    pieces = joined_pieces([ellipse_pieces((0, 0), (10, 0), (0, 10), radians(a), radians(b)) for a, b in steps])
+    arc = Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0)
+    assert departure(pieces, arc, 1.0) == np.inf
+    assert departure(ellipse_pieces((0, 0), (10, 0), (0, 10), 0, pi / 2), arc, 1.0) < 1e-12
 
 
 def test_a_cusp_does_not_end_the_fit() -> None:

@@ -175,21 +175,21 @@ def runs_merged(pieces: list[Piece], near: float, tolerance: float, least: int) 
     k = 0
     while k < len(pieces):
         stop = int(stops[np.searchsorted(stops, k + 1)])
-        taken, best, step, growing = k + 1, None, 1, True
-        if not pieces[k].kept:
-            further = min(k + (least if pieces[k].bulge == 0.0 else 2), stop)
-            while further > taken:
-                found = one_piece(pieces[k:further], points[k : further + 1], near, tolerance, least)
-                if found is not None:
-                    best, taken = found, further
-                    step = 2 * step if growing else max(step // 2, 0)
-                else:
-                    growing, step = False, step // 2
-                if (best is None and further - k >= LEAST_CHORDS) or step == 0:
-                    break
-                further = min(taken + step, stop) if best is not None else min(max(further + 1, k + least), stop)
-                if best is None and further == stop and found is None and further - k < least:
-                    break
+        # Two arcs can be a run, and so many chords; then steps that double and afterwards halve.
+        best, taken, step, growing = None, k + 1, 1, True
+        for fewest in (2, least):
+            if best is None and k + fewest <= stop:
+                taken = k + fewest
+                best = one_piece(pieces[k:taken], points[k : taken + 1], near, tolerance, least)
+        while best is not None and step and taken < stop:
+            further = min(taken + step, stop)
+            longer = one_piece(pieces[k:further], points[k : further + 1], near, tolerance, least)
+            growing = growing and longer is not None
+            step = 2 * step if growing else step // 2
+            if longer is not None:
+                best, taken = longer, further
+        if best is None:
+            taken = k + 1
         out.append(pieces[k] if best is None else best)
         k = taken
     return out

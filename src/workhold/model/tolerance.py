@@ -49,6 +49,8 @@ class Tolerance:
         --------
         >>> Tolerance(0.01, 0.02).with_departure(0.5).face
         0.52
+        >>> round(Tolerance(0.01, 0.02).with_departure(0.5).with_departure(0.1).face, 9)
+        0.12
         """
         if departure == self.departure:
             return self
