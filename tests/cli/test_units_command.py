@@ -197,5 +197,5 @@ def test_the_manual_lists_every_preset() -> None:
         pitch, peg = unit.figure(first.pitch[0]), unit.figure(2 * first.peg_radius)
         of = unit.abbreviation
         assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {first.columns or 'any'} |" in page
-    kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-")
+    kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-", "two-clamp-")
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == len(preset_names())

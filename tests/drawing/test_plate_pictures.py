@@ -23,8 +23,8 @@ def test_what_shows_of_a_clamp_is_where_it_is(way: str, bolted: bool) -> None:
     """One plate; the clamp pushes its way, its tip lies ahead of its hole by the stroke, and its hole or line is used."""
     fixture, workpiece, plate = on_plate(way, bolted)
     seen = shown(fixture, plate, workpiece)
-    (lattice,), (clamp,), measured = seen.carriers, seen.clamps, seen.measured
-    assert clamp.clamping == towards(way) and measured is not None
+    (lattice,), (clamp,), (measured,) = seen.carriers, seen.clamps, seen.measured
+    assert clamp.clamping == towards(way)
     tip, (dx, dy) = fixture.pegs[3], clamp.clamping
     assert {(peg.column, peg.row) for peg in fixture.pegs[:3]} <= lattice.used
     assert (tip.row in lattice.used_rows) and (bolted or way[1] == "x" or tip.column in lattice.used_columns)

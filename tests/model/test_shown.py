@@ -85,8 +85,7 @@ def test_a_plate_may_slide_either_way_along_either_axis(way: str, travelled: flo
     fixture = pegs_in(toolkit, travelled, ("base", 1, 1), ("base", 2, 3), ("slide", 0, 0), ("slide", 2, 1))
     seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
     check(seen)
-    base, slide, measured = *seen.carriers, seen.measured
-    assert measured is not None
+    (base, slide), (measured,) = seen.carriers, seen.measured
     start, end = measured.axes
     moved = np.array(end[0]) - np.array(start[0])
     along = 1 if way[1] == "y" else 0
@@ -106,7 +105,7 @@ def test_a_plate_alone_faces_nothing() -> None:
     fixture = pegs_in(toolkit, 0.0, ("base", 0, 0), ("base", 3, 0), ("base", 0, 4), ("base", 3, 4))
     seen = shown_beside(Box(5.0, 5.0, 25.0, 40.0), fixture, toolkit)
     check(seen)
-    assert seen.measured is None and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
+    assert seen.measured == () and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
     assert seen.carriers[0].plate == Box(-5.0, -6.0, 35.0, 54.0) and seen.carriers[0].broken == frozenset()
 
 
@@ -119,8 +118,8 @@ def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tupl
     check(seen)
     left, right = seen.carriers
     assert (left.clamping, right.clamping) == (None, clamping)
-    assert seen.measured is not None
-    assert (seen.measured.setting.start, seen.measured.setting.end) == ((20.0, 2.0), (56.0, 2.0))
+    (measured,) = seen.measured
+    assert (measured.setting.start, measured.setting.end) == ((20.0, 2.0), (56.0, 2.0))
     assert [(hole.column, hole.row) for hole in left.holes() if hole.blocked] == [(2, 1)]
     assert {hole.column for hole in right.holes() if hole.blocked} == {0}
     assert left.columns[-1] == 2 and right.columns[0] == 0

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Query, Vise, Workpiece, answer, design, load
+from workhold import Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.model.explanation import Explanation
 from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.units import MILLIMETRE
 from workhold.search import explaining
 from workhold.search.contacts import count_contacts
 from workhold.search.explaining import explain
@@ -111,3 +112,30 @@ def test_contacts_are_among_those_counted() -> None:
     explanation = explain(Query(part, vise))
     counted = count_contacts(part, vise)
     assert 0.5 * counted <= explanation.contacts <= counted
+
+
+RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
+
+
+def test_why_two_clamps_hold_nothing() -> None:
+    """Counts add up and end with the second clamp; no nearest miss, as each lacks a clamp; changes help as they say."""
+    plate = Plate(pitch=20, peg_radius=3, clamp_radius=5, travel=(10, 40), columns=3, rows=3, clamps=2)
+    explanation = explain(Query(RECTANGLE, plate))
+    removals = explanation.removals
+    assert explanation.contacts == removals[0].before and explanation.nearest is None
+    assert all(one.after == next_.before for one, next_ in pairwise(removals)) and removals[-1].after == 0
+    assert explanation.last_rule is not None and explanation.last_rule.startswith("a second clamp")
+    counts = {item.change: item.fixtures for item in explanation.helps}
+    assert counts["with a clamp of any stroke"] == len(design(RECTANGLE, evolve(plate, travel=None))) > 0
+
+
+def test_another_number_of_clamps_helps() -> None:
+    """A square rectangle takes a second clamp; a part that one clamp holds at every seat needs no second."""
+    square = Restrictions(angles=((-0.001, 0.001),))
+    one = Plate(pitch=20, peg_radius=3)
+    helps = {item.change: item for item in explain(Query(RECTANGLE, one, restrictions=square)).helps}
+    two = helps["with a second clamp"]
+    assert two.fixtures == len(design(RECTANGLE, one.changed(two.fields or {}), restrictions=square)) > 0
+    pairs = Query(RECTANGLE, evolve(one, clamps=2, directions=None, rows=2), ranking="clamp-freedom", listing="all")
+    changed = [item for item in explaining.changes(pairs, MILLIMETRE) if item[0] == "with one clamp"]
+    assert [item[1]().toolkit for item in changed] == [evolve(one, rows=2, directions=None)]

@@ -107,7 +107,7 @@ def test_a_clamp_is_drawn_back_no_farther_than_it_goes(server: RunningServer) ->
             if travel is None:
                 assert clamp["draws_back"] is None
             else:
-                assert clamp["draws_back"] == pytest.approx(row["setting"]["length"] - 12.5, abs=1e-9)
+                assert clamp["draws_back"] == pytest.approx(row["settings"][0]["length"] - 12.5, abs=1e-9)
 
 
 def test_what_would_help_says_which_fields_change(server: RunningServer) -> None:
@@ -137,4 +137,4 @@ def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer)
     nearest = server.client.get(f"{url}/explanation").json()["nearest"]
     clamp = nearest["row"]["carriers"][-1]
     assert (clamp["clamp"]["hole"], clamp["measured"]) == (None, None)
-    assert nearest["row"]["setting"]["length"] < 300
+    assert nearest["row"]["settings"][0]["length"] < 300

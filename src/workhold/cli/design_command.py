@@ -57,6 +57,12 @@ def design(
         default="both",
     ),
     best: str | None = option(SEARCH, "K", "Keep only the best K."),
+    listing: str | None = option(
+        SEARCH,
+        "best|all",
+        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there are; all: every "
+        "pair. best if not given.",
+    ),
     threads: str | None = option(SEARCH, "N", "Threads to use; all processors if not given."),
     engine: str = option(
         SEARCH,
@@ -74,10 +80,10 @@ def design(
     unfit: UnfitOption = False,
     reading: PartWords,
 ) -> None:
-    """Find every way to hold PART in a vise, or on a plate with a clamp.
+    """Find every way to hold PART in a vise, or on a plate with a clamp or two.
 
     In a vise four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type
-    II). On a plate three locators stand in holes, and a clamp pushes along a row or a column.
+    II). On a plate three locators stand in holes, and a clamp pushes along a row or a column, or two do.
     Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
 
     Example: workhold design part.dxf --vise plate-20mm --out part.json
@@ -102,7 +108,7 @@ def design(
     from workhold.model.query import Query
 
     workpiece = reading.load(part).workpiece
-    query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, **asked)
+    query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked)
     first_run = is_first_run()
     start = perf_counter()
     with ask_to_stop() as cancel:

@@ -51,7 +51,7 @@ of its own, such as 0.5in. workhold COMMAND --help explains a command.
 # The commands, each with the first paragraph of its help. A command is the function of its name in the module of its name,
 # which is imported when it is asked for: nobody waits for the others.
 COMMANDS = {
-    "design": "Find every way to hold PART in a vise, or on a plate with a clamp.",
+    "design": "Find every way to hold PART in a vise, or on a plate with a clamp or two.",
     "show": (
         "Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its "
         "quality, and what loads do to it (those of the result, if none are given here)."

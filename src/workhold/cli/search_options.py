@@ -28,7 +28,8 @@ LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
 JAW_FORCE = option(
     LOADS,
     "FORCE",
-    "Force that closes the vise, in N or with its unit (3kN, 700lbf); the one needed so that no peg lets go if not given.",
+    "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs; the "
+    "one needed so that no peg lets go if not given.",
 )
 JAW = option(
     LOADS,
@@ -64,14 +65,16 @@ class QueryWords:
     jaw_force: str | None = option(
         LOADS,
         "FORCE",
-        "Force that closes the vise, in N or with its unit (3kN, 700lbf), to warn of pegs that let go under the loads.",
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs, "
+        "to warn of pegs that let go under the loads.",
     )
     rank_by: str | None = option(
         RANKING,
         "FIGURES",
         "What makes a fixture good, the first counting most: warnings,penalty,clamp-amplification,closure-margin,"
         "edge-distance if not given, with load-reaction in third place if there are loads; also location-error, tilt, "
-        "smallest-face, wrench-radius, end-distance, jaw-force-needed.",
+        "smallest-face, wrench-radius, end-distance, jaw-force-needed, and of two clamps clamp-freedom, which is then in "
+        "third place.",
     )
     prefer: str | None = option(
         RANKING,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from workhold.model.proof import Proof, Undecided
     from workhold.model.quality import Figure
     from workhold.model.result import Result
+    from workhold.model.setting import Setting
     from workhold.model.toolkit import Toolkit
     from workhold.model.workpiece import Workpiece
 
@@ -111,9 +112,11 @@ def counts_sentence(result: Result) -> str:
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
-    sentence = (
-        f"{plural(total, 'fixture')}{of_types}; {sum(result.distinct.values())} distinct under the part's symmetry"
-    )
+    found = f"{plural(total, 'fixture')}{of_types}"
+    if result.pairs is not None and result.seats is not None:
+        each = f", the best of {plural(result.pairs, 'pair')} of clamps at each seat"
+        found += each if result.query.listing == "best" else f" at {plural(result.seats, 'seat')}"
+    sentence = f"{found}; {sum(result.distinct.values())} distinct under the part's symmetry"
     if len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
@@ -182,6 +185,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     sorted as it is.
     """
     from workhold.model.quality import FIGURES, LOCATION_ERROR
+    from workhold.model.setting import settings_of
     from workhold.statics.judging import unfit
 
     ranked = [figure for key in result.query.ranking for figure in FIGURES if figure.key == key]
@@ -190,8 +194,11 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     headings = [f">{heading(figure, unit)}" for figure in figures]
     toolkit = result.toolkit
     groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
-    columns = (">rank", ">like it", *groups, opening, ">angle deg", *headings, "type")
+    pairs = [">best of"] if toolkit.needs_pairs and result.query.listing == "best" else []
+    columns = (">rank", ">like it", *groups, *pairs, opening, ">angle deg", *headings, "type")
     table = Table(columns, spare=max(len(headings) - 1, 0) + 1)
+    # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
+    decimals, degrees_decimals = (unit.decimals - 2, 1) if toolkit.needs_pairs else (unit.decimals, 3)
     red = unfit(result.table.quality, result.query.tolerance)
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
         fixture = result[index]
@@ -204,8 +211,9 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
                 " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
                 for names in groups.values()
             ),
-            unit.number(length_set(fixture, toolkit)),
-            rounded(fixture.pose.theta_deg, 3),
+            *([f"{fixture.pair.count:,}"] if pairs and fixture.pair else []),
+            " ".join(unit.number(setting.length, decimals) for setting in settings_of(fixture, toolkit)),
+            rounded(fixture.pose.theta_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
                     figure, fixture.quality.get(figure.key, nan), unit
@@ -231,7 +239,8 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
     for carrier in toolkit.carriers:
         if carrier.is_wall:
             continue
-        word = carrier.noun if carrier in clamps else f"{carrier.peg}s" if clamps else f"{carrier.name} holes"
+        clamp = f"{carrier.noun}{'s' * toolkit.needs_pairs}"
+        word = clamp if carrier in clamps else f"{carrier.peg}s" if clamps else f"{carrier.name} holes"
         groups.setdefault(word, []).append(carrier.name)
     return groups
 
@@ -239,14 +248,6 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """The name of a peg's hole or line, without the noun of a clamp."""
     return peg.hole.removeprefix(f"{toolkit.carrier(peg.carrier).noun} ")
-
-
-def length_set(fixture: Fixture, toolkit: Toolkit) -> float:
-    """The length to set, in mm."""
-    from workhold.model.setting import setting_of
-
-    setting = setting_of(fixture, toolkit)
-    return fixture.jaw_separation if setting is None else setting.length
 
 
 def heading(figure: Figure, unit: Unit) -> str:
@@ -302,9 +303,12 @@ def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
     """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    from workhold.model.setting import settings_of
+
     noun, clamped = toolkit.moving.noun, fixture.direction is not None
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
-    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", f">force per {noun} force"))
+    per = f">force per {noun} force" if fixture.pair is None else f">force per {noun} force of both"
+    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", per))
     for peg in fixture.pegs:
         stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
         where = unit.number(peg.x), unit.number(peg.y)
@@ -312,7 +316,8 @@ def fixture_tables(
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
-        setting_sentence(fixture, toolkit, unit),
+        *(setting_sentence(setting, unit) for setting in settings_of(fixture, toolkit)),
+        *pair_sentences(fixture),
         f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
         f"{unit.abbreviation} from {origin_words(toolkit)}",
         pegs,
@@ -325,18 +330,29 @@ def origin_words(toolkit: Toolkit) -> str:
     return f"the {first.title}'s hole {hole_name(first.name, 0, 0)}" if wall is None else f"column A at the {wall.noun}"
 
 
-def setting_sentence(fixture: Fixture, toolkit: Toolkit, unit: Unit) -> str:
-    """What there is to set on what moves, and of a clamp where it is bolted and which way it pushes."""
-    from workhold.model.setting import mover_of, setting_of
-
-    mover, setting = mover_of(fixture, toolkit), setting_of(fixture, toolkit)
-    assert setting is not None
-    length = unit.text(setting.length)
-    if mover.on is None:
+def setting_sentence(setting: Setting, unit: Unit) -> str:
+    """What there is to set on something that moves, and of a clamp where it is bolted and which way it pushes."""
+    mover, length = setting.carrier, unit.text(setting.length)
+    if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
-    towards, where = toolkit.arrangement(fixture.type, fixture.direction).towards, place_of(fixture.pegs[-1], toolkit)
+    where = mover.place_name(setting.tip.column, setting.tip.row).removeprefix(f"{mover.noun} ")
     place = f"bolted in {where}" if mover.has_a_hole else f"on {where}"
-    return f"The {mover.noun}, {place}, pushes {towards}; {setting.title} {length}"
+    return f"The {mover.noun}, {place}, pushes {mover.towards}; {setting.title} {length}"
+
+
+def pair_sentences(fixture: Fixture) -> list[str]:
+    """In which order two clamps are tightened and with what forces; none of other fixtures."""
+    from workhold.model.tightening import clamp_names, clamp_shares, order_words
+
+    if fixture.pair is None:
+        return []
+    each = [
+        f"{share:.0%} at {name}" for name, share in zip(clamp_names(fixture), clamp_shares(fixture.pair), strict=True)
+    ]
+    return [
+        order_words(fixture),
+        f"Forces are told for {' and '.join(each)} of the clamp force, which is that of both.",
+    ]
 
 
 def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 __all__ = ["TOOLKIT", "ViseWords"]
 
 VISE = "The vise or plate"
-PLATE = "The clamp of a plate"
+PLATE = "The clamps of a plate"
 
 
 TOOLKIT = option(
     VISE,
     "NAME|FILE",
     "vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. gripper: a vise of "
-    "one column. plate: three locators on a plate of holes, and a clamp. fence: a straight wall that the part lies flush "
-    "against, one locator and a clamp. Or a name of workhold vises, or a TOML file. vise if not given.",
+    "one column. plate: three locators on a plate of holes, and a clamp or two. fence: a straight wall that the part lies "
+    "flush against, one locator and a clamp. Or a name of workhold vises, or a TOML file. vise if not given.",
     "--toolkit",
 )
 # Options that only one kind of toolkit has.
 OF_VISES = ("body_radius", "blocked", "min_gap", "min_opening", "max_opening", "row_offset")
-OF_PLATES = ("clamp_radius", "travel", "direction", "wall_offset")
+OF_PLATES = ("clamps", "clamp_radius", "travel", "direction", "wall_offset")
 
 
 @frozen
@@ -70,6 +70,11 @@ class ViseWords:
         "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
     )
     row_offset: str | None = option(VISE, "LENGTH", "Height of the right jaw's rows above the left jaw's.")
+    clamps: str | None = option(
+        PLATE,
+        "1|2",
+        "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
+    )
     clamp_radius: str | None = option(PLATE, "LENGTH", "Radius of the clamp's round tip; the peg radius if not given.")
     travel: str | None = option(
         PLATE,
@@ -81,7 +86,8 @@ class ViseWords:
         PLATE,
         "LIST",
         "In which the clamp may push: among -x, +x, -y, +y, such as --direction=-x,-y; all that a turn of the "
-        "plate does not make of another one, if not given.",
+        "plate does not make of another one, if not given. Of two clamps pairs, such as --direction=-x:-y,-x:+y, or single "
+        "ones for all pairs of them.",
     )
     wall_offset: str | None = option(
         PLATE, "LENGTH", "Of a fence: distance from its wall to the first row of holes' centres; must be given."
@@ -124,7 +130,9 @@ class ViseWords:
                 )
             out["travel"] = tuple(length("--travel", word, unit) for word in words)
         if self.direction is not None:
-            out["directions"] = [name.strip() for name in self.direction.split(",")]
+            out["directions"] = directions(self.direction)
+        if self.clamps is not None:
+            out["clamps"] = whole_number("--clamps", self.clamps)
         return out
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
@@ -207,3 +215,17 @@ class ViseWords:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
             vise = toolkit_of(kind, fields | {"min_gap": opening})
         return vise, tolerance
+
+
+def directions(text: str) -> list[str | tuple[str, ...]]:
+    """Directions from words such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``.
+
+    Raises
+    ------
+    InputError
+        For directions and pairs together.
+    """
+    words = [word.strip() for word in text.split(",")]
+    if len({":" in word for word in words}) == 2:
+        raise InputError(f"--direction {text!r} has pairs and single directions: give one kind, such as -x:-y,-x:+y.")
+    return [tuple(name.strip() for name in word.split(":")) if ":" in word else word for word in words]

@@ -28,8 +28,8 @@ def vises(
 ) -> None:
     """List the vises and plates that come with workhold, or show all figures of one.
 
-    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp. The others are such plates, one
-    on each jaw of a vise; their number of columns is a usual one: your jaws may have more or fewer.
+    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with two. The others
+    are such plates, one on each jaw of a vise; their number of columns is a usual one: your jaws may have more or fewer.
 
     Example: workhold vises plate-one-inch --unit inch
     """
@@ -113,7 +113,11 @@ def own_figures(loaded: LoadedVise, unit: Unit) -> Iterator[tuple[str, str]]:
             "from the clamp's hole to its tip",
             f"{reach} {of if toolkit.travel else ''}".strip() + assumed.get("travel", ""),
         )
-        yield "the clamp pushes along", " or ".join(toolkit.directions)
+        if toolkit.clamps == 2:
+            yield "clamps, needed together", "2"
+            yield "the clamps push along", " or ".join(" and ".join(pair) for pair in toolkit.directions)
+        else:
+            yield "the clamp pushes along", " or ".join(toolkit.directions)
     if isinstance(toolkit, Vise):
         yield "smallest gap between left and right pegs", f"{unit.figure(toolkit.min_gap)} {of}"
         most = toolkit.max_opening

@@ -36,7 +36,7 @@ class Bench:
     Parameters
     ----------
     loops : the placed outline and holes of the part.
-    faces : the placed faces the four pegs touch.
+    faces : the placed faces the pegs touch.
     contacts : contact point and outward normal of each peg.
     shown : the carriers as far as they show.
     """
@@ -117,15 +117,15 @@ def draw_bench(
         draw_holes(holes, carrier, view, most_holes(view, bench.shown))
     if bench.shown.wall is not None:
         draw_wall(scene.group("wall"), bench.shown.wall, view, weight)
-    if axes and bench.shown.measured is not None:
+    if axes and bench.shown.measured:
         group = scene.group("axes")
-        for low, high in bench.shown.measured.axes:
+        for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
             group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
     for clamp in bench.shown.clamps:
         draw_clamp(scene, clamp, bench.shown.carriers[0], view, weight)
     draw_part(scene, bench, view, weight)
     arrows = scene.group("forces")
-    for index in range(4):
+    for index in range(len(bench.fixture.pegs)):
         tail, tip = force_arrow(bench, index, view, longest)
         if hypot(tip[0] - tail[0], tip[1] - tail[1]) > 0:
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, floor, hypot, log10, pi, radians, sin
+from typing import Literal
 
 from workhold.drawing.fonts import text_width
 from workhold.drawing.length_unit import LengthUnit
@@ -17,13 +18,19 @@ BEYOND = 8.0
 
 
 def dimension(
-    scene: Scene, start: Point, end: Point, text: str, size: float = 15.0, bold: bool = False, above: bool = False
+    scene: Scene,
+    start: Point,
+    end: Point,
+    text: str,
+    size: float = 15.0,
+    bold: bool = False,
+    beyond: Literal["upper", "lower"] | None = None,
 ) -> Box:
     """Draw a dimension line between two page points, its text above it, readable from below or the right.
 
     Parameters
     ----------
-    above : write a text that is longer than an upright line beyond its upper end.
+    beyond : which end of an upright line a text that is longer than it is written beyond.
 
     Returns the box of the text.
     """
@@ -40,8 +47,10 @@ def dimension(
     middle = ((start[0] + end[0]) / 2 + 0.75 * size * uy, (start[1] + end[1]) / 2 - 0.85 * size * abs(ux))
     if abs(ux) < abs(uy):
         middle = (min(start[0], end[0]) - 0.75 * size, (start[1] + end[1]) / 2)
-        if above and text_width(text, size, bold) > length:
-            middle = (middle[0], min(start[1], end[1]) - text_width(text, size, bold) / 2 - BEYOND)
+        if beyond is not None and text_width(text, size, bold) > length:
+            away = text_width(text, size, bold) / 2 + BEYOND
+            y = min(start[1], end[1]) - away if beyond == "upper" else max(start[1], end[1]) + away
+            middle = (middle[0], y)
         scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
         return Box.about(middle, size, text_width(text, size, bold))
     scene.text(middle, text, size, "middle", bold, halo=3)

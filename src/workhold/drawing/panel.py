@@ -12,8 +12,9 @@ from workhold.drawing.plates import draw_wall
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.holes import hole_name
-from workhold.model.setting import mover_of, setting_of
+from workhold.model.setting import settings_of
 from workhold.model.shown import ShownWall
+from workhold.model.tightening import order_words
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -38,7 +39,7 @@ __all__ = [
 
 # Size of the name of a fact, and the least room between it and the value.
 FACT_NAME, FACT_GAP = 13.0, 8.0
-NUMBERS = ("no", "one", "two", "three", "four")
+NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
 class Column:
@@ -109,13 +110,19 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     ['Type I: two pegs on each jaw', 'Type II: three pegs left, one right']
     >>> arrangement_words(plate.arrangements[0], plate)
     'Three locators, the clamp pushes to the left'
+    >>> plate = Plate(pitch=20, peg_radius=5, clamps=2)
+    >>> arrangement_words(plate.arrangements[0], plate)
+    'Three locators, two clamps push to the left and downward'
     """
     counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
     if arrangement.direction is not None:
-        standing = plural(counts[0], carriers[0].peg, NUMBERS).capitalize()
+        standing, noun = plural(counts[0], carriers[0].peg, NUMBERS).capitalize(), toolkit.moving.noun
+        clamps = sum(toolkit.carriers[number].on is not None for number in arrangement.carriers)
         if toolkit.wall is not None:
             standing = f"{toolkit.wall.noun.capitalize()} and {carriers[0].peg}"
-        return f"{standing}, the {carriers[arrangement.carriers[-1]].noun} pushes {arrangement.towards}"
+        if clamps == 1:
+            return f"{standing}, the {noun} pushes {arrangement.towards}"
+        return f"{standing}, {plural(clamps, noun, NUMBERS)} push {arrangement.towards}"
     if len(counts) > 1 and len(set(counts)) == 1:
         return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
     words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
@@ -149,19 +156,25 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
     fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
     column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
     column.words(title or "Fixture", 18, gap=0.5)
-    column.words(fixture_words(fixture, toolkit), 14, fill=GREY)
+    column.paragraph(fixture_words(fixture, toolkit), 14, fill=GREY)
     column.rule(2.0)
 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, moving, setting = toolkit.carriers[0], mover_of(fixture, toolkit), setting_of(fixture, toolkit)
-    if setting is not None:
+    first, moving, settings = toolkit.carriers[0], toolkit.moving, settings_of(fixture, toolkit)
+    for setting in settings:
         column.words(setting.title[0].upper() + setting.title[1:], 13, fill=GREY, gap=0.8)
-        column.words(lengths.words(setting.length), 32, bold=True, gap=0.4)
-    if moving.on is not None:
-        column.fact(*clamp_place(fixture.pegs[-1], moving))
-        column.fact(f"{moving.noun.capitalize()} pushes", toolkit.arrangement(fixture.type, fixture.direction).towards)
+        column.words(lengths.words(setting.length), 32 if len(settings) == 1 else 22, bold=True, gap=0.4)
+        if setting.tip is not None:
+            label, place = clamp_place(setting.tip, setting.carrier)
+            column.fact(label, f"{place}, pushes {setting.carrier.towards}" if len(settings) > 1 else place)
+    if fixture.pair is not None:
+        column.paragraph(order_words(fixture), 13)
+        column.y += 3
+        column.fact("Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°")
+    elif moving.on is not None:
+        column.fact(f"{moving.noun.capitalize()} pushes", moving.towards)
     column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
@@ -205,7 +218,7 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 
 
 def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Write the four pegs: hole, face, place and force."""
+    """Write the pegs: hole, face, place and force."""
     ends, first = (0.32, 0.575, 0.82, 1.0), toolkit.carriers[0]
     places = [(lengths.number(peg.x), lengths.number(peg.y)) for peg in fixture.pegs]
     widest = max(text_width(cell, 14) for place in places for cell in place)
@@ -214,14 +227,16 @@ def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: 
     column.row([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
     for peg, place in zip(fixture.pegs, places, strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
-        column.row([peg.hole if carrier.on is None else carrier.noun, peg.touched, *place, force], ends, size)
+        named = peg.hole if carrier.on is None or fixture.pair is not None else carrier.noun
+        column.row([named, peg.touched, *place, force], ends, size)
     column.y += 2
     origin = hole_name(first.name, 0, 0)
     away = f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}."
     if toolkit.wall is not None:
         away = f"x from column A, y from the {toolkit.wall.noun}, to centres."
     column.words(away, 11, fill=GREY)
-    column.words("Force: on the part, per unit of clamping force.", 11, fill=GREY)
+    of = "both clamps' force" if fixture.pair else "clamping force"
+    column.words(f"Force: on the part, per unit of {of}.", 11, fill=GREY)
     column.rule()
 
 

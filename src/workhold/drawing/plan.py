@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import reduce
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, radians, sin
+from typing import Literal
 
 import numpy as np
 
@@ -33,6 +34,8 @@ LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
 TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
 ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
+# From the plates to the line of a dimension, and to a second one along the same way, page units.
+DIMENSION, FARTHER = 42.0, 24.0
 RIM_WORD = 10.0
 # Between the names of carriers, page units.
 CAPTION_GAP = 16.0
@@ -154,19 +157,26 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 
 
 def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> list[Box]:
-    """Dimension the length to set, above the plates or at their right, and return where the words stand."""
-    group, measured = scene.group("opening"), bench.shown.measured
-    if measured is None:
-        return []
-    upright, setting = measured.is_upright, measured.setting
-    start, end = (
-        (frame.x1 + 42, y) if upright else (x, frame.y0 - 42) for x, y in (view(high) for _, high in measured.axes)
-    )
-    for x, y in (start, end):
-        group.line([(x - 19, y), (x + 3, y)] if upright else [(x, y + 19), (x, y - 3)], BLACK, 0.7)
-    return [
-        dimension(group, start, end, f"{setting.sign} = {lengths.words(setting.length)}", 17, bold=True, above=True)
-    ]
+    """Dimension the lengths to set, above the plates or at their right, and return where the words stand.
+
+    Of two along the same way the second stands farther out.
+    """
+    group, boxes = scene.group("opening"), []
+    for number, measured in enumerate(bench.shown.measured):
+        upright, setting = measured.is_upright, measured.setting
+        out = DIMENSION + FARTHER * sum(one.is_upright == upright for one in bench.shown.measured[:number])
+        start, end = (
+            (frame.x1 + out, y) if upright else (x, frame.y0 - out)
+            for x, y in (view(high) for _, high in measured.axes)
+        )
+        for x, y in (start, end):
+            group.line([(x - out + 23, y), (x + 3, y)] if upright else [(x, y + out - 23), (x, y - 3)], BLACK, 0.7)
+        words = f"{setting.sign} = {lengths.words(setting.length)}"
+        # The upper right corner has room for the words of one length only.
+        shared = any(one.is_upright != upright for one in bench.shown.measured)
+        beyond: Literal["upper", "lower"] = "lower" if shared and start[1] + end[1] < frame.y0 + frame.y1 else "upper"
+        boxes.append(dimension(group, start, end, words, 17, bold=True, beyond=beyond))
+    return boxes
 
 
 def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
@@ -276,7 +286,7 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
     arc = np.linspace(0.0, turn, 24)
     placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
-    for low, high in bench.shown.measured.axes if bench.shown.measured else ():
+    for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
         placer.avoid_line(view(low), view(high), 0.5)
     for clamp in bench.shown.clamps:
         avoid_clamp(placer, clamp, view)

@@ -59,7 +59,10 @@ class Arrangement:
 
 
 def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence[Block]) -> Arrangement:
-    """The arrangement of blocks and a plan of an extent (mm) on a paper (width and height when upright, page units)."""
+    """The arrangement of blocks and a plan of an extent (mm) on a paper (width and height when upright, page units).
+
+    Of needed blocks that leave no room for a plan the last ones go to the second page.
+    """
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
     choices = [
@@ -68,6 +71,8 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
         below(paper, extent, blocks, least),
     ]
     found = [choice for choice in choices if choice is not None]
+    if not found and needed:
+        return arranged(paper, extent, needed[:-1], [needed[-1], *others])
     best = max(found, key=lambda choice: choice.scale.factor)
     single = [choice for choice in found if not choice.second]
     if single:

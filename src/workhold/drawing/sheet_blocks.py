@@ -7,7 +7,7 @@ from collections.abc import Callable
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.panel import NUMBERS, Column, draw_legend, fixture_words, offset_words
 from workhold.drawing.scene import BLACK
-from workhold.drawing.sheet_clamp import clamp_steps, write_clamp, write_locators, write_plate
+from workhold.drawing.sheet_clamp import clamp_steps, clamp_writers, write_locators, write_plate
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_figures import write_loads, write_quality
 from workhold.drawing.sheet_side import write_part, write_side
@@ -36,7 +36,7 @@ MOST_NAME_LINES = 3
 def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     """All blocks of a sheet in reading order: those needed beside the plan, and the others."""
     clamped = sheet.fixture.direction is not None
-    held = [write_locators, write_clamp] if clamped else [write_pegs, write_opening]
+    held = [write_locators, *clamp_writers(sheet)] if clamped else [write_pegs, write_opening]
     needed, others = [write_title, *held, write_zero], [write_side, write_part, write_steps]
     if sheet.cautions:
         needed.append(write_cautions)
@@ -62,7 +62,7 @@ def write_title(column: Column, sheet: Sheet) -> None:
         column.words(line, size, bold=True, gap=0.4)
     column.y += 4
     column.words(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
-    column.words(fixture_words(sheet.fixture, sheet.toolkit), BODY, gap=0.3)
+    column.paragraph(fixture_words(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
     lengths = sheet.lengths
     column.words(f"Outside {lengths.number(x1 - x0)} × {lengths.words(y1 - y0)}, as drawn", BODY, gap=0.3)

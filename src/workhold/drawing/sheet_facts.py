@@ -120,14 +120,12 @@ def cautions_of(
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
     if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
-        found.append(
-            Caution("closure", f"Weak closure: {weakest.hole} has only {margin:.2%} of the hold (even would be 25%).")
-        )
+        words = f"{weakest.hole} has only {margin:.2%} of the hold (even would be {100 // len(fixture.pegs)}%)"
+        found.append(Caution("closure", f"Weak closure: {words}."))
     largest = max(fixture.pegs, key=lambda peg: peg.force)
     if is_strong(largest.force):
-        words = (
-            f"{largest.hole} pushes {largest.force:.1f} times as hard as the {toolkit.moving.pushers}: tighten gently"
-        )
+        pushers = f"the {toolkit.moving.pushers}" if fixture.pair is None else f"both {toolkit.moving.noun}s together"
+        words = f"{largest.hole} pushes {largest.force:.1f} times as hard as {pushers}: tighten gently"
         found.append(Caution("amplification", f"{words}, it may mark {largest.touching}."))
     if is_astray(error, off):
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"

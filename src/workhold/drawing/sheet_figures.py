@@ -76,7 +76,13 @@ def write_loads(column: Column, sheet: Sheet) -> None:
     heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
     friction = [] if details.friction is None else [f"µ {details.friction:g}"]
-    names = (moving.noun if sheet.toolkit.carrier(peg.carrier).on else peg.hole for peg in sheet.fixture.pegs)
+    several = sheet.fixture.pair is not None
+    names = [
+        moving.noun
+        if sheet.toolkit.carrier(peg.carrier).on and not several
+        else peg.hole.removeprefix(f"{moving.noun} ")
+        for peg in sheet.fixture.pegs
+    ]
     header = ["Load", "needs" if moving.on else moving.pushers, *friction, *names]
     rows = []
     for number, case in cases[:MOST_LOADS]:
@@ -95,6 +101,8 @@ def write_loads(column: Column, sheet: Sheet) -> None:
     what = jaw_words(cases[0][1].jaw_stiffness, sheet.toolkit)
     what = f"the {moving.noun} force below which a peg lets go in {what}"
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
+    if several:
+        column.paragraph(f"The {moving.noun} force is that of both {moving.noun}s added up, in the ratio told.", NOTE)
     if details.friction is not None:
         column.paragraph(
             f"µ {details.friction:g}: the least {moving.noun} force that could hold at all with that friction.", NOTE

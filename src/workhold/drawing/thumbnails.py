@@ -99,7 +99,8 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, len
     group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
     group.text((cell.x0 + 10, cell.y1 - 12), f"margin {closure_margin(fixture)}", 12, fill=GREY)
-    if bench.shown.measured is not None:
-        setting = bench.shown.measured.setting
-        words = f"{setting.sign} = {lengths.words(setting.length)}"
+    if bench.shown.measured:
+        settings = [measured.setting for measured in bench.shown.measured]
+        signs = " and ".join(dict.fromkeys(setting.sign for setting in settings))
+        words = f"{signs} = {', '.join(lengths.words(setting.length) for setting in settings)}"
         group.text((cell.x1 - 10, cell.y1 - 12), words, 12, "end", fill=GREY)

@@ -41,7 +41,7 @@ def no_pair_note(seats: int, contacts: int) -> str:
         return "No three locators and a clamp can touch the part at the same time inside their faces."
     if seats == 0:
         return (
-            "Three locators and a clamp can touch the part, but nowhere where a second clamp is needed has one a place."
+            "Three locators and a clamp can touch the part, but there is no place for the second clamp that is needed."
         )
     return f"No two clamps press the part against all three locators at any of the {seats} seats found."
 

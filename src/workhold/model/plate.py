@@ -251,6 +251,11 @@ class Plate(Toolkit):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""
+        if self.clamps == 2:
+            yield Change("with one clamp", {"clamps": 1, "directions": None})
+            if len(self.distinct_pairs) == 1:
+                pairs = ("-x", "-y"), ("-x", "+y")
+                yield Change("with the clamps along rows and columns either way", {"directions": pairs})
         if self.clamps == 1:
             yield Change("with a second clamp", {"clamps": 2, "directions": None})
             if len(self.distinct_directions) == 1:

@@ -74,7 +74,7 @@ class Figure:
 
 
 FIGURES = (
-    Figure("closure_margin", "", True, "The smallest share of the four contacts in holding the part."),
+    Figure("closure_margin", "", True, "The smallest share of a contact in holding the part."),
     Figure("clamp_amplification", "", False, "The largest peg force per unit of jaw force."),
     Figure("wrench_radius", "", True, "The smallest disturbance that a grip of unit forces does not resist."),
     Figure("location_error", "mm", False, "The farthest a point of the part can be off when pegs and faces are."),

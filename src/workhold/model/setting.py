@@ -1,4 +1,4 @@
-"""What a machinist sets on the carrier that moves, of which every picture, sheet and table tells.
+"""What a machinist sets on each thing that moves, of which every picture, sheet and table tells.
 
 Of a vise it is the opening. Of a clamp that is bolted in a hole it is the stroke, from the hole to the tip; of one of
 which only the line is known, how far its tip is from the first column or row.
@@ -9,10 +9,10 @@ from __future__ import annotations
 from attrs import frozen
 
 from workhold.geometry.segment import Point
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.toolkit import Carrier, Toolkit
 
-__all__ = ["Setting", "mover_of", "setting_of"]
+__all__ = ["Setting", "settings_of"]
 
 
 @frozen
@@ -26,6 +26,8 @@ class Setting:
     sign : what stands before it on a drawing, such as "S".
     length : in mm.
     start, end : the points that it is measured between along the travel, in mm.
+    carrier : what moves.
+    tip : the peg of a clamp that touches the part; None of what has a lattice of its own.
     """
 
     name: str
@@ -34,41 +36,56 @@ class Setting:
     length: float
     start: Point
     end: Point
+    carrier: Carrier
+    tip: Peg | None = None
 
 
-def mover_of(fixture: Fixture, toolkit: Toolkit) -> Carrier:
-    """The carrier that moves in a fixture: that of its last peg, where a toolkit has several or none."""
-    moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
-    return moving[0] if len(moving) == 1 else toolkit.carrier(fixture.pegs[-1].carrier)
-
-
-def setting_of(fixture: Fixture, toolkit: Toolkit) -> Setting | None:
-    """What there is to set; None where nothing moves.
+def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[Setting, ...]:
+    """What there is to set: of a vise one length, of clamps one each in their order, and nothing where nothing moves.
 
     Examples
     --------
-    >>> from workhold.model.fixture import Peg, Pose
+    >>> from workhold.model.fixture import Pose
     >>> from workhold import Plate
     >>> plate, tip = Plate(pitch=20, peg_radius=3, travel=(10, 30)), Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
-    >>> setting = setting_of(Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x"), plate)
+    >>> (setting,) = settings_of(Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x"), plate)
     >>> setting.sign, setting.length, setting.start
     ('stroke', 14.0, (80.0, 20.0))
     """
-    carrier, travelled = mover_of(fixture, toolkit), fixture.jaw_separation
-    if carrier.travel is None:
-        return None
-    if carrier.on is None:
-        start, end = carrier.place(0, 0), carrier.place(0, 0, travelled)
-        name = "opening S"
-        return Setting(name, f"{name} of the {carrier.noun}s", "S", travelled, start, end)
-    tip = fixture.pegs[-1]
-    end = (tip.x, tip.y)
+    clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).on is not None]
+    if clamps:
+        travels = (fixture.jaw_separation,) if fixture.pair is None else fixture.pair.travels
+        return tuple(
+            clamp_setting(tip, toolkit, travelled, len(clamps))
+            for tip, travelled in zip(clamps, travels, strict=True)
+            if toolkit.carrier(tip.carrier).travel is not None
+        )
+    travelled, name = fixture.jaw_separation, "opening S"
+    return tuple(
+        Setting(
+            name=name,
+            title=f"{name} of the {carrier.noun}s",
+            sign="S",
+            length=travelled,
+            start=carrier.place(0, 0),
+            end=carrier.place(0, 0, travelled),
+            carrier=carrier,
+        )
+        for carrier in toolkit.carriers
+        if carrier.travel is not None and carrier.on is None
+    )
+
+
+def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> Setting:
+    """What there is to set on one of some clamps."""
+    carrier, end = toolkit.carrier(tip.carrier), (tip.x, tip.y)
+    named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
     if carrier.has_a_hole:
         start, stroke = carrier.place(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
-        return Setting("stroke", f"stroke of the {carrier.noun}, from hole to tip", "stroke", stroke, start, end)
+        return Setting("stroke", f"stroke of {named}, from hole to tip", "stroke", stroke, start, end, carrier, tip)
     if carrier.is_along_x:
         sign, first, length, start = "x", "column A", tip.x, (0.0, tip.y)
     else:
         first = "row 1" if toolkit.wall is None else f"the {toolkit.wall.noun}"
         sign, length, start = "y", tip.y, (tip.x, 0.0)
-    return Setting(f"tip {sign}", f"tip of the {carrier.noun}, {sign} from {first}", sign, length, start, end)
+    return Setting(f"tip {sign}", f"tip of {named}, {sign} from {first}", sign, length, start, end, carrier, tip)

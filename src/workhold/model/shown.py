@@ -31,7 +31,7 @@ from workhold.geometry.segment import Arc, Point
 from workhold.limits import MOST_STEPS
 from workhold.model.clamp import ShownClamp, clamping_direction, shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.setting import Setting, mover_of, setting_of
+from workhold.model.setting import Setting, settings_of
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -166,15 +166,11 @@ class Measured:
     axes : each from left to right or upward. Those of a plate that slides lie across the plates that stand still and across
         its own; those of a clamp lead from it to the plate's upper or right side.
     is_upright : whether it is measured along y.
-    pitch : of the carrier, in mm along x and y.
-    carrier : its name.
     """
 
     setting: Setting
     axes: tuple[Axis, Axis]
     is_upright: bool
-    pitch: tuple[float, float]
-    carrier: str
 
 
 @frozen
@@ -201,14 +197,14 @@ class Shown:
     ----------
     carriers : those that have a plate, those that stand still first.
     clamps : those that are bolted to a plate.
-    measured : the length to set; None where nothing moves.
+    measured : the lengths to set, one for each thing that moves.
     part : extent of the part in mm.
     wall : what the part lies flush against; None where there is no wall.
     """
 
     carriers: tuple[ShownCarrier, ...]
     clamps: tuple[ShownClamp, ...]
-    measured: Measured | None
+    measured: tuple[Measured, ...]
     part: Box
     wall: ShownWall | None = None
 
@@ -296,7 +292,8 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 clamping=clamping_direction(carrier, toolkit),
             )
         )
-    seen = Shown(tuple(out), clamps, measured_between(out, fixture, toolkit), part)
+    measured = tuple(measured_between(out, setting) for setting in settings_of(fixture, toolkit))
+    seen = Shown(tuple(out), clamps, measured, part)
     return seen if toolkit.wall is None else with_wall(seen, fixture, toolkit.wall)
 
 
@@ -311,11 +308,10 @@ def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
     return evolve(seen, carriers=(plate,), wall=ShownWall(carrier, bar, (left, right)))
 
 
-def measured_between(seen: Sequence[ShownCarrier], fixture: Fixture, toolkit: Toolkit) -> Measured | None:
-    """The length to set and the axes it is measured between."""
-    setting, mover = setting_of(fixture, toolkit), mover_of(fixture, toolkit)
-    if setting is None or mover.travel is None:
-        return None
+def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured:
+    """A length to set and the axes it is measured between."""
+    mover = setting.carrier
+    assert mover.travel is not None
     along, across = mover.travel.unit
     upright = abs(across) > abs(along)
     still = [one.plate for one in seen if one.clamping is None]
@@ -328,8 +324,7 @@ def measured_between(seen: Sequence[ShownCarrier], fixture: Fixture, toolkit: To
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    axes = axis(setting.start, still), axis(setting.end, own or still)
-    return Measured(setting, axes, upright, mover.pitch, mover.name)
+    return Measured(setting, (axis(setting.start, still), axis(setting.end, own or still)), upright)
 
 
 def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier], clamps: Sequence[ShownClamp]) -> Box:

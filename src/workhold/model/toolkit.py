@@ -103,6 +103,11 @@ class Carrier:
         return self.travel is not None and self.travel.unit[0] != 0.0
 
     @property
+    def towards(self) -> str:
+        """Which way a clamp pushes, in words, on a plan whose y runs up; nothing of what is named for no direction."""
+        return TOWARDS.get(self.name.rpartition(" ")[2], "")
+
+    @property
     def pushers(self) -> str:
         """What pushes the part as it moves: such jaws together, or a clamp."""
         return f"{self.noun}s" if self.on is None else self.noun

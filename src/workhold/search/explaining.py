@@ -55,6 +55,8 @@ EVEN = 1e-6
 HELP_SECONDS = 10.0
 # Where something is that lies along +x of a frame so many quarter turns on.
 BESIDE = ("to the right of", "above", "to the left of", "below")
+# What is asked last of three locators and a clamp, where two clamps are needed.
+SECOND_CLAMP = "a second clamp that holds the part together with the first, and is needed for it"
 # A contact misses closure by this much at most to be called near.
 ROUNDING = 1e-12
 
@@ -93,6 +95,10 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     threads : how many threads share the work; None for one on each processor.
     unit : of the lengths in its words.
     """
+    if query.toolkit.needs_pairs:
+        single = [Problem.of(held_in(query, way)) for way in query.toolkit.ways]
+        first, removals, nearest = together([removals_of_pairs(problem, threads) for problem in single])
+        return Explanation(first, removals, nearest, helps(query, threads, unit))
     ways = [evolve(query, toolkit=way) for way in query.toolkit.ways]
     if query.toolkit.wall is not None:
         first, removals, nearest = together([removals_on_fence(way) for way in ways])
@@ -134,6 +140,15 @@ def removals_of(problem: Problem, threads: int | None, unit: Unit) -> Removals:
             nearest = nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
     return first, tuple(removal for removal in removals if removal.before > 0), nearest
+
+
+def removals_of_pairs(problem: Problem, threads: int | None) -> Removals:
+    """The same of two clamps, in the direction of one: sets of three locators and a clamp, of which a second one is asked
+    that holds the part together with it and alone does not. None comes nearest, as each is a clamp short."""
+    left = len(all_contacts(problem, threads).margin)
+    first, removals = restriction_removals(problem, threads, left)
+    removals.append(Removal(SECOND_CLAMP, left, 0))
+    return first, tuple(removal for removal in removals if removal.before > 0), None
 
 
 def all_contacts(problem: Problem, threads: int | None) -> Contacts:
@@ -383,4 +398,11 @@ def held_in_another(query: Query, change: Change) -> Query:
     InputError
         When there is no such toolkit.
     """
-    return evolve(query, toolkit=query.toolkit.changed(change.fields))
+    return held_in(query, query.toolkit.changed(change.fields))
+
+
+def held_in(query: Query, toolkit: Toolkit) -> Query:
+    """A query in another toolkit of the kind, where that has another number of clamps without what only the first has."""
+    if toolkit.needs_pairs == query.toolkit.needs_pairs:
+        return evolve(query, toolkit=toolkit)
+    return evolve(query, toolkit=toolkit, arrangements=None, ranking=None, listing=None)

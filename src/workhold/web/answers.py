@@ -18,8 +18,9 @@ from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.setting import setting_of
+from workhold.model.setting import settings_of
 from workhold.model.shown import Shown, shown
+from workhold.model.tightening import order_words
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -182,9 +183,9 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     ``origin`` is its hole in column 0 and row 0, ``pegs`` are the numbers of its pegs, ``used_columns`` and ``used_rows``
     those of them and of clamps; ``measured`` are the upper or right ends of the axes that its travel is measured between.
     """
-    measured = {}
-    if seen.measured is not None:
-        measured[seen.measured.carrier] = [list(high) for _, high in seen.measured.axes]
+    ends = [(one.setting, [list(high) for _, high in one.axes]) for one in seen.measured]
+    measured = {setting.carrier.name: axes for setting, axes in ends if setting.tip is None}
+    of_clamps = [axes for setting, axes in ends if setting.tip is not None]
     numbers = count()
     lattices: list[dict[str, Any]] = [
         {
@@ -226,7 +227,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "pegs": [next(numbers)],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
-            "measured": measured.get(each.carrier.name) if is_reached(each) else None,
+            "measured": axes if is_reached(each) else None,
             "clamp": {
                 # Of four contacts that are no fixture the clamp may reach no hole.
                 "hole": each.hole if is_reached(each) else None,
@@ -236,7 +237,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
                 "line": [plate.plate.x0, plate.plate.y0, plate.plate.x1, plate.plate.y1],
             },
         }
-        for each in seen.clamps
+        for each, axes in zip(seen.clamps, of_clamps, strict=True)
     ]
     return lattices + clamps
 
@@ -284,12 +285,9 @@ def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
     return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
 
 
-def setting_answer(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any] | None:
-    """The length to set, with its sign and its name, and what pushes; None where nothing moves."""
-    setting = setting_of(fixture, toolkit)
-    if setting is None:
-        return None
-    return {"sign": setting.sign, "name": setting.name, "length": setting.length}
+def settings_answer(fixture: Fixture, toolkit: Toolkit) -> list[dict[str, Any]]:
+    """The lengths to set, each with its sign and its name."""
+    return [{"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(fixture, toolkit)]
 
 
 def title_of(arrangement: Arrangement) -> str:
@@ -307,7 +305,9 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     return {
         "type": fixture.type,
         "title": title_of(toolkit.arrangement(fixture.type, fixture.direction)),
-        "setting": setting_answer(fixture, toolkit),
+        "settings": settings_answer(fixture, toolkit),
+        "order": order_words(fixture),
+        "pairs": None if fixture.pair is None else fixture.pair.count,
         "mover": toolkit.moving.noun,
         "origin": origin_name(toolkit),
         "holes": [peg.hole for peg in fixture.pegs],

@@ -14,6 +14,7 @@ from workhold.errors import InputError
 from workhold.files.toolkit.dowels import dowel_series, dowel_size
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.model.plate import Plate
 from workhold.model.tolerance import Tolerance
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
@@ -57,6 +58,7 @@ def test_figures_of_the_presets() -> None:
         "plate-one-inch": ((25.4, 25.4), 6.35, 3),
         "table-50mm": ((50, 50), 16, 2),
         "table-100mm": ((100, 100), 28, 2),
+        "two-clamp-plate-20mm": ((20, 20), 6, None),
     }
 
 
@@ -217,3 +219,22 @@ def test_binary_files_are_refused(tmp_path: Path) -> None:
     path.write_bytes(b"pitch = \xff")
     with pytest.raises(InputError, match=r"jaws\.toml: the file is not UTF-8 text \(byte 8\)"):
         load_vise(path)
+
+
+def test_two_clamps_in_a_file(tmp_path: Path) -> None:
+    """Pairs of directions are written as pairs, single ones stand for all pairs; what is neither is refused."""
+    path = tmp_path / "own.toml"
+    lines = 'unit = "mm"\nkind = "plate"\npitch = 20\npeg_radius = 3\nclamps = {}\ndirections = {}\n'
+    for directions, told in (('[["-x", "-y"]]', (("-x", "-y"),)), ('["-x"]', (("-x", "-x"),))):
+        path.write_text(lines.format(2, directions))
+        toolkit = load_vise(path).toolkit
+        assert isinstance(toolkit, Plate) and toolkit.directions == told
+    for clamps, directions, message in (
+        (2, '[["-x"]]', "directions is not what it should be"),
+        (1, '[["-x", "-y"]]', "there is one clamp"),
+        (3, '["-x"]', "1 or 2"),
+        ('"two"', '["-x"]', "clamps is not what it should be: write 1 or 2."),
+    ):
+        path.write_text(lines.format(clamps, directions))
+        with pytest.raises(InputError, match=message):
+            load_vise(path)

@@ -146,7 +146,7 @@ def test_the_clamp_closes(browser: Any, server: RunningServer) -> None:
           return [...ends, Number(bolt.getAttribute("cx"))];
         }"""
     )
-    way = [(b - a) / row["setting"]["length"] for a, b in zip(clamp["hole"], clamp["tip"], strict=True)]
+    way = [(b - a) / row["settings"][0]["length"] for a, b in zip(clamp["hole"], clamp["tip"], strict=True)]
     back = [tip - clamp["draws_back"] * part for tip, part in zip(clamp["tip"], way, strict=True)]
     assert begun == pytest.approx([*clamp["hole"], *back, clamp["hole"][0]], abs=1e-6)
     page.wait_for_selector("#drawing-fixture .sliding:not([transform]) .peg", state="attached")

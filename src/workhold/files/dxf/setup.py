@@ -22,7 +22,6 @@ from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.holes import column_letters
 from workhold.model.part_zero import PartZero, part_zero
-from workhold.model.setting import mover_of
 from workhold.model.shown import MOST_HOLES, Shown, shown
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
@@ -93,7 +92,7 @@ def setup_dxf(
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
-        add_travel(space, seen, setting_layer(mover_of(fixture, toolkit)))
+        add_travel(space, seen)
         add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
         # The library would add them in an order that differs from process to process.
         for name in sorted(document.entitydb.dxf_types_in_use()):
@@ -244,23 +243,24 @@ def add_wall(space: Modelspace, seen: Shown) -> None:
         space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(seen.wall.carrier)})
 
 
-def add_travel(space: Modelspace, seen: Shown, layer_name: str) -> None:
-    """Add the axes that the length to set is measured between, and the length itself beyond the plates."""
-    layer, measured = {"layer": layer_name}, seen.measured
-    if measured is None:
-        return
-    (x0, y0), (x1, y1) = (high for _, high in measured.axes)
-    pitch_x, pitch_y = measured.pitch
-    if measured.is_upright:
-        out = max(x0, x1) + pitch_x
-        start, end, name_at = (out, y0), (out, y1), (out + pitch_x / 2, (y0 + y1) / 2)
-    else:
-        out = max(y0, y1) + pitch_y
-        start, end, name_at = (x0, out), (x1, out), ((x0 + x1) / 2, out + pitch_y / 2)
-    for (low, _), high in zip(measured.axes, (start, end), strict=True):
-        space.add_line(low, high, layer)
-    space.add_line(start, end, layer)
-    add_text(space, f"{measured.setting.sign} = {measured.setting.length:.6g} mm", name_at, seen)
+def add_travel(space: Modelspace, seen: Shown) -> None:
+    """Add the axes that each length to set is measured between, and the length itself beyond the plates, of two along the
+    same way the second farther out."""
+    for number, measured in enumerate(seen.measured):
+        setting, layer = measured.setting, {"layer": setting_layer(measured.setting.carrier)}
+        farther = 1 + sum(one.is_upright == measured.is_upright for one in seen.measured[:number])
+        (x0, y0), (x1, y1) = (high for _, high in measured.axes)
+        pitch_x, pitch_y = setting.carrier.pitch
+        if measured.is_upright:
+            out = max(x0, x1) + farther * pitch_x
+            start, end, name_at = (out, y0), (out, y1), (out + pitch_x / 2, (y0 + y1) / 2)
+        else:
+            out = max(y0, y1) + farther * pitch_y
+            start, end, name_at = (x0, out), (x1, out), ((x0 + x1) / 2, out + pitch_y / 2)
+        for (low, _), high in zip(measured.axes, (start, end), strict=True):
+            space.add_line(low, high, layer)
+        space.add_line(start, end, layer)
+        add_text(space, f"{setting.sign} = {setting.length:.6g} mm", name_at, seen)
 
 
 def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:

@@ -16,6 +16,7 @@ from workhold.model.plate import Plate
 __all__ = ["checked"]
 
 Pair = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
+Ways = Annotated[list[str], Field(min_length=2, max_length=2)]
 
 
 class ToolkitForm(BaseModel):
@@ -56,7 +57,8 @@ class PlateForm(ToolkitForm):
     columns: int | None = None
     clamp_radius: FiniteFloat | None = None
     travel: Pair | None = None
-    directions: list[str] | None = None
+    clamps: int | None = None
+    directions: list[str] | list[Ways] | None = None
 
 
 class FenceForm(PlateForm):
@@ -76,7 +78,8 @@ WANTED = {
     "peg_radius": "write the radius of the pegs as a number",
     "wall_offset": "write the distance from the fence to the first row of holes",
     "travel": "write the least and the most from the clamp's hole to its tip, such as [10, 35]",
-    "directions": 'write a list of "-x", "+x", "-y" and "+y"',
+    "directions": 'write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
+    "clamps": "write 1 or 2",
     "assumed": 'write a list of the entries that no source gives, such as ["travel"]',
     "blocked": 'write a list of holes and columns by name, such as ["L-B3", "R-A"]',
     "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",

@@ -30,7 +30,7 @@ __all__ = ["LoadedVise", "described_vise", "read_vise_file"]
 LARGEST_FILE = 1_000_000
 LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius", "wall_offset")
 # Entries that are handed on as they are.
-PLAIN = ("columns", "rows", "directions")
+PLAIN = ("columns", "rows", "clamps", "directions")
 # Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
 ASSUMED_POSITION = Tolerance().peg
 

@@ -45,7 +45,7 @@ function writePegs(row) {
     ),
   );
   byId("pose-words").textContent =
-    `${row.setting.name[0].toUpperCase()}${row.setting.name.slice(1)} ${length(row.setting.length)}. Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
+    `${row.settings.map((one) => `${one.name[0].toUpperCase()}${one.name.slice(1)} ${length(one.length)}`).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
     `${bareLength(row.x)}, ${length(row.y)} from hole ${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${row.mover} force.`);
 }
 
@@ -68,8 +68,8 @@ function writeQuality(row, pinned) {
       return make("tr", { title: pressedBy(figure.meaning, row.mover) }, make("th", { scope: "row" }, pressedBy(figure.words, row.mover)), ...cells);
     });
   if (pinned) {
-    const cells = [pinned, row].map((each) => make("td.number", {}, length(each.setting.length, 2)));
-    lines.push(make("tr", {}, make("th", { scope: "row" }, row.setting.name), ...cells));
+    const cells = [pinned, row].map((each) => make("td.number", {}, each.settings.map((one) => length(one.length, 2)).join(", ")));
+    lines.push(make("tr", {}, make("th", { scope: "row" }, row.settings[0].name), ...cells));
   }
   byId("quality").replaceChildren(...lines);
 }

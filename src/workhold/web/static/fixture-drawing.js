@@ -86,7 +86,7 @@ export class FixtureDrawing {
   /** What the drawing shows, for those who do not see it. */
   words() {
     const { row } = this;
-    const set = row.setting ? `${row.setting.name} ${row.setting.length.toFixed(3)} mm, ` : "";
+    const set = row.settings.map((one) => `${one.name} ${one.length.toFixed(3)} mm, `).join("");
     return `Fixture ${row.rank || ""}, ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
   }
 

@@ -102,15 +102,17 @@ function travels(drawing) {
   const { view, row } = drawing;
   const plates = row.carriers.map(({ plate }) => plate);
   const [right, top] = view.page([2, 3].map((side) => Math.max(...plates.map((plate) => plate[side]))));
-  return row.carriers.flatMap((carrier) => {
-    if (!carrier.measured || !carrier.clamping) return [];
+  const sliding = row.carriers.filter((carrier) => carrier.clamping);
+  return sliding.flatMap((carrier, number) => {
+    if (!carrier.measured) return [];
+    const setting = row.settings[number];
     const upright = Math.abs(carrier.clamping[1]) > Math.abs(carrier.clamping[0]);
     const [dx, dy] = drawing.shift(carrier);
     const [start, end] = carrier.measured;
     const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
     const rim = upright ? right + 16 : top - 30;
     const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
-    const text = `${row.setting.sign} = ${length(drawing.open ? (b - a) / view.k : row.setting.length)}`;
+    const text = `${setting.sign} = ${length(drawing.open ? (b - a) / view.k : setting.length)}`;
     const wide = 8.2 * text.length + 10;
     const above = upright || b - a < wide + 24;
     const [x, y] = upright ? [rim + 8, (a + b) / 2] : [(a + b) / 2, rim - (above ? 13 : 0)];

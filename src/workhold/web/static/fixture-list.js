@@ -134,7 +134,7 @@ export class FixtureList {
       row.like ? make("span.faint.small", { title: `and ${row.like} like it` }, `+${row.like} alike`) : "",
     );
     // What has no room in the line is left out of it.
-    cell.holes.replaceChildren(make("span", {}, row.holes.join("  ")), make("span", {}, `${row.setting.sign} ${length(row.setting.length, 2)}`));
+    cell.holes.replaceChildren(make("span", {}, row.holes.join("  ")), make("span", {}, row.settings.map((one) => `${one.sign} ${length(one.length, 2)}`).join("  ")));
     cell.figures.replaceChildren(
       ...this.shownFigures().map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
