@@ -37,7 +37,8 @@ LEAST_CLAMPING = 1e-6
 # No unit. With two clamps each pushes with more than this part of the force on its face, and the wrenches of the locators
 # have a larger determinant than the second: with less the pose is a double root, which a rounded drawing leaves at 1e-7 or
 # so.
-LEAST_PUSH, LEAST_SEAT = 1e-9, 1e-6
+LEAST_PUSH = 1e-9
+LEAST_SEAT = 1e-6
 # No unit. A locator's force per unit of a clamp's this near to zero is zero: exact zeros are the rule in a square pose. A
 # clamp whose least such force, as a share of all, is above it holds the part without the other.
 NO_REACTION = 1e-9
