@@ -9,7 +9,7 @@ from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.listing.on_fence import Pressed
 from workhold.proof.flush import Candidate, pressing
-from workhold.search import fence_search
+from workhold.search import fence_places, fence_search
 from workhold.search.fence_search import FenceSearch
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
@@ -40,8 +40,12 @@ def test_balls_and_bounds_agree_on_every_pair(
     with monkeypatch.context() as patched:
         patched.setattr(fence_search, "ROUNDING", 1e3)
         in_balls, also = searched(loop, direction, margin)
+        # Contacts far beyond the ends of their faces are looked at, too.
+        patched.setattr(fence_places, "LOOSE", 6.0)
+        wider, once_more = searched(loop, direction, margin)
     assert in_balls.escalated == in_balls.examined == search.examined > 10
     assert found == also and len(found) == search.verified == in_balls.verified > 0
+    assert found == once_more and wider.examined >= search.examined
     assert search.escalated < search.examined / 3 and search.undecided == in_balls.undecided == []
 
 

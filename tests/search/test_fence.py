@@ -230,11 +230,11 @@ def test_restrictions_hold_of_wall_locator_and_clamp() -> None:
     one = min(turned)
     chosen = design(part(KITE), fence, restrictions=Restrictions(angles=((one - 1, one + 1),)))
     assert {round(fixture.pose.theta_deg, 3) for fixture in chosen} == {one}
-    # A zone below the long side leaves no room for a wall there, nor for pegs.
-    zone = circle_zone(28.0, -4.0, 5.0)
-    kept = design(part(KITE), fence, restrictions=Restrictions(zones=(zone,)))
-    assert 0 < len(kept) < len(everything)
-    assert all(0 not in {peg.face for peg in fixture.pegs if peg.is_on_wall} for fixture in kept)
+    # A zone that reaches below the long side leaves no room for a wall there, nor for pegs.
+    for y in (-4.0, 6.0):
+        kept = design(part(KITE), fence, restrictions=Restrictions(zones=(circle_zone(28.0, y, 5.0),)))
+        assert 0 < len(kept) < len(everything)
+        assert all(0 not in {peg.face for peg in fixture.pegs if peg.is_on_wall} for fixture in kept)
 
 
 def test_a_corner_is_avoided_with_both_its_faces_only() -> None:
@@ -292,6 +292,18 @@ def test_a_search_that_is_stopped_is_incomplete_and_progress_comes_to_its_end() 
 
     part_of_it = answer(query, progress=cancel, cancel=stop)
     assert not part_of_it.complete and seen(part_of_it) < seen(whole) and len(part_of_it) > 0
+
+
+def test_a_clamp_that_pushes_away_from_the_fence_is_bolted_in_no_row_below_the_first(tmp_path: Path) -> None:
+    """In the mouth of a saddle; with a stroke longer than there is room some fixtures have no hole."""
+    saddle = Workpiece.from_loops("saddle", json.loads(COMPLETE[-1].read_text())["workpiece"]["loops"])
+    counts = []
+    for travel in ((0.0, 60.0), (20.0, 60.0)):
+        result = design(saddle, Fence(pitch=8, peg_radius=2, wall_offset=5, travel=travel, directions=["+y"]))
+        checked(result, tmp_path / "up.json")
+        assert all(fixture.pegs[3].row >= 0 for fixture in result)
+        counts.append(len(result))
+    assert counts[0] > counts[1]
 
 
 def test_every_face_length_and_number_that_cannot_be_is_refused() -> None:

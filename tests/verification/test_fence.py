@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from attrs import evolve
 
@@ -17,6 +18,8 @@ from workhold.completeness import verify as verify_completely
 from workhold.model.load import Load
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.search.fence_places import Places
+from workhold.search.fence_search import FenceSearch
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.undecided import undecided_faults
 
@@ -25,6 +28,7 @@ Edit = Callable[[Data], object]
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
 NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
+L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
 ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
 LIMITED = Fence((10, 8), 3, columns=7, rows=7, clamp_radius=2.5, travel=(4, 26), wall_offset=6)
 
@@ -60,6 +64,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     ("loop", "fields", "asked"),
     [
         (KITE, {"pitch": 10}, {}),
+        (L, {"pitch": (8, 7)}, {}),
         (NOTCHED, {"pitch": (12, 9), "clamp_radius": 4.5}, {"contact_margin": 0.5}),
         (KITE, {"pitch": (8, 10), "directions": ("+x", "+y")}, {"best": 8, "rank_by": "location-error"}),
         (NOTCHED, {"pitch": 10, "columns": 6, "rows": 6, "travel": (4, 24)}, {}),
@@ -213,3 +218,50 @@ def test_undecided_entries_must_name_faces_and_reasons() -> None:
     assert list(undecided_faults([entry], query)) == []
     assert len(list(undecided_faults([evolve(entry, faces=(9, 0, 0, 3))], query))) == 1
     assert answer(query).proof is not None
+
+
+def test_a_tip_in_the_fence_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a search that does not keep it out."""
+
+    def pushing(self: FenceSearch, places: Places) -> Places:
+        return places.take(-(places.normal @ np.array(self.push)) > 0.0)
+
+    query = Query(part(KITE), Fence((10, 8), 2, clamp_radius=6, wall_offset=3))
+    true = {one_of(fixture) for fixture in answer(query)}
+    monkeypatch.setattr(FenceSearch, "clear", pushing)
+    low = [fixture for fixture in answer(query) if one_of(fixture) not in true]
+    assert low
+    for fixture in low:
+        ruling = verify_fixture(fixture, query.workpiece, query.toolkit)
+        assert ruling.verdict == "refuted" and "the clamp enters the fence by" in ruling.reason
+
+
+def one_of(fixture: workhold.Fixture) -> tuple[Any, ...]:
+    """What tells a fixture of a list from the others."""
+    return fixture.direction, *((peg.column, peg.row, peg.face, round(peg.x, 6)) for peg in fixture.pegs)
+
+
+def test_a_foot_lower_than_the_two_that_the_part_is_said_to_lie_on_is_refuted() -> None:
+    """By a few thousandths of a micrometre more than drawings are rounded by."""
+
+    def on_feet(low: float) -> Workpiece:
+        feet = [
+            [0, 0, 0],
+            [8, 0, 0],
+            [8, 4, 0],
+            [24, 4, 0],
+            [24, -low, 0],
+            [32, -low, 0],
+            [32, 4, 0],
+            [48, 4, 0],
+            [48, 0, 0],
+        ]
+        return part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
+
+    fence = Fence(10, 2, wall_offset=7)
+    result = design(on_feet(0.0), fence, restrictions=Restrictions(angles=((-1.0, 1.0),)))
+    assert len(result) > 0
+    for low, verdict in ((0.0, "proven"), (3e-6, "refuted")):
+        ruling = verify_fixture(result[0], on_feet(low), fence)
+        assert ruling.verdict == verdict, ruling.reason
+    assert "enters the fence" in ruling.reason

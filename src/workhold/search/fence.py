@@ -23,13 +23,16 @@ from workhold.search.fence_search import FenceSearch
 
 __all__ = ["answer_on_fence"]
 
+# Fixtures that wait to be measured together.
+WAITING = 1 << 14
+
 
 def answer_on_fence(query: Query, progress: Progress | None, cancel: Event | None) -> Result:
     """The answer on a fence of which one clamp moves, see ``search.design.answer``."""
     problem = Problem.of(query)
     search = FenceSearch(problem)
     edges, done, found, sets = search.edges, 0, 0, Sets(problem)
-    table = FixtureTable.empty()
+    table, waiting = FixtureTable.empty(), [FixtureTable.empty()]
     for edge in edges:
         if cancel is not None and cancel.is_set():
             break
@@ -44,9 +47,12 @@ def answer_on_fence(query: Query, progress: Progress | None, cancel: Event | Non
             fresh, pressed = listed_on_fence(Pressed.joined(parts), problem)
             found += len(fresh)
             sets.add(pressed)
-            table = ranked(FixtureTable.joined([table, measured(fresh, problem)]), query)
+            waiting.append(fresh)
+        if sum(map(len, waiting)) > WAITING:
+            table, waiting = ranked([table, measured(FixtureTable.joined(waiting), problem)], query), waiting[:1]
         if progress is not None:
             progress(done / len(edges), found)
+    table = ranked([table, measured(FixtureTable.joined(waiting), problem)], query)
     complete = done == len(edges)
     undecided = tuple(entry(candidate, problem) for candidate in search.undecided)
     account = Account(search.examined, search.verified, search.escalated, 0, undecided)
@@ -70,9 +76,9 @@ def answer_on_fence(query: Query, progress: Progress | None, cancel: Event | Non
     )
 
 
-def ranked(table: FixtureTable, query: Query) -> FixtureTable:
+def ranked(tables: list[FixtureTable], query: Query) -> FixtureTable:
     """Fixtures in the order of their ranks, no more than are asked for."""
-    table = in_order(table)
+    table = in_order(FixtureTable.joined(tables))
     return table.take(rank(table.quality, query.ranking, query.tolerance)[: query.best])
 
 

@@ -75,6 +75,8 @@ class FenceSearch:
     Parameters
     ----------
     problem : what is searched.
+    plate, clamp : in whose holes the locator stands, and the clamp.
+    push : unit vector along which the clamp moves as it clamps.
     locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many pairs were
         proven to press the part, and how many needed balls.
     undecided : the pairs that not even they decide, with the number of their hull edge.
@@ -84,6 +86,9 @@ class FenceSearch:
     """
 
     problem: Problem
+    plate: Carrier = field(init=False)
+    clamp: Carrier = field(init=False)
+    push: tuple[float, float] = field(init=False)
     locators: int = field(default=0, init=False)
     examined: int = field(default=0, init=False)
     verified: int = field(default=0, init=False)
@@ -92,21 +97,11 @@ class FenceSearch:
     is_square: bool = field(default=True, init=False)
     nearest: tuple[float, Pressed] | None = field(default=None, init=False)
 
-    @property
-    def plate(self) -> Carrier:
-        """In whose holes the locator stands."""
-        return self.problem.toolkit.carriers[0]
-
-    @property
-    def clamp(self) -> Carrier:
-        """The clamp."""
-        return self.problem.toolkit.moving
-
-    @property
-    def push(self) -> tuple[float, float]:
-        """Unit vector along which the clamp moves as it clamps."""
-        x, y = self.problem.toolkit.moving_axis
-        return 0.0 - x, 0.0 - y
+    def __attrs_post_init__(self) -> None:
+        toolkit = self.problem.toolkit
+        self.plate, self.clamp = toolkit.carriers[0], toolkit.moving
+        x, y = toolkit.moving_axis
+        self.push = 0.0 - x, 0.0 - y
 
     @property
     def edges(self) -> list[int]:
