@@ -15,7 +15,7 @@ from workhold.geometry.chords import MergedLoop, merged_chords
 def merged(rows: Sequence[Sequence[float]], fit: float | None = None) -> MergedLoop:
     """What is made of a loop of points, or of vertices with bulges."""
     vertices = np.array([(*row, 0.0)[:3] for row in rows])
-    return merged_chords(vertices, [False] * len(vertices), fit)
+    return merged_chords(vertices, fit)
 
 
 def slot(ends: int, sides: int = 1, digits: int = 6) -> NDArray[np.float64]:
@@ -124,11 +124,11 @@ def test_what_is_to_stay_stays() -> None:
     """Biarcs of a true curve are not taken together, whatever their neighbours do."""
     rows = np.array([(50 * cos(k * pi / 360), 50 * sin(k * pi / 360), 0.0) for k in range(720)])
     kept = [100 <= k < 110 for k in range(720)]
-    loop = merged_chords(rows, kept)
+    loop = merged_chords(rows, None, kept)
     assert set(range(100, 110)) <= set(loop.firsts)
     # What is left is 355 degrees, which one bulge would hold badly.
     assert len(loop.vertices) == 12
-    assert merged_chords(rows, [True] * 720).merged == 0
+    assert merged_chords(rows, None, [True] * 720).merged == 0
 
 
 def test_noise_is_left_alone() -> None:

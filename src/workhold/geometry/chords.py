@@ -62,16 +62,16 @@ class Piece:
     departure: float = 0.0
 
 
-def merged_chords(vertices: Array, kept: Sequence[bool], fit: float | None = None) -> MergedLoop:
+def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool] = ()) -> MergedLoop:
     """One line or arc for each run of segments that is nowhere farther from it than ``DISGUISE``.
 
     Parameters
     ----------
     vertices : (N, 3) array of a loop.
-    kept : for each segment whether it stays as it is.
     fit : how far chords may be from an arc that stands for them, in mm, where that is more.
+    kept : for each segment whether it stays as it is; none does if this is empty.
     """
-    pieces = [Piece((float(x), float(y)), float(b), k, kept[k]) for k, (x, y, b) in enumerate(vertices)]
+    pieces = [Piece((float(x), float(y)), float(b), k, bool(kept) and kept[k]) for k, (x, y, b) in enumerate(vertices)]
     count = len(pieces)
     tolerance = DISGUISE if fit is None else max(fit, DISGUISE)
     whole = whole_circle(pieces, tolerance)

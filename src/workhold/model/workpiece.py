@@ -11,8 +11,9 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.conventions import READING
+from workhold.conventions import READING, SHORTEST
 from workhold.errors import InputError
+from workhold.geometry.chords import merged_chords
 from workhold.geometry.face import Face, faces_of_loop
 from workhold.geometry.hull_edges import HullEdge, hull_edges
 from workhold.geometry.intersect import bounding_box
@@ -137,6 +138,46 @@ class Workpiece:
         remarks = (*straightened_remark(straightened), *rounded_remark(rounded))
         return cls(name, tuple(used), remarks, departure_of(departure))
 
+    @classmethod
+    def from_points(
+        cls, name: str, outline: ArrayLike, holes: Sequence[ArrayLike] = (), *, fit: float | None = None
+    ) -> Workpiece:
+        """A part of corners, as other programs have them; chords that are an arc but for 0.001 mm become it.
+
+        Parameters
+        ----------
+        name : what the user calls the part.
+        outline : (N, 2) corners in mm, run in either direction; the first may stand at the end again.
+        holes : the same for each hole.
+        fit : how far chords may be from an arc that stands for them, in mm, where 0.001 mm is too fine; the part's
+            ``departure`` tells how far they are.
+
+        Raises
+        ------
+        InputError
+            As :meth:`from_loops`, and for a fit that is no length.
+
+        Examples
+        --------
+        Of a polygon of shapely, the corners are those of its rings:
+        ``Workpiece.from_points("part", polygon.exterior.coords, [ring.coords for ring in polygon.interiors])``.
+
+        >>> from math import cos, pi, sin
+        >>> from workhold import Workpiece
+        >>> circle = [(10 * cos(k * pi / 180), 10 * sin(k * pi / 180)) for k in range(361)]
+        >>> plate = Workpiece.from_points("plate", [(-30, -20), (30, -20), (30, 20), (-30, 20)], [circle])
+        >>> len(plate.faces), round(plate.faces[-1].segment.radius, 6), plate.departure < 0.0004
+        (5, 10.0, True)
+        """
+        if fit is not None and not (isfinite(real(fit)) and fit > 0):
+            raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
+        loops, away = [], 0.0
+        for index, points in enumerate([outline, *holes]):
+            merged = merged_chords(corners_of(points, f"{name}: loop {index}"), fit)
+            loops.append(merged.vertices)
+            away = max(away, merged.departure)
+        return cls.from_loops(name, loops, departure=away)
+
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
         """Segments of each loop."""
@@ -184,6 +225,26 @@ class Workpiece:
         """Centre of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
+    """(N, 3) vertices of a loop of corners without bulges, checked; one that repeats the first at the end is left out.
+
+    Raises
+    ------
+    InputError
+        For anything but corners that can be used.
+    """
+    try:
+        array = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{loop} is not a list of corners [x, y]: give two numbers for every corner.") from error
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InputError(f"{loop} is not a list of corners [x, y]: give two numbers for every corner.")
+    if len(array) > 1 and np.hypot(*(array[0] - array[-1])) < SHORTEST:
+        array = array[:-1]
+    rows = np.column_stack([array, np.zeros(len(array))])
+    return checked_vertices(rows, loop, lambda k: f"{loop}, corner {k}")
 
 
 def departure_of(value: float) -> float:

@@ -189,7 +189,7 @@ def with_chords_merged(
     out, away, merged = [], 0.0, 0
     for loop in loops:
         kept = [label in found and not found[label].is_disguise for label in loop.labels]
-        one = merged_chords(loop.vertices, kept, fit)
+        one = merged_chords(loop.vertices, fit, kept)
         out.append(Loop(one.vertices, tuple(loop.labels[k] for k in one.firsts)))
         away = max(away, one.departure)
         merged += (one.merged + len(one.firsts)) * (one.departure > SAME_POINT)
