@@ -25,6 +25,7 @@ from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
+    from workhold.files.outline.chain import Chain
     from workhold.files.part.survey import Survey
     from workhold.files.toolkit.reader import LoadedVise
     from workhold.statics.loads import LoadCase, Worst
@@ -46,8 +47,8 @@ __all__ = [
 
 # Undecided candidates told of a proof; the result file has them all.
 MOST_UNDECIDED = 50
-# Segments of a drawing, parts and gaps of a file that are told to be shown.
-MOST_STROKES, MOST_PARTS, MOST_GAPS = 20_000, 200, 500
+# Segments of a drawing or a layer, parts, gaps and layers of a file that are told to be shown.
+MOST_STROKES, MOST_PARTS, MOST_GAPS, MOST_LAYERS = 20_000, 200, 500, 60
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
@@ -107,21 +108,30 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
-def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """What a file holds and leaves open; strokes and outlines are chains of x, y in mm and bulge."""
+def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
+    """Chains as lists of x, y in mm and bulge, as many as are shown."""
     strokes, room = [], MOST_STROKES
-    for chain in seen.chains:
+    for chain in chains:
         room -= len(chain.bulges)
         if room < 0:
             break
         strokes.append([[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)])
+    return strokes
+
+
+def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
+    """What a file holds and leaves open; strokes and outlines are chains of x, y in mm and bulge."""
     return {
         "part": part,
         "error": refusal or None,
         "place": place_in(refusal) if refusal else None,
         "asked": list(seen.asked),
         "size": None if seen.size is None else list(seen.size),
-        "strokes": strokes,
+        "strokes": strokes_answer(seen.chains),
+        "layers": [
+            {"name": one.name, "hidden": one.hidden, "strokes": strokes_answer(one.chains)}
+            for one in seen.layers[:MOST_LAYERS]
+        ],
         "parts": [
             {
                 "number": one.number,
@@ -296,8 +306,9 @@ def title_of(arrangement: Arrangement) -> str:
     >>> title_of(Arrangement("II", (3, 1))), title_of(Arrangement("clamp", (3, 1), "-x"))
     ('Type II', 'Clamp \u2212x')
     """
-    title = arrangement.title.replace("-", "\u2212")
-    return f"Type {title}" if arrangement.direction is None else title.capitalize()
+    if arrangement.direction is None:
+        return f"Type {arrangement.title}"
+    return f"Clamp{'s' if ' ' in arrangement.direction else ''} {arrangement.direction}".replace("-", "\u2212")
 
 
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:

@@ -11,6 +11,7 @@ start : fields to begin with, in mm, where nobody has given any.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations_with_replacement
 from typing import Any, Literal
 
 from attrs import asdict, frozen
@@ -70,7 +71,6 @@ class Described:
     closes : what the button says that shows how it closes.
     fields : in the order of the page.
     start : see the glossary.
-    single : fields of which only the usual value can be.
     """
 
     name: str
@@ -78,7 +78,6 @@ class Described:
     closes: str
     fields: tuple[Field, ...]
     start: Mapping[str, Any]
-    single: tuple[str, ...] = ()
 
     @property
     def said(self) -> Mapping[str, Any]:
@@ -136,6 +135,11 @@ TIP = Field("clamp_radius", "Clamp tip radius", "length", "as a locator", least=
 WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
 # Half a turn of the plate makes the others of these.
 DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
+CLAMPS = Field(
+    "clamps", "Clamps", "one", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))
+)
+# On a fence, which turns with the plate, all pairs differ.
+ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_replacement(DIRECTIONS, 2))
 PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
 PLATE = (
     PITCH,
@@ -144,7 +148,7 @@ PLATE = (
     Field("peg_radius", "Locator radius", "length", is_usual=True, least="0"),
     TIP,
     TRAVEL,
-    Field("clamps", "Clamps", "one", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),
+    CLAMPS,
     Field("directions", "The clamp pushes", "several", "all that differ", choices=WAYS, when={"clamps": 1}),
     Field("directions", "The clamps push", "several", "across each other", choices=PAIRS, when={"clamps": 2}),
 )
@@ -153,7 +157,9 @@ FENCE = (
     Field("wall_offset", "Fence to row 1", "length", is_usual=True),
     TIP,
     TRAVEL,
-    Field("directions", "The clamp pushes", "several", "any way", choices=WAYS),
+    CLAMPS,
+    Field("directions", "The clamp pushes", "several", "any way", choices=WAYS, when={"clamps": 1}),
+    Field("directions", "The clamps push", "several", "down and aside", choices=ALL_PAIRS, when={"clamps": 2}),
 )
 IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
 
@@ -167,11 +173,10 @@ DESCRIBED = (
     ),
     Described(
         "edge",
-        "Fence with a stop and a clamp",
+        "Fence with a stop, one clamp or two",
         "Close clamp",
         FENCE,
-        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0},
-        single=("clamps",),
+        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0, "clamps": 1},
     ),
     Described("vise", "Vise, pegs on both jaws", "Close vise", VISE, IN_JAWS),
     Described("opening-vise", "Vise that holds by opening", "Open vise", VISE, IN_JAWS),

@@ -99,6 +99,23 @@ def test_all_parts_are_told(tmp_path: Path) -> None:
         assert [part.bounds[3] for part in seen.parts] == [30, 20, 10]
 
 
+def test_layers_are_told_with_what_is_on_them(tmp_path: Path) -> None:
+    """Those with lines or arcs, hidden or not, whichever are read; a file without layers has none."""
+    document = ezdxf.new(units=4)
+    document.layers.add("LOOSE").off()
+    document.modelspace().add_lwpolyline([(0, 0), (9, 0), (0, 9)], close=True, dxfattribs={"layer": "OUTLINE"})
+    document.modelspace().add_line((0, 0), (20, 20), dxfattribs={"layer": "LOOSE"})
+    document.modelspace().add_text("note", dxfattribs={"layer": "WORDS"})
+    document.saveas(tmp_path / "layers.dxf")
+    for layers in (None, ["OUTLINE"]):
+        seen = survey(tmp_path / "layers.dxf", layers=layers, called=CALLED)
+        assert [(one.name, one.hidden, len(one.chains)) for one in seen.layers] == [
+            ("LOOSE", True, 1),
+            ("OUTLINE", False, 1),
+        ]
+    assert survey(EXAMPLES / "plate.json", called=CALLED).layers == ()
+
+
 def test_ends_that_could_go_on_in_two_ways_are_refused_and_drawn(tmp_path: Path) -> None:
     """Three ends at a point: no parts, but a picture of all of it."""
     path = drawn(tmp_path / "three.dxf")

@@ -88,7 +88,7 @@ def test_another_part_of_the_file_is_taken_by_a_click(walk: Walk, tmp_path: Path
     assert loops(walk)[0][1][0] - loops(walk)[0][0][0] == 30
     page.set_input_files("#file", EXAMPLES / "bracket.dxf")
     page.wait_for_selector("#drawing-part .other-part", state="detached")
-    assert page.locator("#file-asks").is_hidden()
+    assert page.locator("#file-asks [data-part]").count() == 0
 
 
 def test_gaps_are_joined_up_to_the_largest(walk: Walk, tmp_path: Path) -> None:
@@ -126,6 +126,27 @@ def test_an_outline_that_is_open_says_so_beside_the_slider(walk: Walk, tmp_path:
     page.keyboard.press("End")
     walk.seen("#faces button")
     assert page.locator("#part-trouble").is_hidden()
+
+
+def test_layers_are_a_list_with_pictures(walk: Walk, tmp_path: Path) -> None:
+    """Each with what is on it; without the frame around it the plate is the part, and all of them are the usual again."""
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    for layer, x0, y0, x1, y1 in (("OUTLINE", 0, 0, 100, 60), ("FRAME", -20, -40, 140, 90)):
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    document.saveas(tmp_path / "layers.dxf")
+    page = walk.page
+    page.set_input_files("#file", tmp_path / "layers.dxf")
+    walk.seen("#part-words:has-text('160.00 mm × 130.00 mm')")
+    page.click("#file-asks summary:has-text('Layers: 2 of 2')")
+    shapes = page.locator("#file-asks .layer-picture path")
+    assert [str(shape.get_attribute("d")).count("M") for shape in shapes.all()] == [1, 1]
+    page.uncheck("#file-asks input[value=FRAME]")
+    walk.seen("#part-words:has-text('100.00 mm × 60.00 mm')")
+    walk.seen("#file-asks summary:has-text('Layers: 1 of 2')")
+    page.check("#file-asks input[value=FRAME]")
+    walk.seen("#part-words:has-text('160.00 mm × 130.00 mm')")
 
 
 def test_curves_are_fitted_as_asked(walk: Walk) -> None:

@@ -32,6 +32,7 @@ class DrawnLayer:
     hidden : whether it is frozen, switched off or never printed, so that it is read only when it is named.
     loops : how many closed outlines its own lines, arcs and curves make; None where they cannot be told.
     size : width and height of these lines, arcs and curves; None where there are none.
+    chains : these lines, arcs and curves.
     """
 
     name: str
@@ -39,6 +40,7 @@ class DrawnLayer:
     hidden: bool
     loops: int | None
     size: tuple[float, float] | None
+    chains: tuple[Chain, ...] = ()
 
 
 class LayerWalk(Walk):
@@ -88,7 +90,7 @@ def drawn_layers(path: str | Path, unit: str | None, usual_unit: str | None) -> 
     for name in sorted(walk.kinds, key=str.casefold):
         chains = [chain for chain in walk.chains if walk.layers.get(chain.labels[0]) == name]
         hidden = name.casefold() in walk.hidden_layers
-        layers.append(DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains)))
+        layers.append(DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains)))
     return tuple(layers), known is not None
 
 

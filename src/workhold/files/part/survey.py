@@ -22,6 +22,7 @@ from workhold.files.outline.chain import Chain, Drawing, cleaned
 from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
 from workhold.files.outline.nesting import Part, nest
+from workhold.files.part.layers import DrawnLayer, drawn_layers
 from workhold.files.part.load import Loaded, kind_of, read_bytes, read_workpiece
 from workhold.files.questions import MARK, UNIT, worded
 
@@ -47,6 +48,7 @@ class Survey:
     chains : all that is drawn.
     parts : the parts that the closed outlines make, by decreasing area.
     gaps : between loose ends, each once, in increasing order.
+    layers : of a DXF file those with lines, arcs or curves on them.
     """
 
     loaded: Loaded | None
@@ -56,6 +58,7 @@ class Survey:
     chains: tuple[Chain, ...]
     parts: tuple[Part, ...]
     gaps: tuple[float, ...]
+    layers: tuple[DrawnLayer, ...] = ()
 
 
 def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
@@ -87,7 +90,10 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     chains = cleaned(drawing.chains).chains
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
-    return Survey(loaded, worded(sentence, called), asked, size, chains, loaded.parts if loaded else parts, gaps)
+    layers = layers_of(path, unit or options.get("unit"))
+    return Survey(
+        loaded, worded(sentence, called), asked, size, chains, loaded.parts if loaded else parts, gaps, layers
+    )
 
 
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
@@ -109,6 +115,14 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
     except InputError:
         pass
     return Drawing(())
+
+
+def layers_of(path: Path, unit: str | None) -> tuple[DrawnLayer, ...]:
+    """The layers of a DXF file with something to read on them; none of other files, and where they cannot be told."""
+    try:
+        return tuple(layer for layer in drawn_layers(path, unit, None)[0] if layer.chains)
+    except InputError:
+        return ()
 
 
 def gaps_and_parts(

@@ -1,11 +1,12 @@
 /**
  * What a file leaves open, asked beside its drawing: the unit, which of its parts, which gaps are to be joined.
  */
-import { byId, make, show } from "./dom.js";
+import { byId, draw, make, show } from "./dom.js";
+import { boundsOf, segmentPath, segmentsOf } from "./geometry.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, join?: number, fit?: number, axis?: string}} How what has been answered so far */
+/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;
@@ -47,12 +48,13 @@ export function askQuestions(survey, how, answer) {
   if (!how.unit && !survey.asked.includes("unit")) bare = null;
   const unit = unitQuestion(how, answer);
   // Sizes of parts and gaps mean nothing before there is a unit.
-  const rest = unit && !how.unit ? [] : [fitQuestion, partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
+  const rest = unit && !how.unit ? [] : [layerQuestion, fitQuestion, partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
   const asked = [unit, ...rest].filter((question) => question !== null);
   byId("file-asks").replaceChildren(...asked);
   any = asked.length > 0;
   showQuestions();
-  return any;
+  // A folded list is no question.
+  return asked.some((each) => !(each instanceof HTMLDetailsElement) || each.open);
 }
 
 /** A question with its answers. */
@@ -106,6 +108,29 @@ function gapQuestion({ asked, gaps, size }, how, answer) {
   slider.addEventListener("change", () => answer({ join: Number(slider.value) ? open[Number(slider.value) - 1] * (1 + 1e-5) : JOINED }));
   tell();
   return question(`There are loose ends, with gaps from ${length(open[0], 3)} to ${length(open[open.length - 1], 3)}. Join gaps up to`, make("div.join", {}, slider, words));
+}
+
+/** Which layers, each with a picture; open where the file was refused. */
+function layerQuestion({ layers, error }, how, answer) {
+  if (layers.length < 2) return null;
+  const usual = layers.filter(({ hidden }) => !hidden).map(({ name }) => name);
+  const used = how.layer ?? usual;
+  const box = boundsOf(layers.flatMap(({ strokes }) => strokes.flatMap((chain) => segmentsOf(chain).slice(0, -1))));
+  const [wide, high] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
+  const rows = layers.map(({ name, hidden, strokes }) => {
+    const tick = make("input", { type: "checkbox", value: name, checked: used.includes(name) });
+    const d = strokes.map((chain) => segmentsOf(chain).slice(0, -1).map((segment, k) => segmentPath(segment, k === 0)).join("")).join("");
+    const view = `${box[0] - wide * 0.04} ${-box[3] - high * 0.04} ${wide * 1.08} ${high * 1.08}`;
+    const picture = draw("svg", { class: "layer-picture", viewBox: view, "aria-hidden": "true" }, draw("path", { d, transform: "scale(1 -1)" }));
+    return make("label.check", {}, tick, picture, `${name}${hidden ? " (hidden)" : ""}`);
+  });
+  const list = make("div.layers", {
+    change: () => {
+      const chosen = [...list.querySelectorAll("input")].filter((tick) => tick.checked).map((tick) => tick.value);
+      if (chosen.length) answer({ layer: String(chosen) === String(usual) ? undefined : chosen });
+    },
+  }, ...rows);
+  return make("details", { open: Boolean(error) || how.layer !== undefined }, make("summary", {}, `Layers: ${used.length} of ${layers.length} read`), list);
 }
 
 /** How far lines and arcs may be from curves that are neither. */
