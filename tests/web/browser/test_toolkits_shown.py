@@ -43,6 +43,7 @@ def test_the_fields_are_those_of_the_kind(walk: Walk) -> None:
         "clamp_radius": 5,
         "travel": [10, 44],
         "directions": ["-y"],
+        "clamps": 1,
     }
     assert held_in(walk) == wanted
     page.select_option("#unit", "inch")
@@ -63,6 +64,26 @@ def test_the_fields_are_those_of_the_kind(walk: Walk) -> None:
     fill(walk, travel_most="")
     page.wait_for_selector("#vise-trouble", state="hidden")
     assert not {"travel", "columns"} & set(held_in(walk))
+
+
+def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
+    """Directions of one clamp are left behind, pairs are offered, and a rectangle is held square."""
+    page = walk.page
+    page.set_input_files("#file", EXAMPLES / "plate.json")
+    walk.seen("#faces button")
+    page.select_option("#preset", "clamp-plate-20mm")
+    page.click("#more-title")
+    page.get_by_label("downward").check()
+    assert held_in(walk)["directions"] == ["-y"]
+    page.select_option("#clamps", label="two, needed together")
+    walk.seen("label:has-text('to the left and downward')")
+    assert held_in(walk)["clamps"] == 2 and "directions" not in held_in(walk)
+    page.get_by_label("to the left and downward").check()
+    assert held_in(walk)["directions"] == [["-x", "-y"]]
+    walk.search()
+    assert len(walk.holes()) == 5 and walk.shown()["theta_deg"] % 90 == 0
+    page.click("#push")
+    walk.seen("#bars .bar:nth-child(5)")
 
 
 def test_another_kind_keeps_what_both_have(walk: Walk) -> None:

@@ -92,6 +92,9 @@ function read() {
     if (wrong) bad = bad || each.label;
     else if (value !== null) vise[each.name] = value;
   }
+  // What belongs to another choice than the one just made is left behind.
+  const left = fieldsOf(kind, state.vise).filter((each) => !fieldsOf(kind, vise).includes(each));
+  for (const { name } of left) delete vise[name];
   const off = TOLERANCES.map((id) => readLength(field(id).value) ?? 0.01);
   TOLERANCES.forEach((id, k) => field(id).setAttribute("aria-invalid", String(!(off[k] >= 0))));
   let words = "";
