@@ -62,6 +62,7 @@ def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
         ["--host", "no..host"],
         ["--searches", "0"],
         ["--searches", "0.5"],
+        ["--searches", "100000000"],
         ["--seconds", "-1"],
         ["--memory", "much"],
     ],

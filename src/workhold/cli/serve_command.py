@@ -21,6 +21,8 @@ OPEN_TO_ALL = (
     "workhold: everybody who reaches this machine can use the page, read what others search for if told its name, and keep "
     "the processors busy; --ask-token lets in only who has the address."
 )
+# Processes that search: each takes a hundred megabytes before it begins.
+MOST_SEARCHES = 256
 FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
 
 
@@ -77,6 +79,10 @@ def serve(
     }
     if figures["searches"] < 1 or figures["fixtures"] < 1:
         raise InputError("--searches and --fixtures are counts: give 1 or more.")
+    if figures["searches"] > MOST_SEARCHES:
+        raise InputError(
+            f"--searches {figures['searches']:,} is beyond {MOST_SEARCHES}: one for each processor is best."
+        )
     for proxy in trust_proxy or ():
         refuse_no_address(proxy)
     from workhold.web.limits import Limits, usual_memory
