@@ -40,7 +40,8 @@ def test_balls_and_bounds_agree_on_every_pair(
     with monkeypatch.context() as patched:
         patched.setattr(fence_search, "ROUNDING", 1e3)
         in_balls, also = searched(loop, direction, margin)
-        # Contacts far beyond the ends of their faces are looked at, too.
+        # So are places, and contacts far beyond the ends of their faces are looked at, too.
+        patched.setattr(fence_places, "ROUNDING", 1e-4)
         patched.setattr(fence_places, "LOOSE", 6.0)
         wider, once_more = searched(loop, direction, margin)
     assert in_balls.escalated == in_balls.examined == search.examined > 10

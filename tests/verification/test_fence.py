@@ -28,7 +28,8 @@ Edit = Callable[[Data], object]
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
 NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
-L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
+# It lies on two corners whose other faces the pegs push.
+CUT = [[50, 0, 0], [58, 40, 0], [-6, 36, 0], [0, 0, 0], [25, 12, 0]]
 ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
 LIMITED = Fence((10, 8), 3, columns=7, rows=7, clamp_radius=2.5, travel=(4, 26), wall_offset=6)
 
@@ -64,7 +65,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     ("loop", "fields", "asked"),
     [
         (KITE, {"pitch": 10}, {}),
-        (L, {"pitch": (8, 7)}, {}),
+        (CUT, {"pitch": (8, 7)}, {}),
         (NOTCHED, {"pitch": (12, 9), "clamp_radius": 4.5}, {"contact_margin": 0.5}),
         (KITE, {"pitch": (8, 10), "directions": ("+x", "+y")}, {"best": 8, "rank_by": "location-error"}),
         (NOTCHED, {"pitch": 10, "columns": 6, "rows": 6, "travel": (4, 24)}, {}),

@@ -134,3 +134,18 @@ def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer)
     clamp = nearest["row"]["carriers"][-1]
     assert (clamp["clamp"]["hole"], clamp["measured"]) == (None, None)
     assert nearest["row"]["settings"][0]["length"] < 300
+
+
+def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: RunningServer) -> None:
+    """The ends of the contact are numbered among the pegs, after the locator; a corner tells that it is one."""
+    shape = {**RECTANGLE, "loops": [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]]}
+    vise = {"kind": "edge", "pitch": [10, 10], "peg_radius": 3, "wall_offset": 5}
+    url = server.done(request(workpiece=shape, vise=vise))
+    (row, *_) = server.client.get(f"{url}/fixtures", params={"limit": 5}).json()["rows"]
+    assert row["flush"] == row["corners"] == [1, 2] and row["origin"] == "column A at the fence"
+    assert [carrier["pegs"] for carrier in row["carriers"]] == [[0], [1, 2], [3]]
+    assert row["carriers"][1]["plate"][3] == 0.0
+    assert server.client.get(f"{url}/fixtures/1/sheet.svg").status_code == 200
+    square = server.done(request(workpiece=RECTANGLE, vise=vise))
+    assert "three directions beside" in " ".join(server.client.get(square).json()["notes"])
+    assert server.client.get(f"{square}/explanation").json()["removals"]
