@@ -43,7 +43,7 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
     """Directions in the order in which they are listed, or pairs of them; none for None, which the plate resolves."""
     if value is None:
         return ()
-    names = [value] if isinstance(value, str) else list(value)
+    names = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
     if not names:
         raise InputError(f"there is no direction for the clamp: choose among {', '.join(DIRECTIONS)}.")
     if any(isinstance(name, str) for name in names):
