@@ -28,8 +28,8 @@ ROWS = {
     "features shorter": (["CLEARANCE"], []),
     "closure margin": (["LEAST_CLOSURE"], ["LEAST_SHARE"]),
     "clamping force": (["LEAST_CLAMPING"], ["LEAST_CLAMPING"]),
-    "of two clamps each pushes": (["LEAST_PUSH", "LEAST_SEAT"], ["LEAST_PUSH"]),
-    "a locator's force per unit": (["NO_REACTION"], []),
+    "of two clamps each pushes": (["LEAST_PUSH", "LEAST_SEAT"], ["LEAST_PUSH", "LEAST_SEAT"]),
+    "a locator's force per unit": (["NO_REACTION"], ["NO_REACTION"]),
     "sizes of the four minors": (["LEAST_SPAN"], ["LEAST_SPAN"]),
     "same holes, orientation and place": (["SAME_POSE", "SAME_PLACE"], ["SAME", "SAME"]),
 }

@@ -118,6 +118,9 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
         yield f"a search finds {counted(len(missing))} that it does not list, the first of them {in_words(missing[0])}"
     for name in ("found", "distinct"):
         yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+    for name in ("pairs", "seats"):
+        if getattr(listing, name) != getattr(result, name):
+            yield f"{name} says {getattr(listing, name)}, and a search comes to {getattr(result, name)}"
     if listing.proof is not None and result.proof is not None:
         yield from other_numbers("the proof", numbers_of(listing.proof), numbers_of(result.proof))
         yield from other_entries(listing.proof, result.proof)

@@ -33,6 +33,7 @@ WORK = "how much work the search was, within the order that its numbers keep; a 
 LESS = "it claims less"
 NONE = "a departure of nothing, which the lack of it says as well"
 PLACE = "the clamp would touch that face, or a face from that line, as well"
+ONE = "one clamp, which the lack of it says as well"
 ORDER = "what is listed stands in this order as well"
 
 Changes = dict[str, dict[str, str]]
@@ -88,6 +89,7 @@ OF_PLATE: Changes = {
         "toolkit.travel.0": "more less",
         "toolkit.travel.1": "more less",
     },
+    ONE: {"toolkit.clamps": "deleted"},
     # A tip of another radius has features of its own.
     WORK: {"statistics.features": "less"},
     PLACE: {"proof.undecided.0.columns.3": "less", "proof.undecided.0.segments.3": "less"},

@@ -68,7 +68,7 @@ def refuse_direction(name: Any) -> None:
     InputError
         Naming those that are.
     """
-    if name not in DIRECTIONS:
+    if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}.")
 
 

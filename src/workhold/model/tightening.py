@@ -77,7 +77,7 @@ def freedom_words(degrees: float) -> str:
     return "no torque wrench is needed" if degrees >= EASY else "both forces have to be right: use a torque wrench"
 
 
-# Degrees of clamp freedom from which a hand tightens well enough: forces may be off by a factor of 2.4 to either side.
+# Degrees of clamp freedom from which a hand tightens well enough: forces may be off by a factor of two to either side.
 EASY = 45.0
 
 

@@ -14,6 +14,7 @@ The identities, for each type apart where a number is told for each:
   examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
 - of a fence: cells = hull_edges, candidates = contacts_examined;
 - features >= faces touched;
+- of two clamps see ``verification.pair_account``;
 - the notes are those that follow from these numbers.
 
 What became of the candidates, and how much work that was, is otherwise known to the search alone.
@@ -27,6 +28,7 @@ from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.notes import best_note, kept_note, no_fixture_notes, no_place_note, stopped_note, undecided_note
 from workhold.model.proof import Proof
 from workhold.verification.listing import Listing
+from workhold.verification.pair_account import no_pair_notes, pair_count_faults, too_few_contacts
 from workhold.verification.undecided import undecided_faults
 
 __all__ = ["account_faults"]
@@ -41,6 +43,8 @@ MOST_NAMED = 20
 def account_faults(listing: Listing) -> Iterator[str]:
     """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each."""
     yield from count_faults(listing)
+    if listing.query.toolkit.needs_pairs:
+        yield from pair_count_faults(listing)
     if listing.proof is None:
         yield "it has no proof, the account of the search"
     else:
@@ -79,9 +83,12 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
     yield from undecided_faults(proof.undecided, listing.query)
     if proof.escalated > proof.candidates:
         yield f"the proof says {proof.escalated} of {proof.candidates} candidates were escalated"
-    if undecided and not proof.escalated:
+    # Of two clamps whether they close may be in doubt where neither was.
+    single = sum(len(entry.faces) < listing.query.toolkit.peg_count for entry in proof.undecided)
+    if (single if listing.query.toolkit.needs_pairs else undecided) and not proof.escalated:
         yield f"the proof says that {undecided} candidates are undecided, but none was escalated"
-    if found > proof.verified:
+    pairs = listing.query.toolkit.needs_pairs
+    if too_few_contacts(listing, proof) if pairs else found > proof.verified:
         yield f"the proof says {proof.verified} candidates were verified, but {found} fixtures were found"
 
 
@@ -148,6 +155,9 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
     if listing.complete and not found and not undecided and not is_by_algebra(listing.statistics):
         wording = listing.query.toolkit.wording
         verified = 0 if proof is None else proof.verified
+        if listing.query.toolkit.needs_pairs:
+            yield no_pair_notes(listing, verified)
+            return
         yield (no_place_note(verified, wording),) if verified else no_fixture_notes(wording)
 
 

@@ -17,9 +17,11 @@ F. Johansson, "Arb: efficient arbitrary-precision midpoint-radius interval arith
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from flint import arb
 
-__all__ = ["PRECISIONS", "Point", "cross", "dot", "exact_point", "norm", "root", "turned"]
+__all__ = ["PRECISIONS", "Point", "cross", "dot", "exact_point", "largest", "least", "norm", "root", "turned"]
 
 Point = tuple[arb, arb]
 
@@ -55,3 +57,16 @@ def norm(a: Point) -> arb:
 def turned(a: Point, cosine: arb, sine: arb) -> Point:
     """A vector turned counter-clockwise."""
     return cosine * a[0] - sine * a[1], sine * a[0] + cosine * a[1]
+
+
+def least(values: Sequence[arb]) -> arb:
+    """The smallest of some numbers."""
+    found = values[0]
+    for value in values[1:]:
+        found = found.min(value)
+    return found
+
+
+def largest(values: Sequence[arb]) -> arb:
+    """The largest of some numbers."""
+    return -least([-value for value in values])

@@ -9,15 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from attrs import frozen
-from flint import arb
+from flint import arb, arb_mat
 
-from workhold.verification.balls import Point, cross, dot, turned
+from workhold.verification.balls import Point, cross, dot, least, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware
 from workhold.verification.rules import LEAST_SHARE, LEAST_SPAN
+from workhold.verification.wrench_radius import radius_of_four
 
-__all__ = ["Balance", "closure_findings", "minors", "span"]
+__all__ = ["Balance", "closure_findings", "inverted", "minors", "span"]
 
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
@@ -75,6 +76,42 @@ class Balance:
     def forces(self) -> list[arb]:
         """Force of each peg per unit of clamping force."""
         return [share / self.clamp for share in self.shares]
+
+    @property
+    def margin(self) -> arb:
+        """The closure margin."""
+        return least(self.shares)
+
+    def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
+        """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None where there may be none."""
+        rows = [
+            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
+            for contact, point, normal in zip(contacts, self.points, self.normals, strict=True)
+        ]
+        return inverted(rows)
+
+    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
+        """A number for each peg, from a row of the inverse."""
+        return row
+
+    def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
+        """The part of some forces that lies along those with which what moves presses: what locking it takes away."""
+        own = self.forces
+        share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum((a * a for a in own), arb(0))
+        return [share * force for force in own]
+
+    def wrench_radius(self, center: Point, length: float) -> arb | None:
+        """The wrench radius, about a centre with L in mm."""
+        return radius_of_four(self.vector, center, length, self.points, self.normals)
+
+
+def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
+    """The inverse of a square matrix; None where there may be none."""
+    try:
+        inverse: list[list[arb]] = arb_mat(rows).inv().tolist()
+    except ZeroDivisionError:
+        return None
+    return inverse
 
 
 def closure_findings(balance: Balance, wrench_length: float, hardware: Hardware) -> Iterator[Finding]:

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 from workhold.archive import mapped_archive
 from workhold.errors import InputError
 from workhold.model.columns import HEAD, columns_said
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
 from workhold.model.toolkit import Toolkit
+from workhold.verification.plate import LOCATORS
+from workhold.verification.reading import with_working_forces
 
 __all__ = ["Columns", "FixturesInColumns", "columns_of"]
 
@@ -83,17 +86,26 @@ class FixturesInColumns(Sequence[Fixture]):
             return [self[k] for k in range(len(self))[place]]
         numbers = {name: values[place].tolist() for name, values in self.columns.items()}
         arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
-        pegs = []
+        pegs, pairs = [], isinstance(travelled, list)
+        travels = [0.0] * LOCATORS + travelled if pairs else [travelled] * 4
         each = (numbers[name] for name in ("column", "row", "face", "force"))
-        for carrier, column, row, face, force in zip(arrangement.carriers, *each, strict=True):
+        for carrier, along, column, row, face, force in zip(arrangement.carriers, travels, *each, strict=True):
             one = self.toolkit.carriers[carrier]
-            x, y = one.place(column, row, travelled)
+            x, y = one.place(column, row, along)
             if one.is_wall:
                 # Where the part lies on it follows from the pose, and is not written.
                 x = nan
             called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
-            pegs.append(Peg(one.name, column, row, x, y, face, force, called))
+            pegs.append(Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called))
         pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
         figures = zip(FIGURES, numbers["quality"], strict=True)
         known = {figure.key: value for figure, value in figures if value == value}
-        return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)
+        if not pairs:
+            return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)
+        # The ends of its ratio follow from the reactions, and are not written.
+        low, high = (float(end[0]) for end in ratios(np.array([numbers["force"]])))
+        reactions = tuple((one, other) for one, other in numbers["force"])
+        pair = Pair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
+        return with_working_forces(
+            Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction, pair)
+        )

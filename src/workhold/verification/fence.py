@@ -193,8 +193,8 @@ class FenceRules(PlateRules):
         """The locator's row and the clamp's line, up to steps along the wall."""
         if not self.has_its_pegs(fixture):
             return
-        anchor, clamp = in_holes(fixture)
-        along_x = is_along_x(fixture)
+        (anchor,), (clamp,) = in_holes(fixture)
+        along_x = is_along_x(clamp)
         line = clamp.row if along_x else clamp.column - anchor.column
         ahead = clamp.x - anchor.x if along_x else clamp.y
         yield (
@@ -204,7 +204,8 @@ class FenceRules(PlateRules):
 
     def rank(self, fixture: Fixture) -> Rank:
         """Direction, columns and rows of locator and clamp, orientation and faces."""
-        pegs = in_holes(fixture)
+        locators, clamps = in_holes(fixture)
+        pegs = [*locators, *clamps]
         numbers = [list(WAYS).index(fixture.direction or ""), *(p.column for p in pegs), *(p.row for p in pegs)]
         angle = (radians(fixture.pose.theta_deg) + SAME) % tau - SAME
         return numbers, angle, [peg.face for peg in fixture.pegs]

@@ -15,7 +15,7 @@ the figures of ``statics.quality``, and nothing of it is used.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
+from itertools import permutations, product
 
 from attrs import field, frozen
 from flint import arb, arb_mat
@@ -24,17 +24,18 @@ from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
-from workhold.verification.balls import Point, cross, dot, exact_point, norm, root, turned
+from workhold.verification.balls import Point, cross, dot, exact_point, largest, least, norm, root
 from workhold.verification.closure import Balance
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.ends import Barrier, barriers, edge_distances, end_distance, length_of
 from workhold.verification.findings import Finding, rule
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
 from workhold.verification.outline import Outline
+from workhold.verification.pair_balance import PairBalance
 from workhold.verification.rules import FIGURE_AGREEMENT, HAIR, ROUNDING, SAME_END, TANGENT
 from workhold.verification.sides import ArcSide
 
-__all__ = ["Measure", "box_center", "figure_missing", "written_numbers"]
+__all__ = ["Measure", "box_center", "figure_missing", "parts_spared", "written", "written_numbers"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -139,28 +140,26 @@ class Measure:
         )
 
     def figures(
-        self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance
+        self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance | PairBalance
     ) -> Mapping[str, arb]:
         """The figures of a fixture by their keys; no load reaction without loads."""
-        rows = [
-            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
-            for contact, point, normal in zip(contacts, balance.points, balance.normals, strict=True)
-        ]
-        try:
-            inverse = arb_mat(rows).inv().tolist()
-        except ZeroDivisionError:
+        out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
+        if isinstance(balance, PairBalance):
+            out["clamp_freedom"] = balance.ratio.freedom
+        inverse = balance.inverse(contacts, pose)
+        if inverse is None:
             # The pose is not known well enough for any figure but those of the forces.
-            return {"closure_margin": least(balance.shares), "clamp_amplification": largest(balance.forces)}
+            return out
         pegs = [
             (contact, face, point)
             for contact, face, point in zip(contacts, faces, balance.points, strict=True)
             if not contact.is_flush
         ]
         edges = [edge for peg in pegs if (edge := self.edge_distance(*peg)) is not None]
-        out = {
-            "closure_margin": least(balance.shares),
-            "clamp_amplification": largest(balance.forces),
-            "wrench_radius": self.wrench_radius(balance),
+        radius = balance.wrench_radius(self.center, self.wrench_length)
+        if radius is not None:
+            out["wrench_radius"] = radius
+        out |= {
             "location_error": self.location_error(inverse, faces),
             "end_distance": least([self.end_distance(*peg) for peg in pegs]),
             "edge_distance": least([arb(self.wrench_length), *edges]),
@@ -208,40 +207,20 @@ class Measure:
             return None
         return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
 
-    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance) -> arb:
+    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance | PairBalance) -> arb:
         """Jaw force in N above which no peg of a screw vise lets go, and never less than 0.
 
-        Of the forces f0 that balance a load while the jaw keeps its force, locking it leaves the part at right angles to h:
-        the largest of (h . f0) / (h . h) - f0_i / h_i.
+        Of the forces f0 that balance a load while the jaw keeps its force, locking it leaves the part f0 - P f0 at right
+        angles to those of the jaw, or of both clamps: the largest of ((P f0)_i - f0_i) / h_i.
         """
-        most, total = arb(0), sum((force * force for force in balance.forces), arb(0))
-        pairs = [list(zip(row, balance.forces, strict=True)) for row in inverse[:3]]
-        shares = [sum((entry * force for entry, force in row), arb(0)) / total for row in pairs]
+        most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
+        pairs = list(zip(map(balance.kept_by_closing, rows), rows, strict=True))
         for i, force in enumerate(balance.forces):
-            a, b, c = (share - row[i] / force for share, row in zip(shares, inverse[:3], strict=True))
+            a, b, c = ((kept[i] - row[i]) / force for kept, row in pairs)
             for load in self.loads:
                 for x, y in load.points:
                     most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
         return most
-
-    def wrench_radius(self, balance: Balance) -> arb:
-        """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, (q - c) x n / L).
-
-        The volume of a facet's tetrahedron with the origin is a minor of the wrenches, so its height is that minor, in parts
-        of L, over the size of w_a x w_b + w_b x w_c + w_c x w_a, which is twice the facet's area.
-        """
-        wrenches = []
-        for (x, y), normal in zip(balance.points, balance.normals, strict=True):
-            about = cross((x - self.center[0], y - self.center[1]), normal)
-            wrenches.append((*normal, about / self.wrench_length))
-        products = {(i, k): vector_product(wrenches[i], wrenches[k]) for i in range(4) for k in range(i + 1, 4)}
-        heights = []
-        for left_out, minor in enumerate(balance.vector):
-            a, b, c = (k for k in range(4) if k != left_out)
-            sides = zip(products[a, b], products[b, c], products[a, c], strict=True)
-            area = [ab + bc - ac for ab, bc, ac in sides]
-            heights.append(abs(minor) / root(sum((entry * entry for entry in area), arb(0))))
-        return least(heights) / self.wrench_length
 
     def location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
         """Largest movement in mm of a point of the silhouette, over all corners of the box of tolerances.
@@ -250,9 +229,9 @@ class Measure:
         function of q, so it is largest at a joint, or where a convex arc about m is farthest along the movement of m: by
         |v(m)| + r |t|. Both signs of all errors move alike, so the last error keeps its sign.
         """
-        generators = []
-        for face in set(faces):
-            pegs = [k for k in range(4) if faces[k] == face]
+        generators, located = [], range(len(inverse[0]))
+        for face in {faces[k] for k in located}:
+            pegs = [k for k in located if faces[k] == face]
             if len(pegs) > 1:
                 generators.append([self.face * sum((row[k] for k in pegs), arb(0)) for row in inverse[:3]])
             own = self.peg if len(pegs) > 1 else self.peg + self.face
@@ -274,22 +253,19 @@ class Measure:
                         most = most.max(moved_arc(arc, x, y, t, most))
         return most
 
-    def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance) -> arb:
+    def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance | PairBalance) -> arb:
         """Largest peg force in N under some load, with the least clamping that leaves no force negative.
 
         Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest -f0_i / lambda_i, so
         peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i, linear in the load's direction for each i.
         """
-        most = arb(0)
-        for i in range(4):
-            for j in range(4):
-                if i == j:
-                    continue
-                ratio = balance.shares[j] / balance.shares[i]
-                a, b, c = (row[j] - ratio * row[i] for row in inverse[:3])
-                for load in self.loads:
-                    for x, y in load.points:
-                        most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
+        most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
+        for i, j in permutations(range(len(balance.shares)), 2):
+            ratio = balance.shares[j] / balance.shares[i]
+            a, b, c = (row[j] - ratio * row[i] for row in rows)
+            for load in self.loads:
+                for x, y in load.points:
+                    most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
         return most
 
 
@@ -304,24 +280,6 @@ def moved_arc(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> arb:
 def moment_rows(points: Sequence[Point]) -> arb_mat:
     """Rows 1, x² + y², x, y of points, (N, 4)."""
     return arb_mat([(1, x * x + y * y, x, y) for x, y in points])
-
-
-def least(values: Sequence[arb]) -> arb:
-    """The smallest of some numbers."""
-    found = values[0]
-    for value in values[1:]:
-        found = found.min(value)
-    return found
-
-
-def largest(values: Sequence[arb]) -> arb:
-    """The largest of some numbers."""
-    return -least([-value for value in values])
-
-
-def vector_product(a: Sequence[arb], b: Sequence[arb]) -> tuple[arb, arb, arb]:
-    """Vector product in space."""
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
@@ -360,26 +318,22 @@ def box_center(outline: Outline) -> Point:
 def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
     """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
     for figure in FIGURES:
+        wanted, why = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED]), "no loads"
         if figure is FIGURES[CLAMP_FREEDOM]:
-            if fixture.pair is None and figure.key in fixture.quality:
-                return f"its {figure.words} is given, and there are no two clamps"
-            continue
-        wanted = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
+            wanted, why = fixture.pair is not None, "no two clamps"
         if wanted != (figure.key in fixture.quality):
-            return (
-                f"its {figure.words} is missing" if wanted else f"its {figure.words} is given, and there are no loads"
-            )
+            return f"its {figure.words} is " + ("missing" if wanted else f"given, and there are {why}")
     return ""
 
 
-def parts_spared(balance: Balance) -> arb:
+def parts_spared(balance: Balance | PairBalance) -> arb:
     """To which parts of themselves forces and figures of the file agree with the derived ones."""
     amplification = largest(balance.forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
 
 
 def written_numbers(
-    fixture: Fixture, names: Sequence[str], balance: Balance, figures: Mapping[str, arb]
+    fixture: Fixture, names: Sequence[str], balance: Balance | PairBalance, figures: Mapping[str, arb]
 ) -> Iterator[Finding]:
     """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from math import radians
 from typing import Literal
 
 from attrs import field, frozen
-from flint import arb, ctx
+from flint import ctx
 
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
@@ -19,11 +18,11 @@ from workhold.verification.balls import PRECISIONS
 from workhold.verification.closure import Balance, closure_findings
 from workhold.verification.contacts import Contact, Pose, contact_system
 from workhold.verification.figures import Measure, written_numbers
-from workhold.verification.findings import Finding, number, rule
+from workhold.verification.findings import Finding
 from workhold.verification.hardware import Hardware
 from workhold.verification.kinds import hardware_of
-from workhold.verification.krawczyk import certified_zero
-from workhold.verification.rules import AGREEMENT
+from workhold.verification.pair_proof import pair_findings
+from workhold.verification.placing import gap_findings, proven_places, written_pose
 from workhold.verification.sides import ArcSide
 from workhold.verification.touching import touching_findings
 
@@ -77,7 +76,7 @@ class Judge:
     wrench_length: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        hardware, diameter = hardware_of(self.query.toolkit), outline_diameter(self.query.workpiece)
+        hardware, diameter = hardware_of(self.query.toolkit, self.query.listing), outline_diameter(self.query.workpiece)
         object.__setattr__(self, "hardware", hardware)
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
@@ -120,11 +119,15 @@ class Judge:
         for name, contact, face in touching:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
-        yield from pose_findings(fixture, touching)
+        if fixture.pair is not None:
+            yield from pair_findings(fixture, fixture.pair, touching, self.query, hardware, measure)
+            return
+        solution = written_pose(fixture.pose, fixture.jaw_separation)
+        yield from gap_findings(touching, [solution] * len(touching))
         proven, doubts = proven_pose(fixture, contacts, hardware.travel_words)
         yield from doubts
         # Without a proof, what holds at no pose that agrees with the file's still refutes.
-        solution = proven or written_pose(fixture)
+        solution = proven or solution
         yield from hardware.standing_findings(fixture, contacts, solution, outline)
         for name, contact, face in touching:
             yield from touching_findings(name, contact, face, solution, outline, self.query.contact_margin)
@@ -136,52 +139,12 @@ class Judge:
             yield from written_numbers(fixture, hardware.names, balance, figures)
 
 
-def degree() -> arb:
-    """One degree in radians."""
-    return arb.pi() / 180
-
-
-def pose_findings(fixture: Fixture, touching: list[tuple[str, Contact, int]]) -> Iterator[Finding]:
-    """Whether any pose that agrees with the file's, and a travel likewise, could touch all four faces.
-
-    The gaps are enclosed over all of them at once; a gap that is certainly not the peg radius refutes the fixture.
-    """
-    around = written_pose(fixture)
-    for name, contact, face in touching:
-        off = contact.side.gap(contact.in_part(around)) - contact.radius
-        if off > 0 or off < 0:
-            yield Finding(True, f"{name} is {number(off)} mm away from touching face {face}")
-
-
-def written_pose(fixture: Fixture) -> Pose:
-    """All poses that agree with the file's, with travels likewise."""
-    written, off = fixture.pose, arb(0, AGREEMENT)
-    theta = (written.theta_deg + off) * degree()
-    return Pose.of(theta, written.x + off, written.y + off, fixture.jaw_separation + off)
-
-
 def proven_pose(fixture: Fixture, contacts: list[Contact], travel_words: str) -> tuple[Pose | None, list[Finding]]:
     """The proven solution of the contact equations near the file's pose, if there is one, and what is wrong with it.
 
     ``travel_words`` say what the travel is called.
     """
-    written = fixture.pose
-    start = [radians(written.theta_deg), written.x, written.y, fixture.jaw_separation]
-    zero = certified_zero(partial(contact_system, contacts), start)
-    if zero is None:
-        words = "the contact equations have no single solution that can be proven near the pose in the file"
-        return None, [Finding(False, words)]
-    theta, x, y, travel = zero
-    findings: list[Finding] = []
-    comparisons = (
-        ("angle", "degrees", theta / degree(), written.theta_deg),
-        ("x", "mm", x, written.x),
-        ("y", "mm", y, written.y),
-        (travel_words, "mm", travel, fixture.jaw_separation),
+    zero, findings = proven_places(
+        partial(contact_system, contacts), fixture.pose, {travel_words: fixture.jaw_separation}, "all four faces"
     )
-    for name, unit, derived, value in comparisons:
-        off = abs(derived - value)
-        if not off < AGREEMENT:
-            words = f"the {name} in the file is {number(off)} {unit} from the one that touches all four faces"
-            findings += rule(AGREEMENT - off, words, words)
-    return Pose.of(theta, x, y, travel), findings
+    return None if zero is None else Pose.of(*zero), findings

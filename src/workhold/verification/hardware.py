@@ -27,8 +27,8 @@ from workhold.verification.sides import Side
 __all__ = ["Hardware", "Key", "Place", "Rank", "from_anchor"]
 
 Key = tuple[Any, ...]
-# Orientation, place in the workpiece's frame of the first peg that stands still, and how far from it the moving one is.
-Place = tuple[float, float, float, float]
+# Orientation, place in the workpiece's frame of the first peg that stands still, and how far from it each moving one is.
+Place = tuple[float, ...]
 # Type and holes, orientation in radians, and faces, by which fixtures that are equally good are put in order.
 Rank = tuple[list[int], float, list[int]]
 
@@ -49,6 +49,11 @@ class Hardware(ABC):
     travel_words: ClassVar[str]
     wider_words: ClassVar[str]
     least_clamping: ClassVar[float]
+
+    @property
+    def same_words(self) -> str:
+        """What is said of a fixture that an earlier one already is."""
+        return "it is the same as"
 
     @property
     @abstractmethod

@@ -9,14 +9,15 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.verification.fence import FenceRules
 from workhold.verification.hardware import Hardware
+from workhold.verification.pair_plate import PairRules
 from workhold.verification.plate import PlateRules
 from workhold.verification.vise import ViseRules
 
 __all__ = ["hardware_of"]
 
 
-def hardware_of(toolkit: Toolkit) -> Hardware:
-    """The rules of a toolkit.
+def hardware_of(toolkit: Toolkit, listing: str | None = None) -> Hardware:
+    """The rules of a toolkit; of two clamps with all pairs listed or, unless said otherwise, the best of each seat.
 
     Raises
     ------
@@ -25,8 +26,12 @@ def hardware_of(toolkit: Toolkit) -> Hardware:
     """
     if isinstance(toolkit, Vise):
         return ViseRules(toolkit)
+    if isinstance(toolkit, Fence) and toolkit.clamps == 2:
+        raise InputError("a result with two clamps on a fence cannot be verified: its rules are not known.")
     if isinstance(toolkit, Fence):
         return FenceRules(toolkit)
+    if isinstance(toolkit, Plate) and toolkit.clamps == 2:
+        return PairRules(toolkit, listing == "all")
     if isinstance(toolkit, Plate):
         return PlateRules(toolkit)
     raise InputError(f"a result in a {toolkit.kind} cannot be verified: its rules are not known.")

@@ -7,7 +7,7 @@ would from there as well, and a nearer hole is left out only because it is off t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi, radians, tau
 from typing import ClassVar
 
@@ -28,11 +28,24 @@ from workhold.verification.outline import Outline
 from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_PUSH, SAME, WALL
 from workhold.verification.sides import Side
 
-__all__ = ["PLATE", "WAYS", "PlateRules", "clamp_place", "quarter_turns", "seen_along_x"]
+__all__ = [
+    "LOCATORS",
+    "PLATE",
+    "WAYS",
+    "PlateRules",
+    "clamp_place",
+    "direction_of",
+    "in_holes",
+    "is_along_x",
+    "quarter_turns",
+    "seen_along_x",
+    "travels_of",
+]
 
 # The ways a clamp may move when it clamps, in the order of a list, and the way of its travel, which grows as it opens.
 WAYS = {"-x": (1, 0), "+x": (-1, 0), "-y": (0, 1), "+y": (0, -1)}
 PLATE = "plate"
+LOCATORS = 3
 
 
 @frozen
@@ -87,10 +100,12 @@ class PlateRules(Hardware):
         """
         if fixture.type != self.kinds or fixture.direction is None:
             raise InputError(f"its type is not {self.kinds}")
-        tip, way = fixture.pegs[-1], WAYS[fixture.direction]
-        (pitch_x, pitch_y), (x, y) = self.toolkit.pitch, self.origin
-        travel = (tip.x - x - tip.column * pitch_x) * way[0] + (tip.y - y - tip.row * pitch_y) * way[1]
-        return evolve(fixture, jaw_separation=travel)
+        return evolve(fixture, jaw_separation=self.travel_of(fixture.pegs[-1]))
+
+    def travel_of(self, clamp: Peg) -> float:
+        """How far a clamp has travelled from its hole to where it is written, in mm."""
+        way, (pitch_x, pitch_y), (x, y) = WAYS.get(direction_of(clamp), (0, 0)), self.toolkit.pitch, self.origin
+        return (clamp.x - x - clamp.column * pitch_x) * way[0] + (clamp.y - y - clamp.row * pitch_y) * way[1]
 
     def contact(self, peg: Peg, side: Side) -> Contact:
         """The contact of a locator, or of the clamp's tip, which moves on its line, with a side."""
@@ -98,28 +113,25 @@ class PlateRules(Hardware):
         hole = x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
         if peg.carrier == PLATE:
             return Contact(hole, exact_point(0.0, 0.0), side, arb(self.toolkit.peg_radius))
-        way = WAYS[peg.carrier.removeprefix("clamp ")]
+        way = WAYS[direction_of(peg)]
         return Contact(hole, exact_point(*map(float, way)), side, arb(self.toolkit.clamp_radius))
 
     def lattice_numbers(self, fixture: Fixture) -> tuple[list[int], list[int]]:
-        """Columns and rows of the plate that a fixture takes: of its locators, and of the clamp's hole or its line."""
-        *locators, clamp = in_holes(fixture)
-        along_x = is_along_x(fixture)
-        columns, rows = [peg.column for peg in locators], [peg.row for peg in locators]
-        if self.is_bolted or not along_x:
-            columns.append(clamp.column)
-        if self.is_bolted or along_x:
-            rows.append(clamp.row)
+        """Columns and rows of the plate that a fixture takes: of its locators, and of each clamp's hole or its line."""
+        locators, clamps = in_holes(fixture)
+        columns, rows = ([getattr(peg, name) for peg in locators] for name in ("column", "row"))
+        for clamp in clamps:
+            if self.is_bolted or not is_along_x(clamp):
+                columns.append(clamp.column)
+            if self.is_bolted or is_along_x(clamp):
+                rows.append(clamp.row)
         return columns, rows
 
     def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """What is wrong with roles, direction, columns, rows and the places x, y written for them."""
-        plate, direction = self.toolkit, fixture.direction
-        if not self.has_its_pegs(fixture):
-            yield Finding(True, f"its pegs are not {self.pegs_wanted}")
-        if direction not in plate.directions:
-            yield Finding(True, f"its clamp moves in {direction}, which is not asked for")
-        *locators, _ = in_holes(fixture)
+        plate = self.toolkit
+        yield from self.asked_findings(fixture)
+        locators, clamps = in_holes(fixture)
         if len({(peg.column, peg.row) for peg in locators}) < len(locators):
             yield Finding(True, "two locators are in the same hole")
         for noun, numbers, count in zip(
@@ -131,66 +143,86 @@ class PlateRules(Hardware):
                     yield Finding(True, f"{name} is in {noun} {place} of a plate with {known}")
             if min(numbers) > 0 and noun in self.from_lowest:
                 yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
-        clamp = fixture.pegs[-1]
-        if clamp.place != clamp_place(fixture.direction or "", clamp.column, clamp.row, self.is_bolted):
-            told = "hole in which it is bolted" if self.is_bolted else "line alone, since it has no travel"
-            yield Finding(True, f"the clamp is not told by the {told}")
-        if not self.is_bolted and (clamp.column if is_along_x(fixture) else clamp.row):
-            yield Finding(True, "the place of the clamp on its line is not counted from the plate's first hole")
-        for name, peg in zip(self.names_in_holes, in_holes(fixture), strict=True):
-            contact_way = WAYS[fixture.direction or ""] if peg is clamp else (0, 0)
-            for axis, written, count, pitch, first, way in zip(
-                "xy", (peg.x, peg.y), (peg.column, peg.row), plate.pitch, self.origin, contact_way, strict=True
-            ):
-                off = abs(first + arb(pitch) * count + arb(fixture.jaw_separation) * way - written)
-                if not off < AGREEMENT:
-                    words = f"the {axis} of {name} is {number(off)} mm from that of its {'line' if peg is clamp else 'hole'}"
-                    yield from rule(AGREEMENT - off, words, words)
+        for name, peg in zip(self.names_in_holes, locators, strict=False):
+            yield from self.place_findings(name, peg, (0, 0), 0.0)
+        for name, clamp, travelled in zip(
+            self.names_in_holes[len(locators) :], clamps, travels_of(fixture), strict=True
+        ):
+            if clamp.place != clamp_place(direction_of(clamp), clamp.column, clamp.row, self.is_bolted):
+                told = "hole in which it is bolted" if self.is_bolted else "line alone, since it has no travel"
+                yield Finding(True, f"{name} is not told by the {told}")
+            if not self.is_bolted and (clamp.column if is_along_x(clamp) else clamp.row):
+                yield Finding(True, f"the place of {name} on its line is not counted from the plate's first hole")
+            yield from self.place_findings(name, clamp, WAYS[direction_of(clamp)], travelled)
+
+    def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
+        """Whether a fixture has the pegs of its kind, and a direction that is asked for."""
+        if not self.has_its_pegs(fixture):
+            yield Finding(True, f"its pegs are not {self.pegs_wanted}")
+        if fixture.direction not in self.toolkit.directions:
+            yield Finding(True, f"its clamp moves in {fixture.direction}, which is not asked for")
+
+    def place_findings(self, name: str, peg: Peg, moving: tuple[int, int], travelled: float) -> Iterator[Finding]:
+        """Whether a peg is written to be in its hole, or on its line as far as it has travelled."""
+        for axis, written, count, pitch, first, way in zip(
+            "xy", (peg.x, peg.y), (peg.column, peg.row), self.toolkit.pitch, self.origin, moving, strict=True
+        ):
+            off = abs(first + arb(pitch) * count + arb(travelled) * way - written)
+            if not off < AGREEMENT:
+                words = f"the {axis} of {name} is {number(off)} mm from that of its {'line' if any(moving) else 'hole'}"
+                yield from rule(AGREEMENT - off, words, words)
 
     def standing_findings(
         self, fixture: Fixture, contacts: list[Contact], pose: Pose, outline: Outline
     ) -> Iterator[Finding]:
         """Whether the clamp, bolted where it is said to be, reaches its place and clears locators and part."""
         *locators, clamp = (contact for contact in contacts if not contact.is_flush)
+        yield from self.clamp_findings(self.names_in_holes[-1], locators, clamp, pose, outline)
+        if self.toolkit.travel is not None:
+            yield from self.nearer_findings(fixture, -pose.travel, self.toolkit.travel[0])
+
+    def clamp_findings(
+        self, name: str, locators: Sequence[Contact], clamp: Contact, pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether a clamp of a name, bolted in its hole, reaches its place and clears locators and part."""
         tip = clamp.place(pose)
         bolted = evolve(clamp, way=exact_point(0.0, 0.0)) if self.is_bolted else clamp
-        hole = bolted.place(pose)
-        for name, locator in zip(self.names_in_holes, locators, strict=False):
+        hole, stroke = bolted.place(pose), -pose.travel
+        for other, locator in zip(self.names_in_holes, locators, strict=False):
             apart = distance_from_piece(locator.hole, tip, hole) - locator.radius - clamp.radius
             yield from rule(
                 apart + HAIR,
-                f"the clamp meets {name}: they overlap by {number(-apart)} mm",
-                f"the clamp touches {name} exactly at the edge of what is allowed",
+                f"{name} meets {other}: they overlap by {number(-apart)} mm",
+                f"{name} touches {other} exactly at the edge of what is allowed",
             )
         if self.toolkit.travel is None:
             return
-        yield from self.stroke_findings(fixture, -pose.travel, self.toolkit.travel)
-        if -pose.travel > 0:
+        least, most = self.toolkit.travel
+        yield from rule(
+            stroke - least + HAIR,
+            f"{name} is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its stroke",
+            f"{name} is bolted exactly at the edge of the least of its stroke",
+        )
+        yield from rule(
+            most - stroke + HAIR,
+            f"{name} is bolted {number(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
+            f"{name} is bolted exactly at the edge of the most of its stroke",
+        )
+        if stroke > 0:
             start, end = clamp.in_part(pose), bolted.in_part(pose)
             clear = clearance(start, end, clamp.radius, outline.segments, enough=1.0)
             yield from rule(
                 clear + BODY_SLACK,
-                f"the clamp enters the workpiece between its hole and its tip by {number(-clear)} mm",
-                "the clamp touches the workpiece between its hole and its tip exactly at the edge of what is allowed",
+                f"{name} enters the workpiece between its hole and its tip by {number(-clear)} mm",
+                f"{name} touches the workpiece between its hole and its tip exactly at the edge of what is allowed",
             )
 
-    def stroke_findings(self, fixture: Fixture, stroke: arb, travel: tuple[float, float]) -> Iterator[Finding]:
-        """Whether the clamp stretches as far from its hole as it can, and from no nearer hole on the plate."""
-        least, most = travel
-        yield from rule(
-            stroke - least + HAIR,
-            f"the clamp is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its stroke",
-            "the clamp is bolted exactly at the edge of the least of its stroke",
-        )
-        yield from rule(
-            most - stroke + HAIR,
-            f"the clamp is bolted {number(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
-            "the clamp is bolted exactly at the edge of the most of its stroke",
-        )
-        clamp, along_x = fixture.pegs[-1], is_along_x(fixture)
-        way, pitch = WAYS[fixture.direction or ""], self.toolkit.pitch[0 if along_x else 1]
+    def nearer_findings(self, fixture: Fixture, stroke: arb, least: float) -> Iterator[Finding]:
+        """Whether the clamp is bolted in the nearest hole on the plate."""
+        clamp, along_x = fixture.pegs[-1], is_along_x(fixture.pegs[-1])
+        way, pitch = WAYS[direction_of(clamp)], self.toolkit.pitch[0 if along_x else 1]
         column, row = clamp.column - way[0], clamp.row - way[1]
-        *locators, _ = in_holes(fixture)
+        locators, _ = in_holes(fixture)
         numbers = [peg.column if along_x else peg.row for peg in locators] + [column if along_x else row]
         count = self.toolkit.columns if along_x else self.toolkit.rows
         is_free = ("column" if along_x else "row") in self.from_lowest
@@ -218,7 +250,7 @@ class PlateRules(Hardware):
         *locators, clamp = fixture.pegs
         column, row = min(sign * peg.column for peg in locators), min(sign * peg.row for peg in locators)
         places = sorted((sign * peg.column - column, sign * peg.row - row, k) for k, peg in enumerate(locators))
-        anchor, along_x = locators[places[0][2]], is_along_x(fixture)
+        anchor, along_x = locators[places[0][2]], is_along_x(clamp)
         line = sign * clamp.row - row if along_x else sign * clamp.column - column
         ahead = clamp.x - anchor.x if along_x else clamp.y - anchor.y
         angle = radians(fixture.pose.theta_deg) + (pi if sign < 0 else 0.0)
@@ -241,14 +273,26 @@ class PlateRules(Hardware):
         return [list(WAYS).index(direction), *columns, *rows], angle, faces
 
 
-def in_holes(fixture: Fixture) -> list[Peg]:
-    """The locators of a fixture, and its clamp."""
-    return [peg for peg in fixture.pegs if peg.carrier != WALL]
+def in_holes(fixture: Fixture) -> tuple[list[Peg], list[Peg]]:
+    """The locators of a fixture, and its clamps."""
+    clamps = len((fixture.direction or "").split())
+    pegs = [peg for peg in fixture.pegs if peg.carrier != WALL]
+    return pegs[: len(pegs) - clamps], pegs[len(pegs) - clamps :]
 
 
-def is_along_x(fixture: Fixture) -> bool:
-    """Whether a fixture's clamp moves along a row."""
-    return (fixture.direction or "").endswith("x")
+def direction_of(clamp: Peg) -> str:
+    """The way in which a clamp moves when it clamps."""
+    return clamp.carrier.removeprefix("clamp ")
+
+
+def is_along_x(clamp: Peg) -> bool:
+    """Whether a clamp moves along a row."""
+    return clamp.carrier.endswith("x")
+
+
+def travels_of(fixture: Fixture) -> tuple[float, ...]:
+    """How far each clamp of a fixture has travelled from its hole, in mm."""
+    return (fixture.jaw_separation,) if fixture.pair is None else fixture.pair.travels
 
 
 def clamp_place(direction: str, column: int, row: int, bolted: bool) -> str:

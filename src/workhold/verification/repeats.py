@@ -69,7 +69,7 @@ class Seen:
         """The place of a workpiece that lies the same way after it is turned about its own centre."""
         x, y = place[1] - self.center[0], place[2] - self.center[1]
         turned_x, turned_y = cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
-        return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, place[3]
+        return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, *place[3:]
 
 
 def same(a: Place, b: Place, most: float = SAME) -> bool:

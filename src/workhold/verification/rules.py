@@ -16,6 +16,7 @@ __all__ = [
     "AGREEMENT",
     "BODY_SLACK",
     "FIGURE_AGREEMENT",
+    "FLAT",
     "FLUSH",
     "GENTLE_PEG",
     "HAIR",
@@ -23,14 +24,17 @@ __all__ = [
     "LEAST_CLAMPING",
     "LEAST_FLUSH",
     "LEAST_PUSH",
+    "LEAST_SEAT",
     "LEAST_SHARE",
     "LEAST_SPAN",
     "MAIN_DIRECTION",
     "NEAR_EDGE",
+    "NO_REACTION",
     "POINTS_PER_DECADE",
     "ROUNDING",
     "SAME",
     "SAME_END",
+    "SAME_FREEDOM",
     "SMALL_FACE",
     "SMALL_FACE_POINTS",
     "SQUARE_TILT",
@@ -64,6 +68,17 @@ LEAST_SHARE = 1e-9
 LEAST_CLAMPING = 1e-6
 # No unit. The same of a clamp that slides on a plate: what is told apart from none. A search lists from LEAST_CLAMPING on.
 LEAST_PUSH = 1e-9
+# No unit. With two clamps the wrenches of the locators, moments in parts of L, have a larger determinant than this: with
+# less the pose is a double root, which a rounded drawing leaves at 1e-7 or so.
+LEAST_SEAT = 1e-6
+# No unit. A locator's force per unit of a clamp's this near to zero is zero. A clamp whose least such force, as a share of
+# all and per unit of that on its face, is more holds the part without the other.
+NO_REACTION = 1e-9
+# Degrees. Of the pairs of clamps of a seat whose freedom is the largest but for this the one of the largest margin stands
+# for all.
+SAME_FREEDOM = 1e-4
+# No unit. Of five wrenches those nearer than this to a plane through three of them are on it.
+FLAT = 1e-12
 # No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one
 # point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
 LEAST_SPAN = 1e-7

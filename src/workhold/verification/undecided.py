@@ -18,13 +18,14 @@ from math import hypot, radians
 from attrs import evolve, frozen
 from flint import arb, ctx
 
+from workhold.model.plate import Plate
 from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.model.query import Query
 from workhold.model.toolkit import Arrangement, Carrier
 from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
 from workhold.verification.ends import on_circle, on_line
 from workhold.verification.outline import Outline
-from workhold.verification.plate import quarter_turns, seen_along_x
+from workhold.verification.plate import LOCATORS, quarter_turns, seen_along_x
 from workhold.verification.rules import AGREEMENT
 from workhold.verification.sides import ArcSide, LineSide, Side
 
@@ -57,11 +58,44 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
     with ctx.workprec(PRECISIONS[0]):
         outline = Outline.of(query.workpiece)
         for number, entry in enumerate(entries, 1):
-            fault = written_fault(entry, query, outline)
-            if query.toolkit.wall is None:
-                fault = fault or holes_fault(entry, query) or place_fault(entry, query, outline)
+            parts = single_entries(entry, query) if query.toolkit.needs_pairs else ((entry, query),)
+            fault = next(filter(None, (entry_fault(*part, outline) for part in parts)), "")
             if fault:
                 yield f"undecided candidate {number} of the proof {fault}"
+
+
+def entry_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+    """What is wrong with an entry of four contacts or two chords; empty when nothing is."""
+    fault = written_fault(entry, query, outline)
+    if query.toolkit.wall is None:
+        fault = fault or holes_fault(entry, query) or place_fault(entry, query, outline)
+    return fault
+
+
+def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
+    """The contacts of three locators and a clamp that an entry of a plate with two is made of, one or two, each with a query
+    of that clamp alone."""
+    toolkit = query.toolkit
+    assert isinstance(toolkit, Plate)
+    kind, *directions = entry.type.split()
+    asked = {
+        ("clamp", 1): [(name,) for pair in toolkit.directions for name in pair],
+        ("clamp2", 2): toolkit.directions,
+    }
+    if tuple(directions) not in asked.get((kind, len(entry.faces) - LOCATORS), ()):
+        # Of a kind that is not asked for, which is told of it.
+        yield evolve(entry, type=f"{entry.type} with {len(entry.faces)} pegs"), query
+        return
+    for number, direction in enumerate(directions, LOCATORS):
+        chosen = (*range(LOCATORS), number)
+        faces, columns, rows = ([values[k] for k in chosen] for values in (entry.faces, entry.columns, entry.rows))
+        if kind != "clamp":
+            columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
+            (columns if direction.endswith("x") else rows)[LOCATORS] = 0
+        plate = evolve(toolkit, clamps=1, directions=(direction,))
+        single = evolve(query, toolkit=plate, arrangements=None, ranking=None, best=None, listing=None)
+        holes = tuple(faces), tuple(columns), tuple(rows)
+        yield Undecided(f"clamp {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
 
 
 def is_of_chords(entry: Undecided) -> bool:

@@ -16,6 +16,7 @@ from workhold.verification.fixture_proof import Judge, Verdict
 from workhold.verification.kinds import hardware_of
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.order import order_faults
+from workhold.verification.pair_account import seat_faults
 from workhold.verification.repeats import Seen
 from workhold.verification.restrictions import broken_restriction
 
@@ -82,7 +83,8 @@ class Verification:
 
 def not_shown(toolkit: Toolkit) -> Iterator[str]:
     """What a result in a toolkit alone cannot show; answering its query again does."""
-    yield "whether fixtures were left out, with all counts adjusted"
+    left_out = "seats" if toolkit.needs_pairs else "fixtures"
+    yield f"whether {left_out} were left out, with all counts adjusted"
     yield f"whether the query was wider: what is listed also meets one with {hardware_of(toolkit).wider_words}"
     yield from NOT_SHOWN
 
@@ -134,7 +136,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
-            verdict, reason = "refuted", f"it is the same as fixture {first + 1}"
+            verdict, reason = "refuted", f"{judge.hardware.same_words} fixture {first + 1}"
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
         progress((place + 1) / len(everything), doubtful)
@@ -143,6 +145,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     ]
     tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
     faults = [*listing.faults, *account_faults(listing), *order_faults(everything, query, judge.hardware)]
+    faults += seat_faults(listing, {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"})
     if not tally["refuted"]:
         faults += distinct_faults(listing, seen)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), tuple(faults), bits)

@@ -284,8 +284,8 @@ def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> 
         ends = [float(body.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
         assert ends == pytest.approx([*clamp["hole"], *clamp["tip"]], abs=1e-6)
         assert float(body.get_attribute("stroke-width") or "nan") == 10
-    words, number = page.inner_text("#pose-words"), f"{row['setting']['length']:.3f} mm".replace("-", "−")
+    words, number = page.inner_text("#pose-words"), f"{row['settings'][0]['length']:.3f} mm".replace("-", "−")
     assert words.startswith("Stroke" if bolted else f"Tip {way[1]}") and number in words
     assert "hole A1" in words and "clamp force" in words
     dimension = page.locator("#drawing-fixture .dimension-text").inner_html()
-    assert dimension.startswith(f"{row['setting']['sign']} = ")
+    assert dimension.startswith(f"{row['settings'][0]['sign']} = ")

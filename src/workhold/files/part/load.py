@@ -24,7 +24,8 @@ from workhold.files.outline.layers import with_layers_named
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
-from workhold.files.questions import AXIS, DRAWING_UNIT, FIT, LAYERS, PART_NUMBER, SECTION, UnitAskedError, worded
+from workhold.files.part.not_asked import refuse_axis, refuse_fit, refuse_layers
+from workhold.files.questions import DRAWING_UNIT, PART_NUMBER, UnitAskedError, worded
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 
@@ -238,43 +239,6 @@ def kind_of(path: Path, content: bytes) -> str:
     raise InputError(
         "this is neither a JSON, a DXF, an SVG nor a STEP file: export the part's outline as one of these."
     )
-
-
-def refuse_layers(layers: Sequence[str] | None) -> None:
-    """Refuse a choice of layers for a file that has none.
-
-    Raises
-    ------
-    InputError
-        When layers were chosen.
-    """
-    if layers is not None:
-        raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
-
-
-def refuse_fit(fit: float | None) -> None:
-    """Refuse a fit for a file that holds lines and arcs only.
-
-    Raises
-    ------
-    InputError
-        When a fit was given.
-    """
-    if fit is not None:
-        raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
-
-
-def refuse_axis(axis: str | None, section: float | None) -> None:
-    """Refuse a view of a solid for a file that holds a flat drawing.
-
-    Raises
-    ------
-    InputError
-        When an axis or a section was chosen.
-    """
-    if axis is not None or section is not None:
-        question = AXIS if axis is not None else SECTION
-        raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
 
 
 def from_json(

@@ -107,7 +107,9 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
             f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
         )
     faces = {face.number for face in query.workpiece.faces}
-    types = [one.title for one in query.toolkit.arrangements]
+    # With two clamps also contacts of one of them may be undecided.
+    toolkits = (query.toolkit, *query.toolkit.ways)
+    types = list(dict.fromkeys(one.title for toolkit in toolkits for one in toolkit.arrangements))
     for number, item in enumerate(part.undecided, 1):
         if item.type not in types:
             raise InputError(f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}.")

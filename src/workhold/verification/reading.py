@@ -1,0 +1,278 @@
+"""Fixtures of a result file from their JSON objects, number for number as it writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any
+
+from attrs import evolve
+
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.quality import FIGURES
+from workhold.verification.fence import WALL_ENDS
+from workhold.verification.plate import PLATE, WAYS, clamp_place
+from workhold.verification.rules import WALL
+
+__all__ = ["fixtures_of", "with_working_forces"]
+
+
+class UnusableError(Exception):
+    """A value of the wrong kind; the message goes behind the place."""
+
+
+def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
+    """Fixtures from their JSON objects.
+
+    Raises
+    ------
+    InputError
+        Naming the first one that cannot be used, counted from 1.
+    """
+    fixtures = []
+    for number, item in enumerate(items, 1):
+        try:
+            fixtures.append(fixture_from(item))
+        except UnusableError as error:
+            raise InputError(f"{path} cannot be verified: number {number} in fixtures: {error}.") from error
+    return fixtures
+
+
+def fixture_from(item: Any) -> Fixture:
+    """A fixture from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    if not isinstance(item, dict):
+        raise UnusableError("it is no fixture")
+    if "directions" in item:
+        return pair_fixture_from(item)
+    direction = word(item, "direction") if item.get("direction") is not None else None
+    if direction not in (None, *WAYS):
+        raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
+    on_wall = wall_pegs_from(item["wall"]) if "wall" in item else ()
+    pegs = pegs_of(item, 4 - len(on_wall), "four")
+    taken = tuple(peg_from(peg) if direction is None else plate_peg_from(peg, direction) for peg in pegs)
+    return Fixture(
+        word(item, "type"),
+        (*taken[:1], *on_wall, *taken[1:]),
+        pose_from(item),
+        # How far a clamp has travelled follows from its place.
+        real(item, "jaw_separation") if direction is None else 0.0,
+        quality_from(item),
+        direction,
+    )
+
+
+def pair_fixture_from(item: Mapping[str, Any]) -> Fixture:
+    """A fixture with two clamps from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    if "wall" in item:
+        raise UnusableError("the rules of two clamps on a fence are not known")
+    directions, pegs = item["directions"], pegs_of(item, 5, "five")
+    if not isinstance(directions, list) or len(directions) != 2 or not all(map(list(WAYS).__contains__, directions)):
+        raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
+    forces = [two_numbers(peg, "force") for peg in pegs]
+    taken = []
+    for peg in pegs:
+        direction = word(peg, "direction") if peg.get("role") == "clamp" else directions[0]
+        if direction not in WAYS:
+            raise UnusableError(f"the direction of a clamp is not {' or '.join(WAYS)}")
+        taken.append(plate_peg_from({**peg, "force": 0.0}, direction))
+    low, high = two_numbers(item, "ratio", least=1)
+    fixture = Fixture(
+        word(item, "type"),
+        tuple(taken),
+        pose_from(item),
+        0.0,
+        quality_from(item),
+        " ".join(directions),
+        Pair((0.0, 0.0), (low, high), tuple(forces), whole(item, "pairs")),
+    )
+    return with_working_forces(fixture)
+
+
+def with_working_forces(fixture: Fixture) -> Fixture:
+    """A fixture with two clamps whose pegs have their forces per unit of both clamps' at its working ratio."""
+    assert fixture.pair is not None
+    ratio = fixture.pair.working_ratio
+    forces = [(one + ratio * other) / (1 + ratio) for one, other in fixture.pair.reactions]
+    return evolve(fixture, pegs=tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True)))
+
+
+def pegs_of(item: Mapping[str, Any], count: int, words: str) -> list[Mapping[str, Any]]:
+    """The pegs of a fixture, so many, in words for a message.
+
+    Raises
+    ------
+    UnusableError
+        When they are others.
+    """
+    pegs = item.get("pegs")
+    if not isinstance(pegs, list) or len(pegs) != count or not all(isinstance(peg, dict) for peg in pegs):
+        raise UnusableError(f"it does not have {words} pegs")
+    return pegs
+
+
+def pose_from(item: Mapping[str, Any]) -> Pose:
+    """The pose of a fixture.
+
+    Raises
+    ------
+    UnusableError
+        When it has none.
+    """
+    pose = item.get("pose")
+    if not isinstance(pose, dict):
+        raise UnusableError("it has no pose")
+    return Pose(real(pose, "theta_deg"), real(pose, "x"), real(pose, "y"))
+
+
+def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of quality of a fixture.
+
+    Raises
+    ------
+    UnusableError
+        When it has none.
+    """
+    quality = item.get("quality")
+    if not isinstance(quality, dict):
+        raise UnusableError("it has no quality")
+    return {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality}
+
+
+def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
+    """Two numbers of a JSON object; of those after the first ``least`` a null is infinite.
+
+    Raises
+    ------
+    UnusableError
+        When they are others.
+    """
+    values = item.get(key)
+    if not isinstance(values, list) or len(values) != 2:
+        raise UnusableError(f"{key} is {values!r}, not two numbers" if key in item else f"the key {key} is missing")
+    one, other = (
+        inf if place >= least and value is None else real({key: value}, key) for place, value in enumerate(values)
+    )
+    return one, other
+
+
+def wall_pegs_from(item: Any) -> tuple[Peg, Peg]:
+    """The two ends of the contact with a wall from their JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    if not isinstance(item, dict):
+        raise UnusableError("its wall is not told by places, segments and forces")
+    pairs = []
+    for key in ("from", "to", "segments", "forces"):
+        value = item.get(key)
+        if not isinstance(value, list) or len(value) != 2:
+            raise UnusableError(f"the {key} of its wall is not two numbers")
+        pairs.append({"first": value[0], "second": value[1]})
+    *places, faces, forces = pairs
+    one, other = (
+        Peg(WALL, 0, 0, real(place, "first"), real(place, "second"), whole(faces, which), real(forces, which), called)
+        for place, which, called in zip(places, ("first", "second"), WALL_ENDS, strict=True)
+    )
+    return one, other
+
+
+def plate_peg_from(item: Mapping[str, Any], direction: str) -> Peg:
+    """A locator, or a clamp that moves in a direction, from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    role, line = word(item, "role"), "row" if direction.endswith("x") else "column"
+    contact = real(item, "x"), real(item, "y"), whole(item, "segment"), real(item, "force")
+    if role == "locator":
+        return Peg(PLATE, whole(item, "column"), whole(item, "row"), *contact)
+    if role != "clamp":
+        raise UnusableError("the role of a peg is neither locator nor clamp")
+    if "hole" not in item:
+        raise UnusableError("the key hole is missing")
+    hole, place = item["hole"], {"column": 0, "row": 0}
+    if hole is not None:
+        if not isinstance(hole, list) or len(hole) != 2:
+            raise UnusableError("the hole of its clamp is not a column and a row")
+        numbers = {"column": hole[0], "row": hole[1]}
+        place = {name: whole(numbers, name) for name in numbers}
+    if hole is not None and place[line] != whole(item, line):
+        raise UnusableError(f"the {line} of its clamp is not that of its hole")
+    place[line] = whole(item, line)
+    column, row = place["column"], place["row"]
+    called = clamp_place(direction, column, row, hole is not None) if min(column, row) >= 0 else None
+    return Peg(f"clamp {direction}", column, row, *contact, called)
+
+
+def peg_from(item: Mapping[str, Any]) -> Peg:
+    """A peg of a vise from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
+    column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
+    x, y, force = (real(item, key) for key in ("x", "y", "force"))
+    return Peg(word(item, "jaw"), column, row, x, y, segment, force)
+
+
+def word(item: Mapping[str, Any], key: str) -> str:
+    """A word of a JSON object.
+
+    Raises
+    ------
+    UnusableError
+        When it is missing or no word.
+    """
+    value = item.get(key)
+    if not isinstance(value, str):
+        raise UnusableError(f"{key} is {value!r}, not a word" if key in item else f"the key {key} is missing")
+    return value
+
+
+def real(item: Mapping[str, Any], key: str) -> float:
+    """A finite number of a JSON object.
+
+    Raises
+    ------
+    UnusableError
+        When it is missing or no number.
+    """
+    value: Any = item.get(key)
+    if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
+        raise UnusableError(f"{key} is {value!r}, not a number" if key in item else f"the key {key} is missing")
+    return float(value)
+
+
+def whole(item: Mapping[str, Any], key: str) -> int:
+    """A whole number of a JSON object.
+
+    Raises
+    ------
+    UnusableError
+        When it is missing or no whole number of a sensible size.
+    """
+    value = item.get(key)
+    if type(value) is not int or abs(value) > 2**31:
+        raise UnusableError(f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing")
+    return value
