@@ -45,7 +45,7 @@ def features(part: object, prepare: Callable[[], None] | None = None, **changes:
     )
 
 
-@pytest.mark.parametrize("home", [None, "/dev/null", "/nowhere/at/all"])
+@pytest.mark.parametrize("home", [None, "/dev/null", "/proc/nowhere"])
 def test_without_a_home_nothing_is_kept_and_nothing_fails(home: str | None) -> None:
     """HOME unset, no folder, or one that cannot be made."""
     done = features("widget", HOME=home, XDG_CACHE_HOME=home, WORKHOLD_CACHE_DIR=None)
