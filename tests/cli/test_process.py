@@ -115,6 +115,7 @@ def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
     assert data["complete"] is False
     assert len(data["fixtures"]) == 3
     assert "3 fixtures" in out
+    assert "stopping; what was found is kept as far as it is soon proven (Ctrl-C again ends at once).\n" in err
     assert "r.json is marked so" in err
     assert "Traceback" not in err
 
@@ -164,7 +165,7 @@ if {interrupted}:
     # What the watcher does when its patience is over is done below.
     ending.GRACE = 600
 end_on_signals()
-with ask_to_stop() as event:
+with ask_to_stop("what was found is kept") as event:
     if {interrupted}:
         print("ready", flush=True)
         event.wait(60)

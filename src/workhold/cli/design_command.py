@@ -111,7 +111,8 @@ def design(
     query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked)
     first_run = is_first_run()
     start = perf_counter()
-    with ask_to_stop() as cancel:
+    # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
+    with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
         if first_run and engine == "curves":
             from workhold.cli.warming import compile_kernels
 

@@ -165,7 +165,7 @@ def keep_what_is_found() -> None:
 
 
 @contextmanager
-def ask_to_stop(then: str = "what was found so far is kept") -> Iterator[threading.Event]:
+def ask_to_stop(then: str) -> Iterator[threading.Event]:
     """An event that Ctrl-C within the block sets, which is said with what ``then`` is; another one ends the program, and so
     does a moment without any finding (see :func:`keep_what_is_found`)."""
     event = threading.Event()

@@ -77,7 +77,7 @@ def explore(
     from workhold.search.exploring import explore as try_all
 
     found: list[Explored] = []
-    with ask_to_stop() as cancel:
+    with ask_to_stop("what was tried so far is kept") as cancel:
         if is_first_run():
             from workhold.cli.warming import compile_kernels
 
