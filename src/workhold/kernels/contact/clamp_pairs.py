@@ -40,6 +40,8 @@ PAIR_LENGTH = 10
 # Of pairs whose freedom (in degrees) and then margin differ by less, the first is taken.
 SAME_FREEDOM, SAME_MARGIN = 1e-4, 1e-9
 ALONG_X = 2
+# Rounding of an entry, besides what it may be off.
+ROUNDING = 1e-14
 
 
 class Clamps(NamedTuple):
@@ -83,9 +85,16 @@ def entry(clamp: Array, k: int, own: int) -> float:
 
 
 @inner
-def closure_margin(one: Array, other: Array) -> float:
-    """The largest least entry of null vectors that sum to 1 of three locators and two clamps; -1 where none is positive."""
-    best = -1.0
+def closure_margin(one: Array, other: Array) -> tuple[float, float]:
+    """How well three locators and two clamps close.
+
+    Returns
+    -------
+    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the most by which the least entry of
+    a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds ``LEAST_CLOSURE`` of its sum: its sign tells whether they
+    close, and it is off by no more than entries of a_1 and a_2 are)
+    """
+    best, lead = -1.0, -inf
     for i in range(5):
         for j in range(i):
             at_one = entry(one, i, 3) - entry(one, j, 3)
@@ -101,7 +110,14 @@ def closure_margin(one: Array, other: Array) -> float:
                 total, least = total + value, min(least, value)
             if total > 0.0:
                 best = max(best, least / total)
-    return best
+            lead = max(lead, least - LEAST_CLOSURE * total)
+    # At either end of the line one entry is zero.
+    for side in (one, other):
+        total, least = 1.0, 0.0
+        for k in range(3):
+            total, least = total + side[TAKEN + k], min(least, side[TAKEN + k])
+        lead = max(lead, least - LEAST_CLOSURE * total)
+    return (best, lead)
 
 
 @inner
@@ -193,12 +209,12 @@ def add_pair(
 ) -> int:
     """Append a pair of clamps of a seat if it closes and has a place; how many rows there are."""
     one, other = clamps.reals[i], clamps.reals[j]
-    margin = closure_margin(one, other)
-    doubt = 2.0 * (one[DOUBT] + other[DOUBT])
-    if margin + doubt <= LEAST_CLOSURE:
+    margin, lead = closure_margin(one, other)
+    doubt = 1.1 * max(one[DOUBT], other[DOUBT]) + ROUNDING
+    if lead + doubt <= 0.0:
         return count
     low, high = ratio_range(one, other)
-    if low >= high and margin - doubt > LEAST_CLOSURE:
+    if low >= high and lead - doubt > 0.0:
         # Reactions that are zero to rounding.
         return count
     first, second = best_holes(seat, clamps, i, j, hardware, spread)
@@ -207,7 +223,7 @@ def add_pair(
     row = out[count]
     row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = number, kind, i, j, first, second
     row[COUNT], row[FREEDOM], row[MARGIN] = 1.0, max(degrees(atan(high) - atan(low)), 0.0), margin
-    row[OPEN] = 1.0 if margin - doubt <= LEAST_CLOSURE else 0.0
+    row[OPEN] = 1.0 if lead - doubt <= 0.0 else 0.0
     return count + 1
 
 
@@ -328,6 +344,6 @@ def closures_of(clamps: Array, out: Array) -> None:
     out : (N, 2) receives margins and freedoms.
     """
     for n in range(clamps.shape[0]):
-        out[n, 0] = closure_margin(clamps[n, 0], clamps[n, 1])
+        out[n, 0], _ = closure_margin(clamps[n, 0], clamps[n, 1])
         low, high = ratio_range(clamps[n, 0], clamps[n, 1])
         out[n, 1] = max(degrees(atan(high) - atan(low)), 0.0)
