@@ -37,7 +37,9 @@ def rounded(width: float, height: float, radius: float, angle: float) -> Workpie
     return Workpiece.from_loops("rounded", [turned])
 
 
-@pytest.mark.parametrize("name", ["triangle_20_2", "oblongPart_10_1", "opening_saddle_9_2_gap5"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("triangle_20_2", marks=pytest.mark.prove), "oblongPart_10_1", "opening_saddle_9_2_gap5"]
+)
 def test_complete_sets(name: str) -> None:
     """The engine lists what an independent method found, apart from marginal fixtures."""
     truth = json.loads((COMPLETE / f"{name}.json").read_text())

@@ -35,9 +35,9 @@ def assert_found(first_seed: int, plants: int) -> set[str]:
     return kinds
 
 
-@pytest.mark.parametrize("first_seed", [0, 10_000, 20_000, 30_000])
+@pytest.mark.parametrize("first_seed", [0, 10_000])
 def test_planted_fixtures_are_found(first_seed: int) -> None:
-    """Each of 4 times 50 planted fixtures is listed, over lines, convex and concave arcs and both types."""
+    """Each of 2 times 50 planted fixtures is listed, over lines, convex and concave arcs and both types."""
     assert assert_found(first_seed, 50) == {"I", "II"}
 
 

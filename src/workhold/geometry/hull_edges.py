@@ -159,7 +159,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     >>> points = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
     >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
     >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
-    [((0,), (0,)), ((1,), (1,)), ((2, 3), (3, 4)), ((4,), (4,)), ((5,), (5,))]
+    [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
     pieces = Pieces.of(segments)
     found: list[HullEdge] = []
