@@ -81,7 +81,7 @@ def table_and_listing() -> Calls:
     yield figures, (*contacts, whole, 1.0, two, *rows)
     clamps = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))
     hardware = Hardware(np.full((4, 4), -1), 0.0, 0.0, 0.0, False)
-    yield pairs_of, (np.zeros((0, 2), np.int64), np.zeros(0, np.bool_), clamps, hardware, False)
+    yield pairs_of, (np.zeros((0, 2), np.int64), none, clamps, hardware, False)
     yield closures_of, (np.zeros((0, 2, CLAMP_LENGTH)), np.zeros((0, 2)))
 
 

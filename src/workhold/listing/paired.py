@@ -118,9 +118,9 @@ class PairedFixtures:
             self.keys.append(self.smallest(table))
         self.keep(self.measured(table))
 
-    def first_half(self, seats: Seats) -> NDArray[np.bool_]:
-        """Which seats (S,) lie in the first half turn: of opposite directions half a turn makes one fixture another."""
-        return np.asarray(seats.theta < pi - SAME_POSE)
+    def first_half(self, seats: Seats) -> IntArray:
+        """1 for seats (S,) in the first half turn, else 0: of opposite directions half a turn makes one fixture another."""
+        return (seats.theta < pi - SAME_POSE).astype(np.int64)
 
     def sharpened(self, seats: Seats, rows: Array) -> Seats:
         """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""

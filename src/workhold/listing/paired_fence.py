@@ -132,9 +132,9 @@ def one_direction(pressed: Pressed, problem: Problem, direction: str) -> tuple[P
 class PairedOnFence(PairedFixtures):
     """The fixtures of a fence with two clamps found so far, or the best of them."""
 
-    def first_half(self, seats: SeatsOnFence) -> NDArray[np.bool_]:  # type: ignore[override]
-        """All: no turn makes one fixture another."""
-        return np.ones(len(seats), np.bool_)
+    def first_half(self, seats: SeatsOnFence) -> IntArray:  # type: ignore[override]
+        """1 for all: no turn makes one fixture another."""
+        return np.ones(len(seats), np.int64)
 
     def sharpened(self, seats: SeatsOnFence, rows: Array) -> SeatsOnFence:  # type: ignore[override]
         """As they are: what doubles do not tell well enough was told by balls."""

@@ -309,13 +309,13 @@ def add_pairs(
 
 
 @compiled_making_arrays
-def pairs_of(seats: IntArray, halves: NDArray[np.bool_], clamps: Clamps, hardware: Hardware, every: bool) -> Array:
+def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardware, every: bool) -> Array:
     """The pairs of clamps that close and have a place, seat by seat.
 
     Parameters
     ----------
     seats : (S, 2) the largest column and row of their locators, whose lowest are 0.
-    halves : (S,) whether the orientation is in the first half turn.
+    halves : (S,) 1 where the orientation is in the first half turn, else 0.
     every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then of the largest
         closure margin, then the first.
 
@@ -326,7 +326,7 @@ def pairs_of(seats: IntArray, halves: NDArray[np.bool_], clamps: Clamps, hardwar
     out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
     count, number = int(np.int64(0)), int(np.int64(0))
     while number < seats.shape[0]:
-        more = add_pairs(out, count, number, halves[number], seats[number], clamps, hardware, every, spread)
+        more = add_pairs(out, count, number, halves[number] != 0, seats[number], clamps, hardware, every, spread)
         if more < 0:
             out = grown(out)
             continue
