@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from math import cos, sin, sqrt
 from pathlib import Path
 from threading import Event
@@ -16,13 +14,13 @@ import pytest
 
 import workhold
 from slow_fence import slow_fence
+from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
 from workhold.model.restrictions import Restrictions, circle_zone
 
 TESTS = Path(__file__).parent.parent
 COMPLETE = sorted((TESTS / "data" / "toolkits").glob("edge_*.json"))
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0.2)]
-NOTCHED = [(0, 0, 0), (58, 0, 0), (58, 26, 0), (44, 40, 0), (20, 40, 0.3), (0, 40, 0)]
 # Two feet beside a gap on the wall, a rounded shoulder, and a mouth.
 FEET = [
     (0, 0, 0),
@@ -37,20 +35,6 @@ FEET = [
     (4, 40, 0),
 ]
 L = [(0, 0, 0), (60, 0, 0), (60, 20, 0), (20, 20, 0), (20, 50, 0), (0, 50, 0)]
-
-
-def part(loop: list[tuple[float, ...]], *holes: list[tuple[float, ...]]) -> Workpiece:
-    """A part of loops."""
-    return Workpiece.from_loops("part", [loop, *holes])
-
-
-def checked(result: Result, path: Path, truth: Path | None = None) -> str:
-    """What the independent checker says of a result; it fails the test for any fault."""
-    workhold.save(result, path)
-    command = [sys.executable, str(TESTS / "check_toolkit.py"), str(path), *(["--truth", str(truth)] if truth else [])]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    return done.stdout
 
 
 def seen(result: Result, flipped: bool = False) -> set[tuple[Any, ...]]:
@@ -119,14 +103,7 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
     """With and without a body of the clamp, and in the order of JSON and of columns."""
     result = design(part(loop), Fence(peg_radius=3, **fields))
     assert len(result) > 0
-    checked(result, tmp_path / "result.json")
-    again = workhold.open(tmp_path / "result.json")
-    assert again.query == result.query
-    workhold.save(again, tmp_path / "again.json")
-    workhold.save(result, tmp_path / "result.npz")
-    workhold.save(workhold.open(tmp_path / "result.npz"), tmp_path / "columns.json")
-    text = (tmp_path / "result.json").read_bytes()
-    assert (tmp_path / "again.json").read_bytes() == text == (tmp_path / "columns.json").read_bytes()
+    check_and_read_back(result, tmp_path)
     for fixture in list(result)[:20]:
         assert [peg.carrier for peg in fixture.pegs] == ["plate", "wall", "wall", f"clamp {fixture.direction}"]
 

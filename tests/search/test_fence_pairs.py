@@ -9,20 +9,15 @@ from typing import Any
 
 import attrs
 import pytest
-from test_plate import MOUTH, NOTCHED, checked, part
 
 import workhold
+from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import Fence, Workpiece, design
 from workhold.proof.flush import reactions_on_fence
 from workhold.search import fence_search
 
 COMPLETE = Path(__file__).parent.parent / "data" / "toolkits" / "edge2_saddle_10.json"
 ALL = ["-x", "+x", "-y", "+y"]
-
-
-def rectangle(width: float, height: float) -> Workpiece:
-    """A rectangle."""
-    return part([(0, 0, 0), (width, 0, 0), (width, height, 0), (0, height, 0)])
 
 
 def test_complete_set_is_reproduced(tmp_path: Path) -> None:
@@ -77,14 +72,7 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
     """Also with other clamps than locators, with arcs, and bolted; JSON and columns say the same."""
     result = design(part(loop), Fence(peg_radius=3, clamps=2, **fields), listing=listing)
     assert len(result) > 3
-    checked(result, tmp_path / "result.json")
-    again = workhold.open(tmp_path / "result.json")
-    assert again.query == result.query and (again.pairs, again.seats) == (result.pairs, result.seats)
-    workhold.save(again, tmp_path / "again.json")
-    workhold.save(result, tmp_path / "result.npz")
-    workhold.save(workhold.open(tmp_path / "result.npz"), tmp_path / "columns.json")
-    text = (tmp_path / "result.json").read_bytes()
-    assert (tmp_path / "again.json").read_bytes() == text == (tmp_path / "columns.json").read_bytes()
+    check_and_read_back(result, tmp_path)
 
 
 def seen(result: workhold.Result) -> list[tuple[Any, ...]]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from itertools import product
 from math import cos, pi, sin
 from pathlib import Path
@@ -14,7 +12,7 @@ import attrs
 import numpy as np
 import pytest
 
-import workhold
+from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part
 from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.model.restrictions import Restrictions
@@ -22,23 +20,6 @@ from workhold.search.explaining import explain
 
 TESTS = Path(__file__).parent.parent
 COMPLETE = sorted((TESTS / "data" / "toolkits").glob("clamp_*.json"))
-# A mouth wide enough for the clamp and a locator behind it.
-MOUTH = [(0, 0, 0), (70, 4, 0), (70, 14, 0), (24, 10, 0), (20, 44, 0), (66, 48, 0), (66, 58, 0), (0, 62, 0)]
-NOTCHED = [(0, 0, 0), (58, 0, 0), (58, 26, 0), (44, 40, 0), (20, 40, 0.3), (0, 40, 0)]
-
-
-def part(loop: list[tuple[float, ...]], *holes: list[tuple[float, ...]]) -> Workpiece:
-    """A part of loops."""
-    return Workpiece.from_loops("part", [loop, *holes])
-
-
-def checked(result: Result, path: Path, truth: Path | None = None) -> str:
-    """What the independent checker says of a result; it fails the test for any fault."""
-    workhold.save(result, path)
-    command = [sys.executable, str(TESTS / "check_toolkit.py"), str(path), *(["--truth", str(truth)] if truth else [])]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    return done.stdout
 
 
 def plate_of(truth: dict[str, Any]) -> Plate:
@@ -74,14 +55,7 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
     """Also with a clamp of another radius than the locators, and in the order of JSON and of columns."""
     result = design(part(loop), Plate(peg_radius=3, **fields))
     assert len(result) > 3
-    checked(result, tmp_path / "result.json")
-    again = workhold.open(tmp_path / "result.json")
-    assert again.query == result.query
-    workhold.save(again, tmp_path / "again.json")
-    workhold.save(result, tmp_path / "result.npz")
-    workhold.save(workhold.open(tmp_path / "result.npz"), tmp_path / "columns.json")
-    text = (tmp_path / "result.json").read_bytes()
-    assert (tmp_path / "again.json").read_bytes() == text == (tmp_path / "columns.json").read_bytes()
+    check_and_read_back(result, tmp_path)
     for fixture in list(result)[:20]:
         assert fixture.direction in {"-x", "+x", "-y", "+y"}
         assert [peg.carrier for peg in fixture.pegs] == ["plate"] * 3 + [f"clamp {fixture.direction}"]

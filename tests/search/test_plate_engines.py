@@ -8,9 +8,9 @@ from random import Random
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from test_plate import checked
 
 from strategies import random_outline
+from toolkit_results import checked
 from workhold import Plate, Query, Result, answer
 from workhold.algebra.engine import answer_by_algebra
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sin, tau
+from math import inf, pi, tau
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,19 +28,21 @@ from workhold.kernels.contact.clamp_pairs import (
     SEAT,
     TAKEN,
     TIP,
+    Clamps,
     Hardware,
     pairs_of,
 )
 from workhold.listing.canonical_form import changes, packed
 from workhold.listing.listed import Work, proof_of
 from workhold.listing.ranking import best_marked, rank
-from workhold.listing.seats import NAMES, Seats
+from workhold.listing.seats import ALONG, NAMES, Seats
 from workhold.model.notes import undecided_note
-from workhold.model.plate import DIRECTIONS, Plate
+from workhold.model.plate import Plate
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.quality import CLAMP_FREEDOM, CLOSURE_MARGIN
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.toolkit import Carrier
 from workhold.proof.deciding import BALLS, Account
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.quality import quality_of
@@ -48,7 +50,7 @@ from workhold.statics.quality import quality_of
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import Box
 
-__all__ = ["PairedFixtures"]
+__all__ = ["FAR", "ChosenPairs", "PairedFixtures"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,6 +58,80 @@ IntArray = NDArray[np.int64]
 FAR = 1 << 30
 # mm. Proven contacts are this near to where they are said to be.
 BESIDE = 1e-8
+
+
+@define(frozen=True, eq=False)
+class ChosenPairs:
+    """N pairs of clamps of some seats, taken apart.
+
+    Parameters
+    ----------
+    rows : (N, 10) as kernels tell them (``kernels.contact.clamp_pairs``).
+    seat, kind : (N,) numbers of seats and pairs of directions.
+    clamp, direction, line : (N, 2) numbers of both clamps, of their directions and lines.
+    hole : (N, 2, 2) column and row in which each is bolted.
+    reals : (N, 2, 7) of both.
+    """
+
+    rows: Array
+    seat: IntArray
+    kind: IntArray
+    clamp: IntArray
+    direction: IntArray
+    line: IntArray
+    hole: IntArray
+    reals: Array
+
+    @classmethod
+    def of(cls, rows: Array, clamps: Clamps) -> ChosenPairs:
+        """Those of (N, 10) rows."""
+        whole = rows[:, [SEAT, KIND, CLAMPS, CLAMPS + 1, HOLES, HOLES + 1]].astype(np.int64)
+        clamp, bolted = whole[:, 2:4], whole[:, 4:6]
+        return cls(
+            rows,
+            seat=whole[:, 0],
+            kind=whole[:, 1],
+            clamp=clamp,
+            direction=clamps.integers[clamp, DIRECTION],
+            line=clamps.integers[clamp, LINE],
+            hole=clamps.holes[bolted, :2].astype(np.int64),
+            reals=clamps.reals[clamp],
+        )
+
+    @property
+    def upright(self) -> NDArray[np.bool_]:
+        """Which clamps (N, 2) push along columns."""
+        return np.asarray(self.direction >= NAMES.index("-y"))
+
+    def in_holes(
+        self, column: IntArray, row: IntArray, plate: Carrier, shift: Array, **placed: NDArray[Any]
+    ) -> FixtureTable:
+        """The pairs as fixtures.
+
+        Parameters
+        ----------
+        column, row : (N, 5) in which pegs stand on the plate.
+        shift : (N, 2) from where places of tips count to the plate's origin, in mm.
+        placed : the other columns that tell of the pose.
+        """
+        tip = self.reals[..., TIP : TIP + 2] + shift[:, None]
+        at = np.stack([column[:, 3:], row[:, 3:]], axis=2) * np.array(plate.pitch) + np.array(plate.offset)
+        push = self.reals[..., PUSH]
+        force = np.zeros((len(self.rows), 5, 2))
+        force[:, :3] = np.swapaxes(self.reals[..., TAKEN : TAKEN + 3] / push[..., None], 1, 2)
+        force[:, 3, 0], force[:, 4, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
+        quality = unknown_quality(self.rows[:, MARGIN])
+        quality[:, CLAMP_FREEDOM] = self.rows[:, FREEDOM]
+        return FixtureTable(
+            arrangement=self.kind.astype(np.int8),
+            column=column.astype(np.int32),
+            row=row.astype(np.int32),
+            jaw_separation=((tip - at) * ALONG[self.direction]).sum(axis=2),
+            force=force,
+            quality=quality,
+            pairs=self.rows[:, COUNT].astype(np.int32),
+            **placed,
+        )
 
 
 @define(eq=False)
@@ -157,44 +233,26 @@ class PairedFixtures:
 
     def written_out(self, rows: Array, seats: Seats) -> FixtureTable:
         """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are known."""
-        whole = rows[:, [SEAT, KIND, CLAMPS, CLAMPS + 1, HOLES, HOLES + 1]].astype(np.int64)
-        seat, kind, chosen, bolted = whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:6]
-        clamps, toolkit = seats.clamps, self.toolkit
-        upright = clamps.integers[chosen, DIRECTION] >= NAMES.index("-y")
-        line, hole = clamps.integers[chosen, LINE], clamps.holes[bolted, :2].astype(np.int64)
-        in_hole = toolkit.travel is not None
-        column = np.where(upright, line, hole[..., 0] if in_hole else FAR)
-        row = np.where(upright, hole[..., 1] if in_hole else FAR, line)
+        pairs, pitch = ChosenPairs.of(rows, seats.clamps), np.array(self.toolkit.pitch)
+        seat, upright, in_hole = pairs.seat, pairs.upright, self.toolkit.travel is not None
+        column = np.where(upright, pairs.line, pairs.hole[..., 0] if in_hole else FAR)
+        row = np.where(upright, pairs.hole[..., 1] if in_hole else FAR, pairs.line)
         column, row = np.hstack([seats.column[seat], column]), np.hstack([seats.row[seat], row])
         lowest = np.stack([column.min(axis=1, initial=FAR), row.min(axis=1, initial=FAR)], axis=1)
         column, row = column - lowest[:, :1], row - lowest[:, 1:]
-        tip = clamps.reals[chosen, TIP : TIP + 2] - (lowest * np.array(toolkit.pitch))[:, None]
         if not in_hole:
             column[:, 3:], row[:, 3:] = np.where(upright, column[:, 3:], 0), np.where(upright, 0, row[:, 3:])
-        at = np.stack([column[:, 3:], row[:, 3:]], axis=2) * np.array(toolkit.pitch)
-        units = np.array([(round(cos(angle), 15), round(sin(angle), 15)) for angle in DIRECTIONS.values()])
-        travel = ((tip - at) * units[clamps.integers[chosen, DIRECTION]]).sum(axis=2)
         theta = seats.theta[seat]
         x, y = (seats.point[seat, 0] + np.array(self.problem.workpiece.center)).T
-        anchor = np.stack(rotated(x, y, theta), axis=1)
-        force = np.zeros((len(rows), 5, 2))
-        reals = clamps.reals[chosen]
-        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / reals[..., PUSH, None], 1, 2)
-        force[:, 3, 0], force[:, 4, 1] = 1.0 / reals[:, 0, PUSH], 1.0 / reals[:, 1, PUSH]
-        quality = unknown_quality(rows[:, MARGIN])
-        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
-        features = np.hstack([seats.feature[seat], seats.clamp_feature[chosen]])
-        return FixtureTable(
-            arrangement=kind.astype(np.int8),
-            column=column.astype(np.int32),
-            row=row.astype(np.int32),
+        features = np.hstack([seats.feature[seat], seats.clamp_feature[pairs.clamp]])
+        return pairs.in_holes(
+            column,
+            row,
+            self.toolkit.carriers[0],
+            -lowest * pitch,
             face=self.problem.faces[features].astype(np.int32),
             theta=theta,
-            position=np.stack([column[:, 0], row[:, 0]], axis=1) * np.array(toolkit.pitch) - anchor,
-            jaw_separation=travel,
-            force=force,
-            quality=quality,
-            pairs=rows[:, COUNT].astype(np.int32),
+            position=np.stack([column[:, 0], row[:, 0]], axis=1) * pitch - np.stack(rotated(x, y, theta), axis=1),
         )
 
     def measured(self, table: FixtureTable) -> FixtureTable:

@@ -7,7 +7,6 @@ from the wall, and nothing that a turn makes the same.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, sin
 
 import numpy as np
 from attrs import define
@@ -15,28 +14,12 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import NO_REACTION, SAME_PLACE
-from workhold.kernels.contact.clamp_pairs import (
-    CLAMPS,
-    COUNT,
-    DIRECTION,
-    FREEDOM,
-    HOLES,
-    KIND,
-    LINE,
-    MARGIN,
-    PUSH,
-    SEAT,
-    TAKEN,
-    TIP,
-    Clamps,
-)
+from workhold.kernels.contact.clamp_pairs import Clamps
 from workhold.listing.canonical_form import changes, packed
 from workhold.listing.on_fence import Pressed, clear_holes, listed_once, turned
-from workhold.listing.paired import FAR, PairedFixtures
+from workhold.listing.paired import FAR, ChosenPairs, PairedFixtures
 from workhold.listing.seats import NAMES, clusters
-from workhold.model.plate import DIRECTIONS
-from workhold.model.quality import CLAMP_FREEDOM
-from workhold.model.result import FixtureTable, unknown_quality
+from workhold.model.result import FixtureTable
 
 __all__ = ["PairedOnFence", "SeatsOnFence", "seats_on_fence"]
 
@@ -142,44 +125,28 @@ class PairedOnFence(PairedFixtures):
 
     def written_out(self, rows: Array, seats: SeatsOnFence) -> FixtureTable:  # type: ignore[override]
         """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are known."""
-        whole = rows[:, [SEAT, KIND, CLAMPS, CLAMPS + 1, HOLES, HOLES + 1]].astype(np.int64)
-        seat, kind, chosen, bolted = whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:6]
-        clamps, toolkit, flush, count = seats.clamps, self.toolkit, self.query.workpiece.flush, len(rows)
-        upright = clamps.integers[chosen, DIRECTION] >= NAMES.index("-y")
-        line, hole, in_hole = clamps.integers[chosen, LINE], clamps.holes[bolted, :2].astype(np.int64), toolkit.travel
+        pairs, flush, count = ChosenPairs.of(rows, seats.clamps), self.query.workpiece.flush, len(rows)
+        seat, upright, in_hole = pairs.seat, pairs.upright, self.toolkit.travel is not None
         zero = np.zeros((count, 1), np.int64)
-        across = np.where(upright, line, hole[..., 0] if in_hole else FAR)
+        across = np.where(upright, pairs.line, pairs.hole[..., 0] if in_hole else FAR)
         lowest = np.minimum(across.min(axis=1, initial=0), 0)[:, None]
         across = np.where(across == FAR, 0, across - lowest)
         column = np.hstack([zero - lowest, zero, zero, across])
-        row = np.hstack([seats.row[seat][:, None], zero, zero, np.where(upright, hole[..., 1] if in_hole else 0, line)])
-        pitch, offset = np.array(toolkit.carriers[0].pitch), np.array(toolkit.carriers[0].offset)
+        upward = np.where(upright, pairs.hole[..., 1] if in_hole else 0, pairs.line)
+        row = np.hstack([seats.row[seat][:, None], zero, zero, upward])
         # Places along the wall count from the locator, which now stands in this column.
-        shift = np.hstack([-lowest * pitch[0], np.zeros((count, 1))])
-        tip = clamps.reals[chosen, TIP : TIP + 2] + shift[:, None]
-        at = np.stack([column[:, 3:], row[:, 3:]], axis=2) * pitch + offset
-        units = np.array([(round(cos(angle), 15), round(sin(angle), 15)) for angle in DIRECTIONS.values()])
-        travel = ((tip - at) * units[clamps.integers[chosen, DIRECTION]]).sum(axis=2)
-        theta, reals = flush.theta[seats.edge[seat]], clamps.reals[chosen]
+        shift = np.hstack([-lowest * self.toolkit.pitch[0], np.zeros((count, 1))])
+        theta, faces = flush.theta[seats.edge[seat]], self.problem.faces
         start = np.stack([shift[:, 0] - seats.locator[seat, 0], np.zeros(count)], axis=1)
-        force = np.zeros((count, 5, 2))
-        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / reals[..., PUSH, None], 1, 2)
-        force[:, 3, 0], force[:, 4, 1] = 1.0 / reals[:, 0, PUSH], 1.0 / reals[:, 1, PUSH]
-        quality = unknown_quality(rows[:, MARGIN])
-        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
-        faces = self.problem.faces
-        one, two = faces[seats.feature[seat]][:, None], faces[seats.clamp_feature[chosen]]
-        return FixtureTable(
-            arrangement=kind.astype(np.int8),
-            column=column.astype(np.int32),
-            row=row.astype(np.int32),
+        one, two = faces[seats.feature[seat]][:, None], faces[seats.clamp_feature[pairs.clamp]]
+        return pairs.in_holes(
+            column,
+            row,
+            self.toolkit.carriers[0],
+            shift,
             face=np.hstack([one, flush.face[seats.edge[seat]], two]).astype(np.int32),
             theta=theta,
             position=start - turned(flush.ends[seats.edge[seat], 0], theta),
-            jaw_separation=travel,
-            force=force,
-            quality=quality,
-            pairs=rows[:, COUNT].astype(np.int32),
         )
 
     def smallest(self, table: FixtureTable) -> tuple[IntArray, Array]:

@@ -18,13 +18,15 @@ from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
 from workhold.conventions import NO_REACTION, SAME_PLACE, SAME_POSE
 from workhold.geometry.rotation import rotated
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.clamp_pairs import Clamps
 from workhold.listing.canonical_form import Candidates, changes, packed
 from workhold.listing.on_plate import clear_holes
 from workhold.model.plate import DIRECTIONS
+from workhold.model.toolkit import Travel
+from workhold.statics.wrenches import outward_normals, wrenches
 
-__all__ = ["Seats", "seats_of"]
+__all__ = ["ALONG", "NAMES", "Seats", "clusters", "seats_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -32,6 +34,8 @@ IntArray = NDArray[np.int64]
 LOCATORS = slice(0, 3)
 TIP = 3
 NAMES = tuple(DIRECTIONS)
+# Unit vectors along which the travel of clamps in each direction is counted.
+ALONG = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
 
 
 @define(frozen=True, eq=False)
@@ -99,27 +103,11 @@ class Seats:
         return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
 
 
-def outward_normals(rows: Array, points: Array) -> Array:
-    """Outward unit normals (..., 2) of features (..., 8 or more) at points (..., 2) on them."""
-    on_line = np.stack([rows[..., AXIS_Y], -rows[..., AXIS_X]], axis=-1)
-    arc = rows[..., IS_ARC] != 0.0
-    scale = rows[..., SIGN] / np.where(arc, rows[..., RADIUS], 1.0)
-    on_arc = (points - rows[..., [X, Y]]) * scale[..., None]
-    return np.where(arc[..., None], on_arc, on_line)
-
-
-def wrenches(rows: Array, points: Array, length: float) -> Array:
-    """Wrenches (..., 3) of contacts: normal, and moment over L about the part's centre."""
-    normal = outward_normals(rows, points)
-    moment = (points[..., 0] * normal[..., 1] - points[..., 1] * normal[..., 0]) / length
-    return np.concatenate([normal, moment[..., None]], axis=-1)
-
-
 def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contacts:
     """Contacts that the search of one direction proved, without clamps that hold the part alone or have no hole."""
-    frame, length = problem.frame, problem.wrench_length
+    frame = problem.frame
     rows = problem.rows[c.feature]
-    wrench = wrenches(rows, c.point, length)
+    wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
     inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATORS], 1, 2)), np.float64)
     taken = -(inverse @ wrench[:, TIP, :, None])[..., 0]
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping

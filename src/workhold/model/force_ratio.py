@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import NO_REACTION
 
-__all__ = ["freedom", "ratios", "working_forces"]
+__all__ = ["ratios", "working_forces"]
 
 Array = NDArray[np.float64]
 
@@ -40,11 +40,6 @@ def ratios(reactions: Array) -> tuple[Array, Array]:
     # Where no force of the second clamp reaches a locator, the first has to press it.
     high = np.where(((two == 0.0) & (one <= 0.0)).any(axis=1), 0.0, high)
     return low + 0.0, high + 0.0
-
-
-def freedom(low: Array, high: Array) -> Array:
-    """The clamp freedom (N,) in degrees of intervals of ratios."""
-    return np.asarray(np.degrees(np.arctan(high) - np.arctan(low)))
 
 
 def working_forces(reactions: Array) -> Array:

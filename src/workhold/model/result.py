@@ -107,7 +107,9 @@ class FixtureTable:
     @classmethod
     def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
         """A table of no fixtures of a toolkit; None is one with four pegs."""
-        count, several = (5, (2,)) if toolkit is not None and toolkit.needs_pairs else (4, ())
+        count, several = 4, tuple[int, ...]()
+        if toolkit is not None and toolkit.needs_pairs:
+            count, several = toolkit.peg_count, (2,)
         ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
         return cls(
             arrangement=np.zeros(0, np.int8),

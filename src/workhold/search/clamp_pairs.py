@@ -32,7 +32,7 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.proof.deciding import Account, Course, decided
-from workhold.search.cells import run_blocks
+from workhold.search.cells import Block, run_blocks
 from workhold.search.preview import Preview
 from workhold.search.toolkit_search import ToolkitSearch
 
@@ -52,16 +52,18 @@ def answer_of_pairs(
     """The fixtures with two clamps that a query asks for, see ``search.design.answer``."""
     searches = [search_of(query, way, threads, cancel) for way in query.toolkit.ways]
     kept = PairedFixtures(query, searches[0].problem)
-    most = max(len(search.blocks(search.problem.toolkit.types)) for search in searches)
-    edges = np.linspace(0.0, tau, min(max(most // BLOCKS_TOGETHER, 1), MOST_RANGES) + 1) - SAME_POSE
+    whole_turn = [search.blocks(search.problem.toolkit.types) for search in searches]
+    ranges = min(max(max(map(len, whole_turn)) // BLOCKS_TOGETHER, 1), MOST_RANGES)
+    edges = np.linspace(0.0, tau, ranges + 1) - SAME_POSE
     accounts, cells, complete = list[Account](), 0, True
     with ThreadPoolExecutor(max_workers=threads) as pool:
         for number, (low, high) in enumerate(pairwise(edges.tolist())):
-            share = stage(progress, number / (len(edges) - 1), (number + 1) / (len(edges) - 1))
+            share = stage(progress, number / ranges, (number + 1) / ranges)
             parts = []
             for place, search in enumerate(searches):
                 one = stage(share, place / len(searches), (place + 1) / len(searches))
-                records, done, whole = records_within(search, (low, high), pool, threads, one, cancel, len(kept))
+                blocks = whole_turn[place] if ranges == 1 else blocks_within(search, low, high)
+                records, done, whole = records_of(search, blocks, pool, threads, one, cancel, len(kept))
                 candidates, account = contacts_of(records, search.problem, pool, cancel)
                 parts.append((candidates, search.problem, search.frame.toolkit.arrangements[0].direction or ""))
                 accounts.append(account)
@@ -70,7 +72,7 @@ def answer_of_pairs(
             if preview is not None and number < MOST_PREVIEWS:
                 preview(kept.so_far())
             if cancel is not None and cancel.is_set():
-                complete = complete and number + 2 == len(edges)
+                complete = complete and number + 1 == ranges
                 break
     account = Account.together(accounts)
     examined = int(sum(search.totals[CANDIDATES] for search in searches))
@@ -87,20 +89,21 @@ def search_of(query: Query, way: Toolkit, threads: int, cancel: Event | None) ->
     return ToolkitSearch.of(Problem.of(single, pairing=True), threads=threads, cancel=cancel)
 
 
-def records_within(
+def blocks_within(search: ToolkitSearch, low: float, high: float) -> list[Block]:
+    """The blocks of the orientations of a range in radians, and of some near it."""
+    return search.blocks(search.problem.toolkit.types, within=(degrees(low - OVERLAP), degrees(high + OVERLAP)))
+
+
+def records_of(
     search: ToolkitSearch,
-    within: tuple[float, float],
+    blocks: Sequence[Block],
     pool: Executor,
     threads: int,
     progress: Progress | None,
     cancel: Event | None,
     found: int,
 ) -> tuple[list[NDArray[np.float64]], int, bool]:
-    """Records of the orientations of a range in radians, how many cells they are from, and whether all are."""
-    low, high = within
-    whole = high - low > tau - SAME_POSE
-    about = None if whole else (degrees(low - OVERLAP), degrees(high + OVERLAP))
-    blocks = search.blocks(search.problem.toolkit.types, within=about)
+    """Records of some blocks, how many cells they are from, and whether all blocks came to their end."""
     told = None if progress is None else lambda fraction, _: progress(fraction, found)
     records, done = run_blocks(blocks, threads, told, cancel, stop=search.stop, pool=pool)
     return records, sum(block.cells for block in done), len(done) == len(blocks)

@@ -26,6 +26,7 @@ from workhold.model.force_ratio import working_forces
 from workhold.model.toolkit import Toolkit
 from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece
+from workhold.statics.wrenches import wrenches
 
 __all__ = ["ContactMatrices", "Touched"]
 
@@ -203,15 +204,9 @@ class Touched:
         )
 
 
-def pair_wrenches(points: Array, normals: Array, length: float) -> Array:
-    """Wrenches (N, P, 3) of contacts: normal, and moment over L."""
-    moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
-    return np.concatenate([normals, moments[..., None]], axis=-1)
-
-
-def locators_inverse(wrenches: Array) -> Array:
+def locators_inverse(all_wrenches: Array) -> Array:
     """Inverses (N, 3, 3) of the matrices whose rows are the locators' wrenches; NaN where there is none."""
-    matrix = wrenches[:, :LOCATORS]
+    matrix = all_wrenches[:, :LOCATORS]
     usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(np.linalg.det(matrix)) > 0.0)
     inverse = np.full(matrix.shape, np.nan)
     inverse[usable] = np.linalg.inv(matrix[usable])
@@ -227,9 +222,9 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
     pushes : (N, 2, 2) unit vectors along which the clamps push, in the part's frame.
     length : L in mm.
     """
-    wrenches = pair_wrenches(points, normals, length)
+    each = wrenches(points, normals, length)
     push = -(normals[:, LOCATORS:] * pushes).sum(axis=-1)
-    taken = -np.einsum("nij,nki->njk", locators_inverse(wrenches), wrenches[:, LOCATORS:])
+    taken = -np.einsum("nij,nki->njk", locators_inverse(each), each[:, LOCATORS:])
     out = np.zeros((len(points), 5, 2))
     out[:, :LOCATORS] = taken / push[:, None]
     out[:, LOCATORS, 0], out[:, LOCATORS + 1, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
@@ -239,6 +234,6 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
 def pair_inverses(points: Array, normals: Array, reactions: Array, length: float) -> Array:
     """What stands for the inverses (N, 4, 5) of contact matrices with two clamps, see :class:`ContactMatrices`."""
     out = np.zeros((len(points), 4, 5))
-    out[:, :LOCATORS, :LOCATORS] = locators_inverse(pair_wrenches(points, normals, length))
+    out[:, :LOCATORS, :LOCATORS] = locators_inverse(wrenches(points, normals, length))
     out[:, 3] = working_forces(reactions)
     return out

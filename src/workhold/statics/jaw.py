@@ -113,11 +113,9 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
     loads : (M, 11) rows, see ``kernels.statics.reactions``.
     """
     held = inverses[:, 3]
-    if closing.shape[2] == 1:
-        shares = inverses[:, :3] @ held[:, :, None] / (held * held).sum(axis=1)[:, None, None]
-    else:
-        frame, _ = np.linalg.qr(np.nan_to_num(closing))
-        shares = (inverses[:, :3] @ frame) @ np.swapaxes(frame, 1, 2) / held[:, None]
+    back = np.swapaxes(closing, 1, 2)
+    taken = np.linalg.solve(back @ closing, back @ np.swapaxes(inverses[:, :3], 1, 2))
+    shares = np.swapaxes(closing @ taken, 1, 2) / held[:, None]
     a, b, c = np.moveaxis(shares - inverses[:, :3] / held[:, None], 1, 0)
     most = np.zeros(len(inverses))
     for load in loads:

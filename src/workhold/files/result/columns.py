@@ -23,7 +23,8 @@ from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
 from workhold.files.result.checks import refuse_faulty, refuse_unknown_types
 from workhold.files.result.head import checked_head, checked_query, result_with
-from workhold.files.result.writer import ANGLE_STEPS, FORMAT, LENGTH_STEPS, head, rounded
+from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degrees, significant
+from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
 from workhold.model.columns import COLUMNS, HEAD, PAIR_COLUMNS, columns_said
 from workhold.model.query import Query
@@ -33,9 +34,6 @@ __all__ = ["ColumnsReceiver", "MappedTable", "answer_to_file", "read_columns", "
 
 # Fixtures rounded and written together.
 BLOCK = 1 << 15
-# Digits of forces and figures of quality; what lies nearer than this to the middle between two such numbers is rounded
-# one by one, because a product in doubles may fall on its other side.
-DIGITS, DOUBTFUL = 12, 1e-3
 
 
 @frozen
@@ -109,40 +107,18 @@ def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
 
 def as_written(table: FixtureTable) -> tuple[NDArray[Any], ...]:
     """The columns of a table, rounded as the JSON form writes them."""
-    theta = rounded(np.degrees(table.theta) % 360.0, ANGLE_STEPS)
     return (
         table.arrangement,
         table.column,
         table.row,
         table.face,
-        np.radians(theta) % (2 * np.pi),
+        np.radians(rounded_degrees(np.degrees(table.theta))),
         rounded(table.position, LENGTH_STEPS),
         rounded(table.jaw_separation, LENGTH_STEPS),
         significant(table.force),
         significant(table.quality),
         *([table.pairs] if table.force.ndim == 3 else []),
     )
-
-
-def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The floats nearest to values as they are with twelve significant digits; NaN for what is not finite, which JSON does
-    not know either.
-
-    A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
-    """
-    values = np.where(np.isfinite(values), values, np.nan)
-    size = np.abs(values)
-    known = size > 0.0
-    exponent = np.floor(np.log10(np.where(known, size, 1.0))).astype(np.int64)
-    shift = DIGITS - 1 - exponent
-    exact = known & (np.abs(shift) <= 22)
-    power = 10.0 ** np.where(exact, np.abs(shift), 0)
-    scaled = np.where(shift >= 0, values * power, values / power)
-    digits = np.rint(scaled)
-    out = np.where(exact, np.where(shift >= 0, digits / power, digits * power), values)
-    doubtful = known & ~(exact & (np.abs(scaled - np.floor(scaled) - 0.5) > DOUBTFUL))
-    out[doubtful] = [float(f"{value:.{DIGITS}g}") for value in values[doubtful].tolist()]
-    return np.asarray(out)
 
 
 @define(frozen=True, eq=False)

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
-from workhold.files.result.writer import fixture_rows, known_figures
+from workhold.files.result.rounding import known_figures
+from workhold.files.result.writer import fixture_rows
 from workhold.model.result import Result
 
 __all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]

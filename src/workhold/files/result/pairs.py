@@ -1,4 +1,4 @@
-"""Fixtures with two clamps as lines of JSON, and such objects back as numbers (MODEL, "Result file").
+"""Fixtures with two clamps as lines of JSON (MODEL, "Result file").
 
 The forces of a peg are those per unit of the first clamp's force and of the second's.
 """
@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from math import inf
+from math import isnan
 from typing import Any
 
 import numpy as np
-from attrs import evolve
 
-from workhold.files.result.rounding import ANGLE_STEPS, LENGTH_STEPS, known_figures, rounded
+from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, significant
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, peg_places
@@ -23,7 +22,6 @@ from workhold.model.workpiece import Workpiece
 __all__ = ["pair_lines"]
 
 BLOCK = 4096
-LOCATORS = 3
 
 
 def pair_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
@@ -31,19 +29,15 @@ def pair_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> I
     figures = [(figure.key, FIGURES.index(figure)) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
-        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
-        theta[theta >= 360.0] = 0.0
-        position, travel = (rounded(values, LENGTH_STEPS) for values in (block.position, block.jaw_separation))
-        # Where a wall is touched follows from the pose as it is written.
-        written = evolve(block, theta=np.radians(theta) % (2 * np.pi), position=position, jaw_separation=travel)
-        x, y = peg_places(written, toolkit, workpiece)
-        places = rounded(np.stack([x, y], axis=2), LENGTH_STEPS).tolist()
-        poses = np.column_stack([theta, position]).tolist()
+        theta, told = as_told(block)
+        places = rounded(np.stack(peg_places(told, toolkit, workpiece), axis=2), LENGTH_STEPS).tolist()
+        poses = np.column_stack([theta, told.position]).tolist()
         # The ratio is that of the forces as they are written, so that reading and writing changes nothing.
-        force = np.vectorize(significant, otypes=[np.float64])(block.force) if len(block) else block.force
-        ends = zip(*(values.tolist() for values in ratios(force)), strict=True)
+        force = significant(block.force) + 0.0
+        low, high = ratios(force)
+        ends = zip(significant(low).tolist(), significant(high).tolist(), strict=True)
         holes, faces = np.stack([block.column, block.row], axis=2).tolist(), block.face.tolist()
-        forces, quality = force.tolist(), block.quality.tolist()
+        forces, quality = force.tolist(), (significant(block.quality) + 0.0).tolist()
         kinds, pairs = block.arrangement.tolist(), block.pairs.tolist()
         each = zip(kinds, places, poses, ends, holes, faces, forces, quality, pairs, strict=True)
         yield [json.dumps(fixture_entry(toolkit, figures, *numbers)) for numbers in each]
@@ -86,11 +80,11 @@ def fixture_entry(
         "type": arrangement.name,
         "directions": (arrangement.direction or "").split(),
         **({"wall": wall_entry(*wall)} if wall else {}),
-        "ratio": [significant(low), None if high == inf else significant(high)],
+        "ratio": [low, None if isnan(high) else high],
         "pegs": pegs,
         "pose": {"theta_deg": pose[0], "x": pose[1], "y": pose[2]},
         "pairs": pairs,
-        "quality": {key: significant(quality[number]) for key, number in figures},
+        "quality": {key: quality[number] for key, number in figures},
     }
 
 
@@ -98,8 +92,3 @@ def wall_entry(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     """What is written of the contact with a wall, from its two ends."""
     ends = {name: [end["x"], end["y"]] for name, end in (("from", one), ("to", other))}
     return ends | {"segments": [one["segment"], other["segment"]], "forces": [one["force"], other["force"]]}
-
-
-def significant(value: float) -> float:
-    """A number to twelve significant digits, without a negative zero."""
-    return float(f"{value:.12g}") + 0.0

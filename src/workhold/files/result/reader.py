@@ -23,6 +23,7 @@ from workhold.files.result.checks import LARGEST_LENGTH, LARGEST_NUMBER, refuse_
 from workhold.files.result.columns import read_columns
 from workhold.files.result.head import checked_query, result_with
 from workhold.files.result.parts import read_parts
+from workhold.model.fixture import WALL
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
@@ -33,8 +34,6 @@ from workhold.model.workpiece import Workpiece
 __all__ = ["read_result"]
 
 BLOCK = 4096
-# What an end of the contact with a wall stands on.
-WALL = "wall"
 
 
 @frozen
@@ -92,7 +91,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
             number += 1
         kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
-        pegs = pegs or len(rows[0][1]) if rows else pegs or 4
+        pegs = pegs or (len(rows[0][1]) if rows else 4)
         if other := next((k for k, row in enumerate(rows) if len(row[1]) != pegs), None):
             wrong = number - len(rows) + other
             raise InputError(f"{path}: fixture {wrong} cannot be used: it does not have as many pegs as the first.")

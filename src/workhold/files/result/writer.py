@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from attrs import asdict, evolve
+from attrs import asdict
 
 from workhold.files.atomic import text_file
 from workhold.files.result.pairs import pair_lines
-from workhold.files.result.rounding import ANGLE_STEPS, LENGTH_STEPS, known_figures, rounded
+from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, rounded_degrees
 from workhold.model.force_ratio import working_forces
 from workhold.model.holes import Holes
 from workhold.model.kinds import USUAL
@@ -34,16 +34,12 @@ from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "ANGLE_STEPS",
     "FORMAT",
-    "LENGTH_STEPS",
     "fixture_rows",
     "head",
-    "known_figures",
     "load_entry",
     "proof_entry",
     "result_text",
-    "rounded",
     "toolkit_fields",
     "written",
     "write_result",
@@ -228,18 +224,13 @@ def proof_entry(proof: Proof) -> dict[str, Any]:
                 "segments": [int(face) for face in item.faces],
                 "columns": [int(column) for column in item.columns],
                 "rows": [int(row) for row in item.rows],
-                "theta_deg": rounded_degrees(item.theta_deg),
+                "theta_deg": float(rounded_degrees(item.theta_deg)),
                 "reach_deg": item.reach_deg,
                 "reason": item.reason,
             }
             for item in proof.undecided
         ],
     }
-
-
-def rounded_degrees(angle: float) -> float:
-    """An angle in degrees as it is written, in [0, 360)."""
-    return float(rounded(np.array(angle % 360.0), ANGLE_STEPS)) % 360.0
 
 
 def fixture_rows(
@@ -256,19 +247,15 @@ def fixture_rows(
     known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
-        separation = rounded(block.jaw_separation, LENGTH_STEPS)
-        theta = rounded(np.degrees(block.theta) % 360.0, ANGLE_STEPS)
-        theta[theta >= 360.0] = 0.0
-        position = rounded(block.position, LENGTH_STEPS)
-        # Places follow from the numbers that are written, so that they are the same when these are read.
-        written = evolve(block, jaw_separation=separation, theta=np.radians(theta), position=position)
-        holes = peg_places(written, toolkit, workpiece)
-        x, y = (rounded(places, LENGTH_STEPS) for places in holes)
+        theta, told = as_told(block)
+        x, y = (rounded(places, LENGTH_STEPS) for places in peg_places(told, toolkit, workpiece))
         columns: list[list[Any]] = []
         force = working_forces(block.force) if toolkit.needs_pairs else block.force
         for peg in range(toolkit.peg_count):
             numbers = (block.column, block.row, x, y, block.face, force)
             columns += [array[:, peg].tolist() for array in numbers]
         figures = [block.quality[:, number] for number in known]
-        columns += [array.tolist() for array in (theta, *position.T, *np.atleast_2d(separation.T), *figures)]
+        columns += [
+            array.tolist() for array in (theta, *told.position.T, *np.atleast_2d(told.jaw_separation.T), *figures)
+        ]
         yield block.arrangement.tolist(), zip(*columns, strict=True)

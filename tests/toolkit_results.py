@@ -1,0 +1,46 @@
+"""Parts and results of plates and fences, and what the independent checker says of them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import workhold
+from workhold import Result, Workpiece
+
+TESTS = Path(__file__).parent
+# A mouth wide enough for the clamp and a locator behind it.
+MOUTH = [(0, 0, 0), (70, 4, 0), (70, 14, 0), (24, 10, 0), (20, 44, 0), (66, 48, 0), (66, 58, 0), (0, 62, 0)]
+NOTCHED = [(0, 0, 0), (58, 0, 0), (58, 26, 0), (44, 40, 0), (20, 40, 0.3), (0, 40, 0)]
+
+
+def part(loop: list[tuple[float, ...]], *holes: list[tuple[float, ...]]) -> Workpiece:
+    """A part of loops."""
+    return Workpiece.from_loops("part", [loop, *holes])
+
+
+def rectangle(width: float, height: float) -> Workpiece:
+    """A rectangle."""
+    return part([(0, 0, 0), (width, 0, 0), (width, height, 0), (0, height, 0)])
+
+
+def checked(result: Result, path: Path, truth: Path | None = None) -> str:
+    """What the independent checker says of a result; it fails the test for any fault."""
+    workhold.save(result, path)
+    command = [sys.executable, str(TESTS / "check_toolkit.py"), str(path), *(["--truth", str(truth)] if truth else [])]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    return done.stdout
+
+
+def check_and_read_back(result: Result, folder: Path) -> None:
+    """Every fixture stands before the checker, and the file says the same in JSON and in columns, however often."""
+    checked(result, folder / "result.json")
+    again = workhold.open(folder / "result.json")
+    assert again.query == result.query and (again.pairs, again.seats) == (result.pairs, result.seats)
+    workhold.save(again, folder / "again.json")
+    workhold.save(result, folder / "result.npz")
+    workhold.save(workhold.open(folder / "result.npz"), folder / "columns.json")
+    text = (folder / "result.json").read_bytes()
+    assert (folder / "again.json").read_bytes() == text == (folder / "columns.json").read_bytes()
