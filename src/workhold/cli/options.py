@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from attrs import frozen
@@ -82,6 +82,27 @@ class PartWords:
         "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves that are none.",
     )
 
+    def options(self) -> dict[str, Any]:
+        """Keyword arguments of ``files.part.load.read_workpiece``.
+
+        Raises
+        ------
+        InputError
+            For words that mean nothing.
+        """
+        unit = length_unit(self.unit)
+        return {
+            "unit": self.drawing_unit,
+            "usual_unit": self.unit,
+            "layers": self.layer or None,
+            "part_number": optional_count(CALLED["part_number"], self.part_number),
+            "join_tolerance": length(CALLED["join_tolerance"], self.join_tolerance, unit),
+            "fit": optional_positive_length(CALLED["fit"], self.fit, unit),
+            "axis": None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z")),
+            "section": optional_length(CALLED["section"], self.section, unit),
+            "called": CALLED,
+        }
+
     def load(self, part: str) -> Loaded:
         """Read a part and tell on stderr what a user should know about the drawing.
 
@@ -94,29 +115,13 @@ class PartWords:
         InputError
             When the part cannot be used.
         """
-        unit = length_unit(self.unit)
-        join_tolerance = length(CALLED["join_tolerance"], self.join_tolerance, unit)
-        fit = optional_positive_length(CALLED["fit"], self.fit, unit)
-        part_number = optional_count(CALLED["part_number"], self.part_number)
-        axis = None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z"))
-        section = optional_length(CALLED["section"], self.section, unit)
+        options = self.options()
         from workhold.files.part.load import read_workpiece
         from workhold.files.questions import UnitAskedError
 
-        read = partial(
-            read_workpiece,
-            part,
-            usual_unit=self.unit,
-            layers=self.layer or None,
-            part_number=part_number,
-            join_tolerance=join_tolerance,
-            fit=fit,
-            axis=axis,
-            section=section,
-            called=CALLED,
-        )
+        read = partial(read_workpiece, part, **options)
         try:
-            loaded = read(unit=self.drawing_unit)
+            loaded = read()
         except UnitAskedError as question:
             if not at_terminal():
                 raise

@@ -1,0 +1,173 @@
+"""Many parts at once: files, folders with drawings, and built-in names become a list in a settled order.
+
+Glossary
+--------
+listed part : a file with a drawing, and what it is called among the others.
+drawing : a file whose name ends as one of a part does; what workhold wrote itself is none.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.part.load import Loaded, found, read_workpiece
+
+__all__ = ["ListedPart", "ReadPart", "part_list", "read_listed"]
+
+ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
+# How a file of results, or of jobs that are done, begins; a part's never does.
+OWN = b'{"format": "workhold-'
+# More drawings than this in one folder are more likely a slip, such as a whole disk, than a wish.
+MOST_PARTS = 1_000_000
+
+
+@frozen
+class ListedPart:
+    """A part that is still to be read.
+
+    Parameters
+    ----------
+    name : what it is called among the others: a built-in name, the file as it was typed, or its place in the folder that
+        was; no two of a list have the same.
+    path : its file.
+    """
+
+    name: str
+    path: Path
+
+
+@frozen
+class ReadPart:
+    """A part of a list after reading: loaded, or refused in a sentence.
+
+    Parameters
+    ----------
+    listed : which one.
+    loaded : what was read; None where it was refused.
+    refusal : why; empty where it was not.
+    """
+
+    listed: ListedPart
+    loaded: Loaded | None
+    refusal: str = ""
+
+
+def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()) -> tuple[ListedPart, ...]:
+    """The parts that files, folders and built-in names stand for, each file once, in the order given.
+
+    Of a folder these are all drawings in it and in the folders in it, whether or not they can be read, numbers in their
+    names counted as numbers: ``plate2.dxf`` comes before ``plate10.dxf``. Hidden files and folders, links to folders, and
+    what workhold wrote are passed over.
+
+    Parameters
+    ----------
+    given : files, folders, built-in names; a file or folder wins over a name.
+    leave_out : folders whose drawings are no parts, such as one for results.
+
+    Raises
+    ------
+    InputError
+        For what does not exist, a folder without a drawing, and more than a million parts.
+
+    Examples
+    --------
+    >>> [part.name for part in part_list(["widget", "Flange", "widget"])]
+    ['widget', 'Flange']
+    """
+    apart = {os.path.realpath(folder) for folder in leave_out}
+    parts: dict[str, tuple[str, Path, Path]] = {}
+    for one in given:
+        path = Path(one)
+        if is_folder(path):
+            drawings = list(drawings_in(path, apart))
+            if not drawings:
+                raise InputError(
+                    f"{path} has no drawing in it: give a folder with {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]} files."
+                )
+            entries = [(drawing.relative_to(path).as_posix(), drawing, drawing) for drawing in drawings]
+        else:
+            entries = [(str(one), Path(one), found(one))]
+        for entry in entries:
+            parts.setdefault(os.path.realpath(entry[2]), entry)
+        if len(parts) > MOST_PARTS:
+            raise InputError(f"{path} brings more than {MOST_PARTS:,} parts: give fewer folders, or name the files.")
+    times = Counter(name for name, _, _ in parts.values())
+    return tuple(ListedPart(name if times[name] == 1 else str(typed), file) for name, typed, file in parts.values())
+
+
+def is_folder(path: Path) -> bool:
+    """Whether a path is a folder; names that no file can have are none."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
+def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
+    """The drawings in a folder: its own first, then those of each folder in it.
+
+    Raises
+    ------
+    InputError
+        When the folder, or one in it, cannot be looked into.
+    """
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: natural(entry.name))
+        entries = [entry for entry in entries if not entry.name.startswith(".")]
+        for entry in entries:
+            path = folder / entry.name
+            if path.suffix.lower() in ENDINGS and entry.is_file() and not is_own(path):
+                yield path
+        inner = [entry.name for entry in entries if entry.is_dir(follow_symlinks=False)]
+    except OSError as error:
+        raise InputError(f"{folder} cannot be read ({(error.strerror or str(error)).lower()}).") from error
+    for name in inner:
+        if os.path.realpath(folder / name) not in apart:
+            yield from drawings_in(folder / name, apart)
+
+
+def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
+    """A key by which names stand as people count: figures as numbers, capitals like small letters."""
+    pieces = re.findall(r"[0-9]{1,18}|[^0-9]+", name)
+    return [(piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces], name
+
+
+def is_own(path: Path) -> bool:
+    """Whether a file is JSON of workhold's own making, and no part; one that cannot be opened is for its reader to tell."""
+    if path.suffix.lower() != ".json":
+        return False
+    try:
+        with path.open("rb") as stream:
+            return stream.read(len(OWN)) == OWN
+    except OSError:
+        return False
+
+
+def read_listed(part: ListedPart, **options: Any) -> ReadPart:
+    """Read a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
+
+    Parameters
+    ----------
+    options : see :func:`workhold.files.part.load.read_workpiece`.
+
+    Examples
+    --------
+    >>> read = read_listed(part_list(["widget"])[0])
+    >>> read.loaded.workpiece.name, read.refusal
+    ('widget', '')
+    """
+    try:
+        return ReadPart(part, read_workpiece(part.path, **options))
+    except InputError as error:
+        return ReadPart(part, None, str(error))
+    except (ArithmeticError, LookupError, ValueError, RecursionError):
+        sentence = f"{part.path.name}: the file is damaged, or holds what this program cannot read: save it anew."
+        return ReadPart(part, None, sentence)
