@@ -16,7 +16,7 @@ import pytest
 from flint import arb
 
 import workhold
-from workhold import Fence, Fixture, InputError, Plate, Query, Result, Workpiece, design
+from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
 from workhold.completeness import verify as verify_completely
 from workhold.listing.paired import PairedFixtures
 from workhold.model.fixture import Pair, Peg
@@ -397,15 +397,3 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
         assert len(list(undecided_faults([entry], result.query))) == 1, edit
     assert degrees(table.theta[0]) % 360 == pytest.approx(entries[0].theta_deg)
     assert {peg.carrier for peg in result[0].pegs[:3]} == {PLATE}
-
-
-def test_two_clamps_on_a_fence_are_told_to_be_unknown(tmp_path: Path) -> None:
-    """In one sentence, whether in a file or not."""
-    fence = Fence((20, 16), 3, clamps=2, columns=4, rows=4, wall_offset=8)
-    result = design(part(BLOCK), fence)
-    assert len(result) > 0
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-        with pytest.raises(InputError, match="two clamps on a fence"):
-            verify_completely(source)

@@ -22,7 +22,7 @@ from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Key, Place, Rank, from_anchor
 from workhold.verification.outline import Outline
 from workhold.verification.plate import PLATE, WAYS, PlateRules, in_holes, is_along_x
-from workhold.verification.rules import AGREEMENT, FLUSH, LEAST_FLUSH, SAME, WALL
+from workhold.verification.rules import AGREEMENT, FLUSH, HAIR, LEAST_FLUSH, SAME, WALL
 from workhold.verification.sides import ArcSide, LineSide
 from workhold.verification.zones import zone_low
 
@@ -111,15 +111,15 @@ class FenceRules(PlateRules):
 
     @property
     def names_in_holes(self) -> tuple[str, ...]:
-        """Of the locator, and of the clamp."""
-        return self.names[0], self.names[-1]
+        """Of the locator, and of each clamp."""
+        return self.names[0], *self.names[ON_WALL.stop :]
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
         """Whether the pegs of a fixture are the wall's two ends, one locator and then its clamp."""
         return [peg.carrier for peg in fixture.pegs] == [PLATE, WALL, WALL, f"clamp {fixture.direction}"]
 
     def contacts(self, fixture: Fixture, outline: Outline) -> list[Contact]:
-        """The contacts of wall, locator and clamp."""
+        """The contacts of locator, wall and each clamp."""
         theta = arb(fixture.pose.theta_deg) * arb.pi() / 180
         pose = Pose.of(theta, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
         low = sorted(lows(outline, pose), key=lambda one: one.y)
@@ -132,8 +132,9 @@ class FenceRules(PlateRules):
             WallContact(here, here, side, there, end.center, end.bow, along_wall(end, outline, pose), length)
             for side, end in zip(sides[ON_WALL], (left, right), strict=True)
         ]
-        locator, clamp = (self.contact(fixture.pegs[k], sides[k]) for k in (0, -1))
-        return [locator, *exact_lengths(ends), clamp]
+        standing = (pair for pair in zip(fixture.pegs, sides, strict=True) if pair[0].carrier != WALL)
+        locator, *clamps = (self.contact(*pair) for pair in standing)
+        return [locator, *exact_lengths(ends), *clamps]
 
     def shared_faces(self, fixture: Fixture, contacts: Sequence[Contact]) -> list[int]:
         """A corner on the wall is off by itself."""
@@ -147,6 +148,13 @@ class FenceRules(PlateRules):
         self, fixture: Fixture, contacts: list[Contact], pose: Pose, outline: Outline
     ) -> Iterator[Finding]:
         """Whether the part lies flush on the wall, where it is said to, and the clamp stands as on a plate."""
+        yield from self.flush_findings(fixture, contacts, pose, outline)
+        yield from super().standing_findings(fixture, contacts, pose, outline)
+
+    def flush_findings(
+        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether the part lies flush on the wall, where it is said to."""
         ends = [contact for contact in contacts if isinstance(contact, WallContact)]
         places = [end.place(pose) for end in ends]
         flush = places[1][0] - places[0][0] - LEAST_FLUSH
@@ -170,11 +178,15 @@ class FenceRules(PlateRules):
                 if not isnan(written) and not off < AGREEMENT:
                     words = f"the {axis} of {name} is {number(off)} mm from where the part touches"
                     yield from rule(AGREEMENT - off, words, words)
-        clamp = contacts[-1]
+
+    def clamp_findings(
+        self, name: str, locators: Sequence[Contact], clamp: Contact, pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether a clamp stands as on a plate, with its tip clear of the wall."""
         above = clamp.place(pose)[1] - clamp.radius
-        words = f"the clamp enters the fence by {number(-above)} mm"
-        yield from rule(above + 1e-9, words, "the clamp touches the fence exactly at the edge of what is allowed")
-        yield from super().standing_findings(fixture, contacts, pose, outline)
+        words = f"{name} enters the fence by {number(-above)} mm"
+        yield from rule(above + HAIR, words, f"{name} touches the fence exactly at the edge of what is allowed")
+        yield from super().clamp_findings(name, locators, clamp, pose, outline)
 
     def broken_restriction(self, fixture: Fixture, query: Query) -> str:
         """A wall may not touch avoided faces, of a corner both, nor reach into keep-out zones."""

@@ -120,7 +120,7 @@ class Judge:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
         if fixture.pair is not None:
-            yield from pair_findings(fixture, fixture.pair, touching, self.query, hardware, measure)
+            yield from pair_findings(fixture, fixture.pair, contacts, self.query, hardware, measure)
             return
         solution = written_pose(fixture.pose, fixture.jaw_separation)
         yield from gap_findings(touching, [solution] * len(touching))

@@ -9,6 +9,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.vise import Vise
 from workhold.verification.fence import FenceRules
 from workhold.verification.hardware import Hardware
+from workhold.verification.pair_fence import FencePairRules
 from workhold.verification.pair_plate import PairRules
 from workhold.verification.plate import PlateRules
 from workhold.verification.vise import ViseRules
@@ -27,11 +28,11 @@ def hardware_of(toolkit: Toolkit, listing: str | None = None) -> Hardware:
     if isinstance(toolkit, Vise):
         return ViseRules(toolkit)
     if isinstance(toolkit, Fence) and toolkit.clamps == 2:
-        raise InputError("a result with two clamps on a fence cannot be verified: its rules are not known.")
+        return FencePairRules(toolkit, every=listing == "all")
     if isinstance(toolkit, Fence):
         return FenceRules(toolkit)
     if isinstance(toolkit, Plate) and toolkit.clamps == 2:
-        return PairRules(toolkit, listing == "all")
+        return PairRules(toolkit, every=listing == "all")
     if isinstance(toolkit, Plate):
         return PlateRules(toolkit)
     raise InputError(f"a result in a {toolkit.kind} cannot be verified: its rules are not known.")

@@ -4,7 +4,8 @@
   are;
 - where every pair is: found = pairs, and seats = how many there are among those listed; at each there are as many as are
   derived, once the search is complete;
-- each seat and pair of directions needs two contacts of three locators and a clamp, each pair of clamps two of its own.
+- each seat and pair of directions needs two contacts of locators, or wall and locator, and a clamp, each pair of clamps two
+  of its own.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from workhold.model.notes import no_pair_note
 from workhold.model.plate import Plate
 from workhold.model.proof import Proof
 from workhold.verification.balls import PRECISIONS
+from workhold.verification.kinds import hardware_of
 from workhold.verification.listing import Listing
 from workhold.verification.outline import Outline
 from workhold.verification.pair_plate import PairRules
@@ -52,7 +54,8 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     toolkit, query = listing.query.toolkit, listing.query
     if not isinstance(toolkit, Plate) or query.listing != "all" or sum(listing.found.values()) != len(listing.fixtures):
         return
-    rules = PairRules(toolkit)
+    rules = hardware_of(toolkit)
+    assert isinstance(rules, PairRules)
     seen, at_seat = Seen(rules), Counter[int]()
     for index, fixture in enumerate(listing.fixtures):
         if index not in refuted:
@@ -72,7 +75,7 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
 
 
 def too_few_contacts(listing: Listing, proof: Proof) -> bool:
-    """Whether so many fixtures cannot come from so many contacts of three locators and a clamp."""
+    """Whether so many fixtures cannot come from so many contacts of locators, or wall and locator, and a clamp."""
     toolkit, found = listing.query.toolkit, sum(listing.found.values())
     assert isinstance(toolkit, Plate)
     if 2 * (listing.seats or 0) > len(toolkit.directions) * proof.verified:

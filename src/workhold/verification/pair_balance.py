@@ -20,9 +20,8 @@ LOCATORS = 3
 
 
 def seat_of(contacts: Sequence[Contact], pose: Pose) -> Seat:
-    """The seat of three locators."""
-    points = [contact.in_part(pose) for contact in contacts]
-    return Seat(points, [contact.side.outward(point) for contact, point in zip(contacts, points, strict=True)])
+    """The seat of three locators, or of the two ends of a wall's contact and one."""
+    return Seat([contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts])
 
 
 def push_of(contact: Contact, pose: Pose, seat: Seat) -> Push:
@@ -39,7 +38,7 @@ class PairBalance:
     Parameters
     ----------
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
-    seat : the locators.
+    seat : the locators, of which a wall's ends are two.
     pushes : both clamps.
     ratio : in which their forces may be.
     """

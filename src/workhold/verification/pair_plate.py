@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import pi, radians, tau
 from typing import ClassVar
 
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture, Peg
@@ -39,7 +39,7 @@ class PairRules(PlateRules):
     kinds: ClassVar[str] = "clamp2"
     pegs_wanted: ClassVar[str] = "three locators and then two clamps"
 
-    every: bool = False
+    every: bool = field(default=False, kw_only=True)
 
     @property
     def same_words(self) -> str:

@@ -1,8 +1,9 @@
 """The proof of one fixture with two clamps.
 
-The three locators alone fix the pose, and each clamp's tip is where its line meets its face. So the five contact equations,
-in the pose and both travels, have one solution, and what is then asked of locators, clamps and both clamps together is asked
-there. Where a fixture stands for all pairs of clamps of its seat, these are derived again as well (``seat_clamps``).
+The three locators, or a wall and one, alone fix the pose, and each clamp's tip is where its line meets its face. So the
+five contact equations, in the pose and both travels, have one solution, and what is then asked of locators, clamps and both
+clamps together is asked there. Where a fixture stands for all pairs of clamps of its seat, these are derived again as well
+(``seat_clamps``).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from workhold.verification.outline import Outline
 from workhold.verification.pair_balance import PairBalance, push_of, seat_of
 from workhold.verification.pair_plate import PairRules, directions_of, line_of
 from workhold.verification.placing import gap_findings, proven_places, written_pose
-from workhold.verification.plate import LOCATORS, direction_of
+from workhold.verification.plate import LOCATORS, direction_of, in_holes
 from workhold.verification.rules import HAIR, LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, NO_REACTION, SAME_FREEDOM
 from workhold.verification.seat import Ratio, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, SeatPair, Standing, choices, pieces_apart
@@ -32,19 +33,20 @@ from workhold.verification.touching import touching_findings
 
 __all__ = ["pair_findings", "pairs_at"]
 
-Touching = Sequence[tuple[str, Contact, int]]
 NAMES = ("clamp 1", "clamp 2")
 AT_EDGE = "a locator's force is exactly at the edge of what counts as none"
 
 
 def pair_findings(
-    fixture: Fixture, pair: Pair, touching: Touching, query: Query, rules: Hardware, measure: Measure
+    fixture: Fixture, pair: Pair, contacts: Sequence[Contact], query: Query, rules: Hardware, measure: Measure
 ) -> Iterator[Finding]:
-    """Everything that speaks against a fixture with two clamps in holes and on faces that there are."""
+    """Everything that speaks against a fixture with two clamps, with its contacts in holes and on faces that there are."""
     assert isinstance(rules, PairRules)
+    outline = measure.outline
     poses = [written_pose(fixture.pose, travel) for travel in (0.0, 0.0, 0.0, *pair.travels)]
-    yield from gap_findings(touching, poses)
-    contacts, outline = [contact for _, contact, _ in touching], measure.outline
+    on_pegs = [k for k, contact in enumerate(contacts) if not contact.is_flush]
+    named = [(rules.names[k], contacts[k], fixture.pegs[k].face) for k in on_pegs]
+    yield from gap_findings(named, [poses[k] for k in on_pegs])
     zero, doubts = solved(fixture, contacts)
     yield from doubts
     if zero is not None:
@@ -52,13 +54,15 @@ def pair_findings(
         poses = [Pose.of(theta, x, y, travel) for travel in (arb(0), arb(0), arb(0), *travels)]
     pose = poses[0]
     placed = [evolve(contact, hole=contact.place(there)) for contact, there in zip(contacts, poses, strict=True)]
-    locators = placed[:LOCATORS]
+    locators = [contact for contact in placed[:LOCATORS] if not contact.is_flush]
+    yield from rules.flush_findings(fixture, contacts, pose, outline)
     for name, contact, there in zip(NAMES, contacts[LOCATORS:], poses[LOCATORS:], strict=True):
         yield from rules.clamp_findings(name, locators, contact, there, outline)
-    for (name, _, face), contact in zip(touching, placed, strict=True):
-        yield from touching_findings(name, contact, face, pose, outline, query.contact_margin)
+    for k in on_pegs:
+        face = fixture.pegs[k].face
+        yield from touching_findings(rules.names[k], placed[k], face, pose, outline, query.contact_margin)
     yield from apart_findings(contacts, placed, poses, rules)
-    seat = seat_of(locators, pose)
+    seat = seat_of(placed[:LOCATORS], pose)
     spanned = abs(seat.determinant) / measure.wrench_length
     words = f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
     yield from rule(spanned - LEAST_SEAT, words, words)
@@ -78,19 +82,18 @@ def pair_findings(
     if ratio is None:
         yield Finding(False, AT_EDGE)
         return
-    points = [contact.in_part(pose) for contact in placed]
-    normals = [contact.side.outward(point) for contact, point in zip(placed, points, strict=True)]
+    points, normals = zip(*((contact.in_part(pose), contact.outward(pose)) for contact in placed), strict=True)
     balance = PairBalance(points, normals, seat, (first, second), ratio)
     loose = list(closure_findings(balance))
     yield from loose
     if loose:
         return
-    yield from pair_numbers(pair, balance)
-    faces = [face for *_, face in touching]
+    yield from pair_numbers(pair, rules.names, balance)
+    faces = rules.shared_faces(fixture, contacts)
     yield from written_numbers(fixture, rules.names, balance, measure.figures(placed, faces, pose, balance))
     if zero is None:
         return
-    standing = Standing(query, rules, outline, fixture.pegs[:LOCATORS], locators, pose, seat)
+    standing = Standing(query, rules, outline, in_holes(fixture)[0], locators, pose, seat)
     yield from stroke_findings(fixture, placed, zero[LOCATORS:], standing)
     if not rules.every:
         yield from best_findings(pair, balance, list(standing.pairs(directions_of(fixture))))
@@ -150,11 +153,10 @@ def closure_findings(balance: PairBalance) -> Iterator[Finding]:
     )
 
 
-def pair_numbers(pair: Pair, balance: PairBalance) -> Iterator[Finding]:
+def pair_numbers(pair: Pair, names: Sequence[str], balance: PairBalance) -> Iterator[Finding]:
     """Whether the reactions and the ends of the ratio in the file are the derived ones."""
     part = parts_spared(balance)
-    for number_, (said, derived) in enumerate(zip(pair.reactions, balance.reactions, strict=True), 1):
-        name = f"locator {number_}" if number_ <= LOCATORS else NAMES[number_ - LOCATORS - 1]
+    for name, said, derived in zip(names, pair.reactions, balance.reactions, strict=True):
         for clamp, value, force in zip(NAMES, said, derived, strict=True):
             yield from written(f"the force of {name} under {clamp}", value, force, part * (1 + abs(force)))
     yield from ratio_findings(pair.ratio, balance, part)
@@ -215,11 +217,12 @@ def best_findings(pair: Pair, balance: PairBalance, pairs: Sequence[SeatPair]) -
 
 def pairs_at(fixture: Fixture, query: Query, rules: PairRules, outline: Outline) -> tuple[int, int] | None:
     """How many pairs of clamps there are at a fixture's seat, at least and at most; None where its place is not proven."""
-    contacts = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs]
+    contacts = rules.contacts(fixture, outline)
     zero, _ = solved(fixture, contacts)
     if zero is None:
         return None
-    pose, locators = Pose.of(zero[0], zero[1], zero[2], arb(0)), contacts[:LOCATORS]
-    standing = Standing(query, rules, outline, fixture.pegs[:LOCATORS], locators, pose, seat_of(locators, pose))
+    pose, seat = Pose.of(zero[0], zero[1], zero[2], arb(0)), contacts[:LOCATORS]
+    locators = [contact for contact in seat if not contact.is_flush]
+    standing = Standing(query, rules, outline, in_holes(fixture)[0], locators, pose, seat_of(seat, pose))
     pairs = list(standing.pairs(directions_of(fixture)))
     return sum(one.sure for one in pairs), len(pairs)

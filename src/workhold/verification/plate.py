@@ -76,6 +76,11 @@ class PlateRules(Hardware):
         """Of the locators, and of the clamp."""
         return self.names
 
+    def fits(self, noun: str, numbers: Sequence[int]) -> bool:
+        """Whether there is a plate that has columns or rows of such numbers."""
+        count, lowest = getattr(self.toolkit, f"{noun}s"), min(numbers) if noun in self.from_lowest else 0
+        return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
+
     def has_its_pegs(self, fixture: Fixture) -> bool:
         """Whether the pegs of a fixture are three locators and then its clamp."""
         return [peg.carrier for peg in fixture.pegs] == [PLATE, PLATE, PLATE, f"clamp {fixture.direction}"]
@@ -181,6 +186,12 @@ class PlateRules(Hardware):
         if self.toolkit.travel is not None:
             yield from self.nearer_findings(fixture, -pose.travel, self.toolkit.travel[0])
 
+    def flush_findings(
+        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether the part lies on what it is to lie on; a plate has no such thing."""
+        return iter(())
+
     def clamp_findings(
         self, name: str, locators: Sequence[Contact], clamp: Contact, pose: Pose, outline: Outline
     ) -> Iterator[Finding]:
@@ -221,13 +232,9 @@ class PlateRules(Hardware):
         """Whether the clamp is bolted in the nearest hole on the plate."""
         clamp, along_x = fixture.pegs[-1], is_along_x(fixture.pegs[-1])
         way, pitch = WAYS[direction_of(clamp)], self.toolkit.pitch[0 if along_x else 1]
-        column, row = clamp.column - way[0], clamp.row - way[1]
-        locators, _ = in_holes(fixture)
-        numbers = [peg.column if along_x else peg.row for peg in locators] + [column if along_x else row]
-        count = self.toolkit.columns if along_x else self.toolkit.rows
-        is_free = ("column" if along_x else "row") in self.from_lowest
-        first = min(numbers) if is_free else 0
-        if min(numbers) >= first and (count is None or max(numbers) - first < count):
+        noun, locators = "column" if along_x else "row", in_holes(fixture)[0]
+        nearer = getattr(clamp, noun) - way[0 if along_x else 1]
+        if self.fits(noun, [*(getattr(peg, noun) for peg in locators), nearer]):
             yield from rule(
                 least - HAIR - (stroke - pitch),
                 f"the clamp could be bolted one hole nearer, {number(stroke - pitch)} mm behind its tip",

@@ -77,12 +77,15 @@ def pair_fixture_from(item: Mapping[str, Any]) -> Fixture:
     UnusableError
         Saying what is missing.
     """
-    if "wall" in item:
-        raise UnusableError("the rules of two clamps on a fence are not known")
-    directions, pegs = item["directions"], pegs_of(item, 5, "five")
+    directions, wall = item["directions"], item.get("wall")
+    pegs = pegs_of(item, 5, "five") if wall is None else pegs_of(item, 3, "three")
     if not isinstance(directions, list) or len(directions) != 2 or not all(map(list(WAYS).__contains__, directions)):
         raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
     forces = [two_numbers(peg, "force") for peg in pegs]
+    on_wall: tuple[Peg, ...] = ()
+    if wall is not None:
+        on_wall = wall_pegs_from(wall, [0.0, 0.0])
+        forces[1:1] = wall_reactions(wall)
     taken = []
     for peg in pegs:
         direction = word(peg, "direction") if peg.get("role") == "clamp" else directions[0]
@@ -92,7 +95,7 @@ def pair_fixture_from(item: Mapping[str, Any]) -> Fixture:
     low, high = two_numbers(item, "ratio", least=1)
     fixture = Fixture(
         word(item, "type"),
-        tuple(taken),
+        (*taken[:1], *on_wall, *taken[1:]),
         pose_from(item),
         0.0,
         quality_from(item),
@@ -169,8 +172,22 @@ def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[floa
     return one, other
 
 
-def wall_pegs_from(item: Any) -> tuple[Peg, Peg]:
-    """The two ends of the contact with a wall from their JSON object.
+def wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """The forces of the two ends of the contact with a wall under each of two clamps.
+
+    Raises
+    ------
+    UnusableError
+        When they are others.
+    """
+    forces = wall.get("forces")
+    if not isinstance(forces, list) or len(forces) != 2:
+        raise UnusableError("the forces of its wall are not two pairs of numbers")
+    return [two_numbers({"forces of its wall": pair}, "forces of its wall") for pair in forces]
+
+
+def wall_pegs_from(item: Any, forces: list[float] | None = None) -> tuple[Peg, Peg]:
+    """The two ends of the contact with a wall from their JSON object, with its forces or those given.
 
     Raises
     ------
@@ -181,13 +198,13 @@ def wall_pegs_from(item: Any) -> tuple[Peg, Peg]:
         raise UnusableError("its wall is not told by places, segments and forces")
     pairs = []
     for key in ("from", "to", "segments", "forces"):
-        value = item.get(key)
+        value = item.get(key) if key != "forces" or forces is None else forces
         if not isinstance(value, list) or len(value) != 2:
             raise UnusableError(f"the {key} of its wall is not two numbers")
         pairs.append({"first": value[0], "second": value[1]})
-    *places, faces, forces = pairs
+    *places, faces, shares = pairs
     one, other = (
-        Peg(WALL, 0, 0, real(place, "first"), real(place, "second"), whole(faces, which), real(forces, which), called)
+        Peg(WALL, 0, 0, real(place, "first"), real(place, "second"), whole(faces, which), real(shares, which), called)
         for place, which, called in zip(places, ("first", "second"), WALL_ENDS, strict=True)
     )
     return one, other

@@ -38,7 +38,8 @@ class Seat:
 
     Parameters
     ----------
-    points, normals : their centres in mm and the outward unit normals there, in the workpiece's frame.
+    points, normals : their centres in mm, or the points that touch a wall, and the outward unit normals there, in the
+        workpiece's frame.
     """
 
     points: Sequence[Point]

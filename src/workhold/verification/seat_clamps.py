@@ -91,9 +91,9 @@ class Standing:
     Parameters
     ----------
     query, rules, outline : what is asked, of what toolkit, and the workpiece.
-    pegs, locators : the three locators.
+    pegs, locators : the locators, three or, beside a wall, one.
     pose : the solution, with a travel of 0.
-    seat : their wrenches.
+    seat : their wrenches, a wall's with them.
     """
 
     query: Query
@@ -136,18 +136,17 @@ class Standing:
                         found.append(clamp)
         yield from found
 
-    def lines(self, side: Side, direction: str) -> range:
+    def lines(self, side: Side, direction: str) -> list[int]:
         """Numbers of the rows, or columns, on which a tip may touch a side, and that fit on the plate with the locators."""
         upright = direction.endswith("y")
         axis = self.axis(upright)
         ends = [side.center] if isinstance(side, ArcSide) else [side.start, side.end]
         reach = self.rules.toolkit.clamp_radius + (float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0)
         places = [float((dot(axis, end) + self.shift(upright)).mid()) for end in ends]
-        pitch, count, numbers = self.lattice(upright)
+        pitch, noun = self.rules.toolkit.pitch[not upright], "column" if upright else "row"
         low, high = ceil((min(places) - reach - BESIDE) / pitch), floor((max(places) + reach + BESIDE) / pitch)
-        if count is not None:
-            low, high = max(low, max(numbers) - count + 1), min(high, min(numbers) + count - 1)
-        return range(low, high + 1)
+        numbers = [getattr(peg, noun) for peg in self.pegs]
+        return [line for line in range(low, high + 1) if self.rules.fits(noun, [*numbers, line])]
 
     def axis(self, upright: bool) -> Point:
         """The plate's x for columns, or y for rows, in the workpiece's frame."""
@@ -155,15 +154,9 @@ class Standing:
         return turned(exact_point(*way), self.pose.cosine, -self.pose.sine)
 
     def shift(self, upright: bool) -> arb:
-        """How far along that axis the workpiece's origin is, in mm."""
-        return self.pose.x if upright else self.pose.y
-
-    def lattice(self, upright: bool) -> tuple[float, int | None, list[int]]:
-        """Pitch of columns or rows, how many there are, and those of the locators."""
-        toolkit, (pitch_x, pitch_y) = self.rules.toolkit, self.rules.toolkit.pitch
-        if upright:
-            return pitch_x, toolkit.columns, [peg.column for peg in self.pegs]
-        return pitch_y, toolkit.rows, [peg.row for peg in self.pegs]
+        """How far along that axis the workpiece's origin is from column or row 0, in mm."""
+        x, y = self.rules.origin
+        return self.pose.x - x if upright else self.pose.y - y
 
     def clamps_on(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
         """The clamps on a line that touch a side and keep all rules of their own, those in doubt with them."""
@@ -174,7 +167,7 @@ class Standing:
         back = turned(way, self.pose.cosine, -self.pose.sine)
         if isinstance(side, LineSide) and not dot(back, side.normal) > LEAST_PUSH:
             return
-        level = arb(self.lattice(upright)[0]) * line - self.shift(upright)
+        level = arb(self.rules.toolkit.pitch[not upright]) * line - self.shift(upright)
         for point in on_line(side, radius, axis, level):
             if not dot(back, side.outward(point)) > 0:
                 continue
@@ -211,13 +204,14 @@ class Standing:
                 column, row = (line, None) if upright else (None, line)
                 yield Hole(column, row, contact.hole, arb(0), stands is True)
             return
-        pitch_x, pitch_y = self.rules.toolkit.pitch
-        pitch, tip, sign = (pitch_y if upright else pitch_x), contact.hole[int(upright)], sum(WAYS[direction])
+        (pitch_x, pitch_y), (x, y) = self.rules.toolkit.pitch, self.rules.origin
+        tip, sign = contact.hole[int(upright)] - (y if upright else x), sum(WAYS[direction])
+        pitch = pitch_y if upright else pitch_x
         near, far = sorted(float(tip.mid()) + sign * stroke for stroke in travel)
         for number in range(ceil((near - BESIDE) / pitch), floor((far + BESIDE) / pitch) + 1):
             stroke = sign * (arb(pitch) * number - tip)
             column, row = (line, number) if upright else (number, line)
-            place = arb(pitch_x) * column, arb(pitch_y) * row
+            place = x + arb(pitch_x) * column, y + arb(pitch_y) * row
             bolted, pose = evolve(contact, hole=place), evolve(self.pose, travel=-stroke)
             stands = verdict(self.rules.clamp_findings("a clamp", self.locators, bolted, pose, self.outline))
             if stands is not False:
@@ -228,12 +222,11 @@ def choices(
     rules: PlateRules, pegs: Sequence[Peg], one: SeatClamp, other: SeatClamp
 ) -> Iterator[tuple[Hole, Hole, bool]]:
     """The holes in which two clamps may be bolted together, and whether they certainly may."""
-    plate, apart = rules.toolkit, 2 * arb(rules.toolkit.clamp_radius) - HAIR
+    apart = 2 * arb(rules.toolkit.clamp_radius) - HAIR
     for first, second in product(one.holes, other.holes):
         columns = [peg.column for peg in pegs] + [h.column for h in (first, second) if h.column is not None]
         rows = [peg.row for peg in pegs] + [h.row for h in (first, second) if h.row is not None]
-        limits = ((columns, plate.columns), (rows, plate.rows))
-        if any(count is not None and max(numbers) - min(numbers) >= count for numbers, count in limits):
+        if not (rules.fits("column", columns) and rules.fits("row", rows)):
             continue
         clear = pieces_apart((one.tip, first.place), (other.tip, second.place)) - apart
         if not clear < 0:

@@ -73,14 +73,16 @@ def entry_fault(entry: Undecided, query: Query, outline: Outline) -> str:
 
 
 def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
-    """The contacts of three locators and a clamp that an entry of a plate with two is made of, one or two, each with a query
-    of that clamp alone."""
+    """The contacts of a seat and a clamp that an entry of a plate or fence with two is made of, one or two, each with a
+    query of that clamp alone."""
     toolkit = query.toolkit
     assert isinstance(toolkit, Plate)
     kind, *directions = entry.type.split()
+    paired = toolkit.arrangements[0].name
+    alone = paired.removesuffix("2")
     asked = {
-        ("clamp", 1): [(name,) for pair in toolkit.directions for name in pair],
-        ("clamp2", 2): toolkit.directions,
+        (alone, 1): [(name,) for pair in toolkit.directions for name in pair],
+        (paired, 2): toolkit.directions,
     }
     if tuple(directions) not in asked.get((kind, len(entry.faces) - LOCATORS), ()):
         # Of a kind that is not asked for, which is told of it.
@@ -89,13 +91,13 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
     for number, direction in enumerate(directions, LOCATORS):
         chosen = (*range(LOCATORS), number)
         faces, columns, rows = ([values[k] for k in chosen] for values in (entry.faces, entry.columns, entry.rows))
-        if kind != "clamp":
+        if kind == paired:
             columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
             (columns if direction.endswith("x") else rows)[LOCATORS] = 0
         plate = evolve(toolkit, clamps=1, directions=(direction,))
         single = evolve(query, toolkit=plate, arrangements=None, ranking=None, best=None, listing=None)
         holes = tuple(faces), tuple(columns), tuple(rows)
-        yield Undecided(f"clamp {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
+        yield Undecided(f"{alone} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
 
 
 def is_of_chords(entry: Undecided) -> bool:
