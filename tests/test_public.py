@@ -113,6 +113,16 @@ def test_nothing_public_speaks_of_segments_where_faces_are_meant() -> None:
         assert not [word for word in words if re.search("segment", word)], name
 
 
+def test_fixtures_know_their_rank_however_they_are_reached(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By index, from the end, and one after the other over several blocks."""
+    monkeypatch.setattr("workhold.model.result.BLOCK", 2)
+    found = result()
+    ranks = list(range(1, len(found) + 1))
+    assert len(ranks) > 4 and [fixture.listing.rank for fixture in found] == ranks
+    assert [found[k].listing.rank for k in (0, 3, -1)] == [1, 4, ranks[-1]]
+    assert [fixture == found[fixture.listing.row] for fixture in found] == [True] * len(found)
+
+
 def test_a_fixture_taken_along_takes_no_more_than_itself() -> None:
     """Through pickle it still knows its rank and how many others use its holes, and the result's table stays behind."""
     many = workhold.design(workhold.load("widget"), workhold.Vise(pitch=8, columns=1, peg_radius=3))

@@ -8,14 +8,11 @@ has ``modelspace`` and ``header``; build123d and CadQuery wrap shapes of Open CA
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
-from math import dist
 from pathlib import Path
 from typing import Any
 
 from attrs import frozen
 
-from workhold.conventions import SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.part.not_asked import refuse_axis, refuse_layers
@@ -111,10 +108,9 @@ def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
             yield from geometry_chains(ring, scale)
     elif kind in ("LinearRing", "LineString"):
         corners = [(scale * float(x), scale * float(y)) for x, y, *_ in geometry.coords]
-        kept = corners[:1] + [b for a, b in pairwise(corners) if dist(a, b) >= SHORTEST]
-        if len(kept) > 1:
-            labels = tuple(f"corner {k} of a {kind}" for k in range(len(kept) - 1))
-            yield Chain(tuple(kept), (0.0,) * (len(kept) - 1), labels)
+        if len(corners) > 1:
+            labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
+            yield Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
     else:
         raise InputError(f"a {kind} has no outline: give a polygon.")
 
