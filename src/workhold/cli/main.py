@@ -67,6 +67,7 @@ COMMANDS = {
         "Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each "
         "with its figures."
     ),
+    "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
     "vises": "List the vises and plates that come with workhold, or show all figures of one.",

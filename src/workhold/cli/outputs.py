@@ -22,6 +22,7 @@ ForceOption = Annotated[
 ENDS = 4096
 MARKS = (
     b'{"format": "workhold-result/',
+    b'{"format": "workhold-family/',
     b"\0workhold-result/",
     b"number,type,theta_deg,x,y,jaw_separation,",
     b"vise,fixtures,type_",

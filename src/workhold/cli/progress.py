@@ -21,12 +21,13 @@ ONLY_TASK = cast("TaskID", 0)
 
 
 @contextmanager
-def search_progress() -> Iterator[Callable[[float, int], None]]:
-    """The progress bar of a search, as a function of the fraction done and the fixtures found, which are to be kept."""
+def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
+    """The progress bar of a search, as a function of the fraction done and the fixtures found, which are to be kept where
+    ``keeps`` says so."""
     with progress_bar("Searching", "found") as show:
 
         def progress(fraction: float, found: int) -> None:
-            if found:
+            if found and keeps:
                 keep_what_is_found()
             show(fraction, found)
 

@@ -1,0 +1,79 @@
+"""The pattern of each fixture of a table, as packed whole numbers that are the same for the same pattern."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.listing.canonical_form import packed
+from workhold.model.plate import turned_half
+from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.vise import Vise
+
+__all__ = ["column_groups", "counted", "half_turn", "pattern_words"]
+
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Columns, rows and arrangements in packed numbers; more columns or rows than this no search can look through.
+MOST_STEPS, MOST_ARRANGEMENTS = (1 << 18) - 1, 15
+# Larger than any column or row.
+BEYOND = 1 << 40
+
+
+def column_groups(toolkit: Toolkit) -> list[int]:
+    """For each carrier the number of those whose columns it shares: a jaw that slides has its own."""
+    jaws = isinstance(toolkit, Vise)
+    return [number if jaws else 0 for number in range(len(toolkit.carriers))]
+
+
+def counted(carrier: Carrier) -> tuple[bool, bool]:
+    """Whether columns tell anything about what stands on a carrier, and whether rows do."""
+    if carrier.is_wall:
+        return False, False
+    if carrier.has_a_hole:
+        return True, True
+    return not carrier.is_along_x, carrier.is_along_x
+
+
+def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
+    """For each carrier the one whose place it takes after half a turn of everything, where that turn leaves an arrangement
+    as it is; None where it does not."""
+    carriers, one = toolkit.carriers, toolkit.arrangements[arrangement]
+    if toolkit.wall is not None:
+        return None
+    if isinstance(toolkit, Vise):
+        places: tuple[int, ...] = (1, 0)
+    else:
+        names = [carrier.name for carrier in carriers]
+        ahead = [names[0], *(f"clamp {turned_half(name.removeprefix('clamp '))}" for name in names[1:])]
+        places = tuple(names.index(name) if name in names else -1 for name in ahead)
+    known = all(place >= 0 or not count for place, count in zip(places, one.pegs, strict=True))
+    if not known or any(one.pegs[place] != count for place, count in zip(places, one.pegs, strict=True) if count):
+        return None
+    return places
+
+
+def pattern_words(table: FixtureTable, toolkit: Toolkit) -> IntArray:
+    """The patterns (N, W) of fixtures as they stand; their lexicographic order is that of identities."""
+    carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
+    counts = np.array([counted(one) for one in toolkit.carriers])[carriers]
+    groups = np.array(column_groups(toolkit))[carriers]
+    column, row = table.column.astype(np.int64), table.row.astype(np.int64)
+    for group in range(int(groups.max(initial=0)) + 1):
+        inside = counts[:, :, 0] & (groups == group)
+        column = np.where(groups == group, column - least(column, inside), column)
+    if toolkit.wall is None:
+        row = row - least(row, counts[:, :, 1])
+    column, row = np.where(counts[:, :, 0], column, 0), np.where(counts[:, :, 1], row, 0)
+    order = np.argsort((carriers << 40) + (column << 20) + row, axis=1, kind="stable")
+    column, row = (np.take_along_axis(values, order, axis=1) for values in (column, row))
+    kind = table.arrangement.astype(np.int64)[:, None]
+    return np.column_stack(packed((kind, MOST_ARRANGEMENTS), (column, MOST_STEPS), (row, MOST_STEPS)))
+
+
+def least(values: IntArray, inside: BoolArray) -> IntArray:
+    """The smallest (N, 1) of the values (N, P) that count, 0 where none does."""
+    found = np.where(inside, values, BEYOND).min(axis=1, keepdims=True, initial=BEYOND)
+    return np.where(found == BEYOND, 0, found)
