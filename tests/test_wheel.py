@@ -1,4 +1,6 @@
-"""The wheel, where there is no numba, writes the same files as kernels that are compiled on first use, byte for byte."""
+"""The sdist makes the wheel, which installs in an empty environment; there, without numba, it writes the same files as
+kernels that are compiled on first use, byte for byte.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +9,17 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import zipfile
+import tarfile
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import workhold
 
 ROOT = Path(workhold.__file__).parents[2]
-COMPILER = ("numba", "llvmlite", "workhold", "__editable__")
 VISE = ("--peg-radius", "3", "--threads")
 # A part with arcs, one with many fixtures on two threads, a drawing with loads, and a table.
 DESIGNS = (
@@ -27,32 +31,72 @@ DESIGNS = (
 
 
 @pytest.fixture(scope="module")
-def without_numba(tmp_path_factory) -> dict[str, str]:
-    """An environment with the wheel unpacked and all it needs, and nothing else."""
-    folder = tmp_path_factory.mktemp("wheel")
-    source, packages = folder / "source", folder / "packages"
-    for name in ("src", "building"):
-        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("*.so", "*.egg-info", "__pycache__"))
-    for name in ("pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"):
-        shutil.copy(ROOT / name, source / name)
-    build = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, source]
-    subprocess.run(build, check=True)
-    (wheel,) = folder.glob("workhold-*-py3-none-*.whl")
-    packages.mkdir()
-    for path in Path(sysconfig.get_paths()["purelib"]).iterdir():
-        if not path.name.startswith(COMPILER):
-            (packages / path.name).symlink_to(path)
-    with zipfile.ZipFile(wheel) as archive:
-        archive.extractall(folder / "installed")
-    kept = {key: value for key, value in os.environ.items() if not key.startswith("WORKHOLD")}
-    return {**kept, "PYTHONPATH": os.pathsep.join([str(folder / "installed"), str(packages)])}
+def built(tmp_path_factory) -> Path:
+    """A folder with the sdist of these sources, and the wheel that it makes."""
+    folder = tmp_path_factory.mktemp("built")
+    source = folder / "source"
+    left_out = shutil.ignore_patterns(".*", "*.so", "*.egg-info", "__pycache__", "build", "dist", "demo", "site")
+    shutil.copytree(ROOT, source, ignore=left_out)
+    program = "import sys; sys.path.insert(0, 'building'); import backend; backend.build_sdist(sys.argv[1])"
+    subprocess.run([sys.executable, "-c", program, folder], cwd=source, check=True, capture_output=True)
+    (sdist,) = folder.glob("workhold-*.tar.gz")
+    make = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, sdist]
+    subprocess.run(make, check=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def without_numba(built, tmp_path_factory) -> dict[str, str]:
+    """An empty environment with the wheel, what it says that it needs, and nothing else."""
+    (wheel,) = built.glob("workhold-*-py3-none-*.whl")
+    home = tmp_path_factory.mktemp("environment") / "empty"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", home], check=True)
+    (packages,) = home.glob("lib/python3*/site-packages")
+    python = str(home / "bin" / "python")
+    install = [sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-index", wheel]
+    subprocess.run(install, check=True)
+    for name in needed_by(metadata.Distribution.at(next(packages.glob("workhold-*.dist-info")))):
+        for top in {path.parts[0] for path in metadata.files(name) or () if path.parts[0] != ".."}:
+            if not (packages / top).exists():
+                (packages / top).symlink_to(Path(sysconfig.get_paths()["purelib"]) / top)
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("WORKHOLD", "PYTHON"))}
+    return {**kept, "VIRTUAL_ENV": str(home)}
+
+
+def needed_by(distribution: metadata.Distribution) -> set[str]:
+    """The names of all distributions that one needs, and those that they need, without extras."""
+    found: set[str] = set()
+    waiting = [distribution]
+    while waiting:
+        for words in waiting.pop().requires or ():
+            requirement = Requirement(words)
+            wanted = requirement.marker is None or requirement.marker.evaluate({"extra": ""})
+            if wanted and canonicalize_name(requirement.name) not in found:
+                found.add(canonicalize_name(requirement.name))
+                waiting.append(metadata.distribution(requirement.name))
+    return found
 
 
 def run(environment: dict[str, str], folder: Path, *words: str) -> str:
-    """What a program writes; with PYTHONPATH as the only place of packages."""
-    done = subprocess.run([sys.executable, "-S", *words], env=environment, cwd=folder, capture_output=True, text=True)
+    """What a command of the environment writes."""
+    program = Path(environment["VIRTUAL_ENV"], "bin", words[0])
+    done = subprocess.run([program, *words[1:]], env=environment, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
+
+
+@pytest.mark.wheel
+def test_the_sdist_has_what_it_takes_to_build_test_and_cite(built):
+    """Every file of the sources but what git leaves out, and no compiled code."""
+    (sdist,) = built.glob("workhold-*.tar.gz")
+    with tarfile.open(sdist) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    for name in ("LICENSE", "CITATION.cff", "CONTRIBUTING.md", "SECURITY.md", "Makefile", "constraints.txt"):
+        assert name in names
+    for folder, ending in (("docs", "md"), ("tests", "py"), ("benchmarks", "py"), ("src", "py"), ("examples", "dxf")):
+        there = {str(path.relative_to(ROOT)) for path in (ROOT / folder).rglob(f"*.{ending}")}
+        assert there and there <= names
+    assert not [name for name in names if name.endswith((".so", ".pyc"))]
 
 
 @pytest.mark.wheel
@@ -60,10 +104,11 @@ def test_the_wheel_needs_no_numba(without_numba, tmp_path):
     """There is none, and from Python too a part is designed for."""
     program = """
 import importlib.util, workhold
-assert importlib.util.find_spec("numba") is None and "installed" in workhold.__file__
+found = [name for name in ("numba", "pip", "pytest", "scipy") if importlib.util.find_spec(name)]
+assert not found and "empty" in workhold.__file__
 print(workhold.design(workhold.load("widget"), workhold.Vise(pitch=8, columns=1, peg_radius=3)).counts)
 """
-    assert run(without_numba, tmp_path, "-c", program).strip() == "{'I': 459, 'II': 46}"
+    assert run(without_numba, tmp_path, "python", "-c", program).strip() == "{'I': 459, 'II': 46}"
 
 
 @pytest.mark.wheel
@@ -72,13 +117,10 @@ def test_files_are_the_same_byte_for_byte(without_numba, words, tmp_path):
     """With compiled kernels and with kernels compiled on first use."""
     shutil.copy(ROOT / "examples" / "bracket.dxf", tmp_path)
     out, *design = words
-    compiling = {
-        **os.environ,
-        "WORKHOLD_KERNELS": "numba",
-        "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
-    }
-    for name, environment in (("built", without_numba), ("compiled", compiling)):
-        run(environment, tmp_path, "-m", "workhold", "design", *design, "--out", f"{name}-{out}")
+    run(without_numba, tmp_path, "workhold", "design", *design, "--out", f"built-{out}")
+    compiling = {**os.environ, "WORKHOLD_KERNELS": "numba", "PYTHONPATH": str(ROOT / "src")}
+    compiled = [sys.executable, "-m", "workhold", "design", *design, "--out", f"compiled-{out}"]
+    subprocess.run(compiled, env=compiling, cwd=tmp_path, check=True, capture_output=True)
     built, compiled = ((tmp_path / f"{name}-{out}").read_bytes() for name in ("built", "compiled"))
     assert len(built) > 1000
     assert built == compiled

@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     from workhold.files.result.save import save
     from workhold.model.fence import Fence
     from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.load import Load
     from workhold.model.plate import Plate
     from workhold.model.query import Query
+    from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
     from workhold.model.result import Result
+    from workhold.model.tolerance import Tolerance
     from workhold.model.vise import OpeningVise, Vise
     from workhold.model.workpiece import Workpiece
     from workhold.search.contacts import count_contacts
@@ -34,20 +37,25 @@ __all__ = [
     "Fixture",
     "WorkholdError",
     "InputError",
+    "Load",
     "OpeningVise",
     "Peg",
     "Plate",
     "Pose",
     "Query",
+    "Restrictions",
     "Result",
+    "Tolerance",
     "Vise",
     "Workpiece",
     "answer",
     "answer_to_file",
+    "circle_zone",
     "count_contacts",
     "design",
     "load",
     "open",
+    "polygon_zone",
     "save",
     "verify",
 ]
@@ -57,20 +65,25 @@ HOMES = {
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",
+    "Load": "workhold.model.load",
     "Peg": "workhold.model.fixture",
     "Plate": "workhold.model.plate",
     "Pose": "workhold.model.fixture",
     "Query": "workhold.model.query",
+    "Restrictions": "workhold.model.restrictions",
     "Result": "workhold.model.result",
+    "Tolerance": "workhold.model.tolerance",
     "OpeningVise": "workhold.model.vise",
     "Vise": "workhold.model.vise",
     "Workpiece": "workhold.model.workpiece",
     "answer": "workhold.search.design",
     "answer_to_file": "workhold.files.result.columns",
+    "circle_zone": "workhold.model.restrictions",
     "count_contacts": "workhold.search.contacts",
     "design": "workhold.search.design",
     "load": "workhold.files.part.load",
     "open": "workhold.files.result.reader:read_result",
+    "polygon_zone": "workhold.model.restrictions",
     "save": "workhold.files.result.save",
     "verify": "workhold.completeness",
 }

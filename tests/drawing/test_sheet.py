@@ -22,7 +22,6 @@ from workhold.drawing.sheet_facts import (
     caliper_check,
     cautions_of,
     edge_distances,
-    same_holes,
 )
 from workhold.drawing.sheet_scale import standard_scale
 from workhold.model.fixture import Fixture, Peg, Pose
@@ -306,7 +305,7 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
 def test_other_fixtures_in_the_same_holes_are_counted() -> None:
     """Fixture 0 put into a table three times has two others in its holes."""
     again = fake_result(5).table.take([0, 1, 0, 2, 0])  # type: ignore[arg-type]
-    assert [same_holes(again, index) for index in range(5)] == [2, 0, 2, 0, 2]
+    assert [again.same_holes(index) for index in range(5)] == [2, 0, 2, 0, 2]
 
 
 def test_names_in_other_scripts_and_without_end_are_drawn() -> None:

@@ -83,7 +83,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
         When the folder cannot be written.
     """
     from workhold.drawing.fixture_picture import draw_fixture
-    from workhold.drawing.thumbnails import draw_thumbnails
+    from workhold.drawing.thumbnails import best_at_a_glance
     from workhold.listing.alike import entries
 
     try:
@@ -93,7 +93,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
     shown = entries(result)
-    indices, like = shown.index[:BEST_DRAWN].tolist(), shown.like[:BEST_DRAWN].tolist()
+    indices = shown.index[:BEST_DRAWN].tolist()
     fixtures = [result[index] for index in indices]
     if not fixtures:
         return []
@@ -101,6 +101,5 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     for place, (index, fixture) in enumerate(zip(indices, fixtures, strict=True), 1):
         svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {index + 1}", unit=unit)
         pictures[picture_name(place)] = svg
-    titles = [f"{index + 1}{f', and {more:,} like it' * bool(more)}" for index, more in zip(indices, like, strict=True)]
-    pictures[THUMBNAILS] = draw_thumbnails(fixtures, result.workpiece, result.toolkit, titles, unit=unit)
+    pictures[THUMBNAILS] = best_at_a_glance(result, shown, unit)
     return write_pictures(pictures, folder)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -18,16 +18,7 @@ from workhold.errors import InputError
 from workhold.limits import refuse_long
 from workhold.model.units import Unit
 
-if TYPE_CHECKING:
-    from workhold.model.load import Load
-    from workhold.model.result import Result
-
 __all__ = ["sheet"]
-
-PAPER_ENDINGS = (".pdf", ".svg", ".png")
-MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
-# A PNG is so many pixels wide; a second page makes it higher.
-PNG_WIDTH = 2400
 
 ON_PAPER, BODIES = "On the paper", "Part and pegs"
 
@@ -80,6 +71,8 @@ def sheet(
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
+    from workhold.presenting.papers import MODEL_ENDINGS, PAPER_ENDINGS, write_model, write_paper
+
     rank = asked_rank(number)
     path = Path(out)
     ending = path.suffix.lower()
@@ -113,9 +106,9 @@ def sheet(
     refuse_output(path, (result_file, loads), force)
     result = result_with(result_file, rank)
     if ending in MODEL_ENDINGS:
-        write_model(path, ending, result, rank, settings, keep_off)
+        write_model(path, result, rank, settings, keep_off)
     else:
-        write_paper(path, ending, result, rank, given or result.query.loads, result_file, settings)
+        write_paper(path, result, rank, result_file, {**settings, "loads": given or result.query.loads})
     from workhold.cli.tables import print_tables
 
     print_tables(f"Written to {path}.")
@@ -150,59 +143,3 @@ def position(text: str, unit: Unit) -> tuple[float, float]:
     for value in (x, y):
         refuse_long("--machine-position", value)
     return x, y
-
-
-def write_model(path: Path, ending: str, result: Result, rank: int, settings: dict[str, Any], clearance: float) -> None:
-    """Write the set-up for a CAM system, or the list of its pins."""
-    from workhold.model.part_zero import part_zero
-
-    fixture, toolkit, unit = result[rank - 1], result.toolkit, settings["unit"]
-    zero = part_zero(result.workpiece, settings["zero"], unit)
-    if ending == ".csv":
-        from workhold.files.atomic import write_bytes
-        from workhold.files.pin_list import pin_list
-        from workhold.model.dowel import fit_words
-
-        fit, diameter = result.query.tolerance.fit, 2 * toolkit.carriers[0].peg_radius
-        dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
-        text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
-        write_bytes(path, text.encode("utf-8"))
-    elif ending == ".dxf":
-        from workhold.files.dxf.setup import write_setup_dxf
-
-        write_setup_dxf(fixture, result.workpiece, toolkit, path, zero=zero, clearance=clearance)
-    else:
-        from workhold.files.step.setup import write_setup_step
-
-        sizes = {name: settings[name] for name in ("thickness", "peg_length", "peg_height")}
-        write_setup_step(fixture, result.workpiece, toolkit, path, zero=zero, **sizes)
-
-
-def write_paper(
-    path: Path,
-    ending: str,
-    result: Result,
-    rank: int,
-    loads: tuple[Load, ...],
-    result_file: str,
-    settings: dict[str, Any],
-) -> None:
-    """Write the sheet."""
-    from hashlib import file_digest
-
-    from workhold.drawing.render import svg_to_png
-    from workhold.drawing.result_sheet import result_sheet
-    from workhold.drawing.scene import stacked
-    from workhold.files.atomic import write_bytes
-
-    with Path(result_file).open("rb") as stream:
-        digest = file_digest(stream, "sha256").hexdigest()
-    pages = result_sheet(result, rank, result_hash=digest, loads=loads, **settings)
-    if ending == ".pdf":
-        from workhold.drawing.pdf import svg_to_pdf
-
-        write_bytes(path, svg_to_pdf(pages, settings["day"]))
-    elif ending == ".svg":
-        write_bytes(path, stacked(pages).encode("utf-8"))
-    else:
-        write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))

@@ -9,7 +9,7 @@ from typing import Any
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances, same_holes
+from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.part_zero import part_zero
@@ -64,6 +64,8 @@ def result_details(
     peg_height: float | None = None,
     dowel: str | None = None,
     others: int | None = None,
+    number: int | None = None,
+    count: int | None = None,
 ) -> tuple[Fixture, SheetDetails]:
     """One fixture with all figures of quality, and what its setup sheet tells besides.
 
@@ -74,6 +76,7 @@ def result_details(
     jaw : what closes the vise, see :func:`workhold.statics.jaw.jaw_stiffness`.
     zero : part zero, see :func:`workhold.model.part_zero.part_zero`; its numbers are in ``unit``.
     others : how many other fixtures use the same holes; counted in the result if None.
+    number, count : the rank in a larger result and how many that lists, of a fixture that was taken out of it.
     result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position, thickness, peg_length, peg_height,
         dowel : see :class:`SheetDetails`.
 
@@ -86,8 +89,8 @@ def result_details(
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
     fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
     details = SheetDetails(
-        number=rank,
-        count=len(result),
+        number=rank if number is None else number,
+        count=len(result) if count is None else count,
         day=day,
         result_hash=result_hash,
         version=__version__,
@@ -104,6 +107,6 @@ def result_details(
         peg_length=peg_length,
         peg_height=peg_height,
         dowel=dowel,
-        others=same_holes(result.table, rank - 1) if others is None else others,
+        others=result.table.same_holes(rank - 1) if others is None else others,
     )
     return fixture, details

@@ -105,7 +105,7 @@ def draw_foot(scene: Scene, arrangement: Arrangement, sheet: Sheet, page: str) -
         ("Print at", "100 %"),
         ("Lengths", sheet.lengths.unit.name),
         ("Date", details.day.isoformat()),
-        ("Result file, SHA-256", f"{details.result_hash[:12]}…"),
+        *([("Result file, SHA-256", f"{details.result_hash[:12]}…")] if details.result_hash else []),
         ("Program", f"workhold {details.version}"),
         ("Page", page),
     ]

@@ -25,7 +25,7 @@ class SheetDetails:
     ----------
     number, count : the fixture's rank in its result and how many there are.
     day : the date written on the sheet.
-    result_hash : SHA-256 of the result file in hexadecimal.
+    result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
     version : of the program.
     paper : "a4" or "letter".
     unit : of lengths.

@@ -10,7 +10,6 @@ from attrs import frozen
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.fixture import Fixture
-from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
@@ -22,7 +21,6 @@ __all__ = [
     "caliper_check",
     "cautions_of",
     "edge_distances",
-    "same_holes",
 ]
 
 UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."
@@ -90,14 +88,6 @@ def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     waits; infinite where it ends in none (a whole circle, tangent joints).
     """
     return [float(edge) for edge in Touched.of(workpiece, toolkit).of_fixture(fixture, toolkit).edges[0]]
-
-
-def same_holes(table: FixtureTable, index: int) -> int:
-    """How many other fixtures of a table have their pegs in the same holes as the one of an index."""
-    same = table.arrangement == table.arrangement[index]
-    for holes in (table.column, table.row):
-        same &= (holes == holes[index]).all(axis=1)
-    return int(same.sum()) - 1
 
 
 def cautions_of(

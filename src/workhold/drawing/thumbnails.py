@@ -11,12 +11,14 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import closure_margin, plural
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.errors import InputError
+from workhold.listing.alike import Entries
 from workhold.model.fixture import Fixture
+from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_THUMBNAILS", "draw_thumbnails"]
+__all__ = ["MOST_THUMBNAILS", "best_at_a_glance", "draw_thumbnails"]
 
 MOST_THUMBNAILS = 12
 EDGE = 32.0
@@ -71,6 +73,20 @@ def draw_thumbnails(
         draw_cell(scene, bench, title, cell, View.fitting(bench.extent, room, scale), lengths)
     scale_bar(scene, (EDGE, height - EDGE + 8), scale, lengths)
     return scene.svg()
+
+
+def best_at_a_glance(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:
+    """Thumbnails of the first twelve entries of a result, each with its rank and how many are like it; SVG text.
+
+    Raises
+    ------
+    InputError
+        For no entry.
+    """
+    indices, like = (numbers[:MOST_THUMBNAILS].tolist() for numbers in (shown.index, shown.like))
+    titles = [f"{index + 1}{f', and {more:,} like it' * bool(more)}" for index, more in zip(indices, like, strict=True)]
+    fixtures = [result[index] for index in indices]
+    return draw_thumbnails(fixtures, result.workpiece, result.toolkit, titles, unit=unit)
 
 
 def grid(count: int) -> list[Box]:

@@ -18,7 +18,8 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.part.load import Loaded, found, read_workpiece
+from workhold.files.part.finding import found
+from workhold.files.part.load import Loaded, read_workpiece
 
 __all__ = ["ListedPart", "ReadPart", "part_list", "read_listed"]
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import atan, radians, tan
+from pathlib import Path
 from typing import Any
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
+from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
+from workhold.model.beyond import beyond
 from workhold.model.holes import hole_name
 
-__all__ = ["WALL", "Fixture", "Pair", "Peg", "Pose"]
+__all__ = ["WALL", "Fixture", "Listed", "Pair", "Peg", "Pose"]
 
 # What stands for a wall among the carriers of pegs.
 WALL = "wall"
@@ -133,6 +136,34 @@ class Pair:
 
 
 @frozen
+class Listed:
+    """Where a fixture is listed. A copy made by pickle keeps that fixture alone of the result.
+
+    Parameters
+    ----------
+    result : the :class:`workhold.Result`.
+    row : of the fixture in the result's table.
+    rank, count : of the fixture, from 1, and how many fixtures are listed.
+    in_same_holes : how many of these use the same holes; None until it is counted.
+    """
+
+    result: Any
+    row: int
+    rank: int
+    count: int
+    in_same_holes: int | None = None
+
+    @property
+    def others(self) -> int:
+        """How many other fixtures of the result use the same holes."""
+        return int(self.result.table.same_holes(self.row)) if self.in_same_holes is None else self.in_same_holes
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        alone = evolve(self.result, table=self.result.table.take(slice(self.row, self.row + 1)))
+        return Listed, (alone, 0, self.rank, self.count, self.others)
+
+
+@frozen(repr=False)
 class Fixture:
     """One way to hold the workpiece.
 
@@ -146,6 +177,8 @@ class Fixture:
     quality : figures of merit by name.
     direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a vise.
     pair : what is particular to two clamps; None of other fixtures.
+    listed : where it is listed, so that it can be drawn; None of one that was put together otherwise. It makes no difference
+        between fixtures.
     """
 
     type: str
@@ -155,3 +188,80 @@ class Fixture:
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
     direction: str | None = None
     pair: Pair | None = None
+    listed: Listed | None = field(default=None, eq=False)
+
+    def __repr__(self) -> str:
+        which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
+        kind = self.type if self.direction is None else f"{self.type} {self.direction}"
+        return f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees>"
+
+    def _repr_svg_(self) -> str | None:
+        return None if self.listed is None else str(self.draw())
+
+    @property
+    def listing(self) -> Listed:
+        """Where it is listed.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+        """
+        if self.listed is None:
+            raise InputError(
+                "this fixture is not of a result, which tells the part and the toolkit: take one of a result."
+            )
+        return self.listed
+
+    def draw(self, path: str | Path | None = None, *, title: str | None = None, unit: str = "mm") -> str:
+        """The picture to set it up from: SVG text, which a notebook shows as a picture.
+
+        Parameters
+        ----------
+        path : also write it into this file, whose name ends in .svg or .png.
+        title : what to call the fixture; its rank if None.
+        unit : of the lengths written: "mm", "cm", "m" or "inch".
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, and when the file cannot be written.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+        >>> "Fixture 1 of" in result[0].draw()
+        True
+        """
+        picture: str = beyond("fixture_picture")(self, path, title=title, unit=unit)
+        return picture
+
+    def save_sheet(
+        self,
+        path: str | Path,
+        *,
+        unit: str = "mm",
+        clearance: float | None = None,
+        result_file: str | Path | None = None,
+        **asked: Any,
+    ) -> None:
+        """Write its setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the list of its pins (.csv).
+
+        Parameters
+        ----------
+        unit : of the lengths on paper, "mm" or "inch".
+        clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
+        result_file : the file that the result was saved in; its hash then stands on the sheet.
+        asked : what else stands on the sheet: ``paper`` ("a4" or "letter"), ``day``, ``part_name``, ``jaw_force`` in N,
+            ``jaw`` ("screw", "constant" or a stiffness), ``friction``, ``loads`` instead of the result's, ``zero``
+            ("corner", "centre", "hole 2" or x and y of the drawing), ``machine_position`` (x, y) of hole A1, and the
+            lengths in mm ``thickness``, ``peg_length`` and ``peg_height``, and ``dowel`` in words.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, values that cannot be, and when the file cannot be written.
+        """
+        beyond("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)

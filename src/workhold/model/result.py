@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
 from attrs import define, field, fields
 from numpy.typing import NDArray
 
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.beyond import beyond
+from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
@@ -99,6 +101,13 @@ class FixtureTable:
         """The fixtures of an index array or slice, in its order."""
         return FixtureTable(*(column[order] for column in self.columns))
 
+    def same_holes(self, index: int) -> int:
+        """How many other fixtures have their pegs in the same holes as the one of an index."""
+        same = self.arrangement == self.arrangement[index]
+        for holes in (self.column, self.row):
+            same &= (holes == holes[index]).all(axis=1)
+        return int(same.sum()) - 1
+
     @classmethod
     def joined(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
         """Several tables, at least one, as one."""
@@ -131,7 +140,7 @@ def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
     return quality
 
 
-@define(frozen=True)
+@define(frozen=True, repr=False)
 class Result:
     """All fixtures that a query asks for, best first, or the best of them.
 
@@ -187,7 +196,8 @@ class Result:
     def __iter__(self) -> Iterator[Fixture]:
         for start in range(0, len(self), BLOCK):
             block = self.table.take(slice(start, start + BLOCK))
-            yield from (fixture_at(block, self.toolkit, index, self.workpiece) for index in range(len(block)))
+            for index in range(len(block)):
+                yield fixture_at(block, self.toolkit, index, self.workpiece, self.listed(start + index))
 
     @overload
     def __getitem__(self, index: int) -> Fixture: ...
@@ -201,7 +211,59 @@ class Result:
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
-        return fixture_at(self.table.take(slice(index, index + 1)), self.toolkit, 0, self.workpiece)
+        row = self.table.take(slice(index, index + 1))
+        return fixture_at(row, self.toolkit, 0, self.workpiece, self.listed(index))
+
+    def listed(self, index: int) -> Listed:
+        """Where the fixture of an index stands."""
+        return Listed(self, index, index + 1, len(self))
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(f"{count:,} of type {kind}" for kind, count in self.counts.items())
+        whole = "" if self.complete else ", interrupted"
+        only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
+        count = f"{only}{len(self):,} fixture{'s' * (len(self) != 1)}"
+        where = f"{self.toolkit.wording.inside.partition(' ')[0]} a {self.toolkit.noun}"
+        return f"<Result: {count} of {self.workpiece.name} {where} ({kinds}){whole}>"
+
+    def _repr_svg_(self) -> str | None:
+        return str(self.draw()) if len(self) else None
+
+    def draw(self, path: str | Path | None = None, *, unit: str = "mm") -> str:
+        """The best twelve at a glance: SVG text, which a notebook shows as a picture. Fixtures alike are drawn once.
+
+        Parameters
+        ----------
+        path : also write it into this file, whose name ends in .svg or .png.
+        unit : of the lengths written: "mm", "cm", "m" or "inch".
+
+        Raises
+        ------
+        InputError
+            For a result without a fixture, and when the file cannot be written.
+        """
+        picture: str = beyond("result_picture")(self, path, unit=unit)
+        return picture
+
+    def to_pandas(self) -> Any:
+        """All fixtures as a DataFrame, best first, with the columns of the CSV form: lengths in mm, angles in degrees.
+
+        Raises
+        ------
+        InputError
+            Where pandas is not installed.
+        """
+        return beyond("to_pandas")(self)
+
+    def to_arrow(self) -> Any:
+        """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
+
+        Raises
+        ------
+        InputError
+            Where pyarrow is not installed.
+        """
+        return beyond("to_arrow")(self)
 
 
 def whole_turn_degrees(theta: float) -> float:
@@ -221,8 +283,10 @@ def peg_places(
     return x, y
 
 
-def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece) -> Fixture:
-    """Make the :class:`Fixture` of one row of a table, which holds a workpiece."""
+def fixture_at(
+    table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
+) -> Fixture:
+    """Make the :class:`Fixture` of one row of a table, which holds a workpiece, and is listed somewhere or not."""
     one = table.take(slice(index, index + 1))
     arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
     across, along = peg_places(one, toolkit, workpiece)
@@ -251,6 +315,7 @@ def fixture_at(table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Wor
         },
         direction=arrangement.direction,
         pair=pair_at(one) if pairs else None,
+        listed=listed,
     )
 
 

@@ -8,6 +8,7 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long
+from workhold.model.beyond import beyond
 from workhold.model.dowel import Fit
 from workhold.model.real import real
 
@@ -41,6 +42,24 @@ class Tolerance:
             if not (isfinite(value) and value >= 0):
                 raise InputError(f"{name} tolerance {value} is not a length: give 0 or more, in mm.")
             refuse_long(f"{name} tolerance", value)
+
+    @classmethod
+    def preset(cls, name: str) -> Tolerance:
+        """The tolerance that follows from the dowels of a toolkit by name, see :meth:`workhold.Vise.preset`.
+
+        Raises
+        ------
+        InputError
+            For a name that is not known.
+
+        Examples
+        --------
+        >>> from workhold import Tolerance
+        >>> round(Tolerance.preset("plate-20mm").peg, 6)
+        0.0145
+        """
+        tolerance: Tolerance = beyond("preset_tolerance")(name)
+        return tolerance
 
     def with_departure(self, departure: float) -> Tolerance:
         """The same tolerance for an outline that departs by so much, in mm, from the drawn one.

@@ -16,12 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import cos, sin
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.errors import InputError
+from workhold.model.beyond import beyond
 from workhold.model.holes import Holes, column_letters, hole_name, letter_of
 from workhold.model.units import Unit
 
@@ -336,6 +338,45 @@ class Toolkit:
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Changes to try where it holds nothing, besides lifting its limits; lengths in their words are in a unit."""
         raise NotImplementedError
+
+    @classmethod
+    def preset(cls, name: str, **changes: Any) -> Self:
+        """A toolkit that people own, by name.
+
+        Parameters
+        ----------
+        name : one of :meth:`presets`, or the path of a toolkit's TOML file.
+        changes : fields that are other ones, such as ``columns=2``; lengths in mm.
+
+        Raises
+        ------
+        InputError
+            For a name that is not known, a toolkit of another class, and fields that it cannot have.
+
+        Examples
+        --------
+        >>> from workhold import Plate, Vise
+        >>> Vise.preset("plate-20mm", columns=2).pitch, Plate.preset("clamp-plate-20mm").clamp_radius
+        ((20.0, 20.0), 5.0)
+        """
+        given = {**beyond("preset_fields")(cls, name), **changes}
+        try:
+            return cls(**given)
+        except TypeError as error:
+            raise InputError(f"{cls.__name__} cannot be made of {', '.join(given)}: {error}.") from error
+
+    @classmethod
+    def presets(cls) -> tuple[str, ...]:
+        """The names of the presets of this class.
+
+        Examples
+        --------
+        >>> from workhold import Fence
+        >>> Fence.presets()
+        ('fence-20mm',)
+        """
+        names: tuple[str, ...] = beyond("preset_names_of")(cls)
+        return names
 
     def changed(self, fields: Mapping[str, Any]) -> Toolkit:
         """The toolkit with some of its fields changed.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property, partial
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ from workhold.geometry.loop import (
 )
 from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
+from workhold.model.beyond import beyond
 from workhold.model.fixture import Pose
 from workhold.model.real import real
 from workhold.model.wall import Flush
@@ -43,7 +45,7 @@ def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
     return tuple((loop + 0.0).tobytes() for loop in loops)
 
 
-@define(frozen=True, slots=False)
+@define(frozen=True, slots=False, repr=False)
 class Workpiece:
     """A prismatic part, known by its silhouette. Build it with :meth:`from_loops` or :func:`workhold.load`.
 
@@ -66,7 +68,7 @@ class Workpiece:
     """
 
     name: str
-    loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of, repr=lambda loops: f"<{len(loops)} loops>")
+    loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
 
@@ -177,6 +179,32 @@ class Workpiece:
             loops.append(merged.vertices)
             away = max(away, merged.departure)
         return cls.from_loops(name, loops, departure=away)
+
+    def __repr__(self) -> str:
+        faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - 1, self.bounds
+        inside = f", {holes} hole{'s' * (holes != 1)}" if holes else ""
+        size = f"{x1 - x0:.6g} x {y1 - y0:.6g} mm"
+        return f"<Workpiece {self.name}: {faces} face{'s' * (faces != 1)}{inside}, {size}>"
+
+    def _repr_svg_(self) -> str:
+        return str(self.draw())
+
+    def draw(self, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm") -> str:
+        """The part with its faces numbered: SVG text, which a notebook shows as a picture.
+
+        Parameters
+        ----------
+        path : also write it into this file, whose name ends in .svg or .png.
+        peg_radius : in mm; draw where the centre of such a peg lies when it touches a face as well.
+        unit : of the lengths written: "mm", "cm", "m" or "inch".
+
+        Raises
+        ------
+        InputError
+            For a unit that is not known, and when the file cannot be written.
+        """
+        picture: str = beyond("workpiece_picture")(self, path, peg_radius=peg_radius, unit=unit)
+        return picture
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:

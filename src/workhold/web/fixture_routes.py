@@ -76,11 +76,9 @@ async def warnings(
     revision: Revision = None,
 ) -> dict[str, Any]:
     """The sentences of the setup sheet of a fixture, under its search's loads or those given as JSON."""
-    from workhold.drawing.sheet_facts import same_holes
-
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
-    others = same_holes(result.table, index)
+    others = result.table.same_holes(index)
     small = evolve(result, table=result.table.take(slice(index, index + 1)))
     asked = {
         "unit": unit_named(unit),

@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from attrs import evolve
+
 from workhold.errors import InputError
 from workhold.files.dxf.walk import Nest, Walk
 from workhold.files.outline.chain import Drawing
@@ -21,7 +23,7 @@ from workhold.files.outline.placement import Placement
 from workhold.files.questions import DRAWING_UNIT
 from workhold.model.units import unit_named
 
-__all__ = ["read_dxf"]
+__all__ = ["read_document", "read_dxf"]
 
 # $INSUNITS (DXF reference, header variables): name and millimetres.
 INSUNITS = {
@@ -68,6 +70,26 @@ def read_dxf(
     refuse_other_formats(content)
     document, remarks = opened(path)
     code = unit_code(document, content)
+    drawing = read_document(document, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
+    return evolve(drawing, remarks=(*remarks, *drawing.remarks))
+
+
+def read_document(
+    document: Any,
+    code: int,
+    *,
+    unit: str | None,
+    usual_unit: str | None = None,
+    layers: Sequence[str] | None,
+    fit: float | None = None,
+) -> Drawing:
+    """Read the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
+
+    Raises
+    ------
+    InputError
+        See there.
+    """
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
     walk = Walk(document, layers, fit)
@@ -81,7 +103,7 @@ def read_dxf(
     if known is None:
         lacking = f"is not one for parts ($INSUNITS {code})" if code else "is not said"
         raise unit_asked(f"the drawing's unit {lacking}", walk.chains)
-    return Drawing(tuple(walk.chains), (*remarks, *unit_remarks, *walk.remarks()), walk.curves.found, walk.layers)
+    return Drawing(tuple(walk.chains), (*unit_remarks, *walk.remarks()), walk.curves.found, walk.layers)
 
 
 def refuse_other_formats(content: bytes) -> None:

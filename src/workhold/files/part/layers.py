@@ -16,7 +16,7 @@ from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
 from workhold.files.outline.placement import Placement
-from workhold.files.part.load import found, kind_of, read_bytes
+from workhold.files.part.finding import found, kind_of, read_bytes
 
 __all__ = ["DrawnLayer", "drawn_layers"]
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import isfinite
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
@@ -23,8 +25,10 @@ from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.layers import with_layers_named
 from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
-from workhold.files.part.builtin import builtin_parts, builtin_path, close_names
+from workhold.files.part.builtin import builtin_parts, builtin_path
+from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.part.not_asked import refuse_axis, refuse_fit, refuse_layers
+from workhold.files.part.objects import drawing_of_object
 from workhold.files.questions import DRAWING_UNIT, PART_NUMBER, UnitAskedError, worded
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
@@ -33,8 +37,6 @@ __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
 
 # A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
 MOST_SEGMENTS = 20_000
-# Bytes; a drawing of one part is far smaller, and reading takes about twenty times as much memory.
-LARGEST_FILE = 40_000_000
 PART_LIST = 10
 
 
@@ -57,8 +59,9 @@ class Loaded:
 
 
 def load(
-    part: str | Path,
+    part: Any,
     *,
+    name: str | None = None,
     unit: str | None = None,
     layers: Sequence[str] | None = None,
     part_number: int | None = None,
@@ -67,12 +70,15 @@ def load(
     axis: str | None = None,
     section: float | None = None,
 ) -> Workpiece:
-    """Load a part from a file or by the name of a built-in model.
+    """Load a part from a file, by the name of a built-in model, or from an object of another library.
 
     Parameters
     ----------
-    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins.
-    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do.
+    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a geometry of
+        shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
+    name : what to call the part; the file's name if None.
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. A geometry of shapely
+        is in mm if None.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when None.
     join_tolerance : largest gap between loose ends to close, in mm.
@@ -93,7 +99,7 @@ def load(
     >>> len(widget.segments)
     16
     """
-    return read_workpiece(
+    workpiece = read_workpiece(
         part,
         unit=unit,
         layers=layers,
@@ -103,10 +109,11 @@ def load(
         axis=axis,
         section=section,
     ).workpiece
+    return workpiece if name is None else evolve(workpiece, name=name)
 
 
 def read_workpiece(
-    part: str | Path,
+    part: Any,
     *,
     unit: str | None = None,
     usual_unit: str | None = None,
@@ -137,108 +144,62 @@ def read_workpiece(
     for name in (unit, usual_unit):
         if name is not None:
             unit_named(name)
-    path = found(part)
+    options = {"unit": unit, "usual_unit": usual_unit, "layers": layers, "part_number": part_number, "fit": fit}
+    options |= {"axis": axis, "section": section}
+    path = found(part) if isinstance(part, str | PathLike) else None
     try:
-        content = read_bytes(path)
-        kind = kind_of(path, content)
-        if kind == "step":
-            loaded = from_step(path, content, unit, layers, part_number, axis, section, fit)
+        if path is None:
+            loaded = from_object(part, options, join_tolerance)
         else:
-            refuse_axis(axis, section)
-            if kind == "json":
-                refuse_fit(fit)
-                own = path == builtin_path(path.stem)
-                loaded = from_json(path, content, unit, layers, part_number, own)
-            elif kind == "dxf":
-                from workhold.files.dxf.reader import read_dxf
-
-                drawing = read_dxf(path, content, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
-                loaded = from_drawing(path, drawing, part_number, join_tolerance, fit, layered=True)
-            else:
-                refuse_layers(layers)
-                from workhold.files.svg.reader import read_svg
-
-                drawing = read_svg(content, unit=unit, usual_unit=usual_unit, fit=fit)
-                loaded = from_drawing(path, drawing, part_number, join_tolerance, fit)
+            loaded = from_file(path, options, join_tolerance)
     except InputError as error:
         kind_of_error = UnitAskedError if isinstance(error, UnitAskedError) else InputError
-        raise kind_of_error(f"{path.name}: {worded(str(error), called)}") from error
+        place = f"this {type(part).__name__}" if path is None else path.name
+        raise kind_of_error(f"{place}: {worded(str(error), called)}") from error
     return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
 
 
-def found(part: str | Path) -> Path:
-    """The file of a part given by path or built-in name.
+def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
+    """A workpiece from an object of another library.
 
     Raises
     ------
     InputError
-        When there is neither, listing built-in names that are close.
+        For an object that is none, has no outline, or to which a choice does not apply.
     """
-    path = Path(part)
-    try:
-        if path.exists():
-            return path
-    except (OSError, ValueError):
-        pass
-    builtin = builtin_path(str(part))
-    if builtin is not None:
-        return builtin
-    names = close_names(str(part)) or [p.name for p in builtin_parts()]
-    raise InputError(
-        f"{str(part)[:200]!r}: file not found, and no built-in part has that name (try {', '.join(names)})."
-    )
+    held = drawing_of_object(part, **options)
+    return from_drawing(Path(held.name), held.drawing, held.part_number, join_tolerance, options["fit"], held.layered)
 
 
-def read_bytes(path: Path) -> bytes:
-    """The file's bytes.
+def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
+    """A workpiece from a file.
 
     Raises
     ------
     InputError
-        When it is a folder, empty, too large or not readable.
+        For a file that cannot be read or used, and choices that do not apply to it.
     """
-    try:
-        if path.is_dir():
-            raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
-        if not path.is_file():
-            raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(
-                f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's outline only."
-            )
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
-    if not content.strip():
-        raise InputError("the file is empty: give a .json, .dxf, .svg or .step file of the part.")
-    return content
+    content = read_bytes(path)
+    kind = kind_of(path, content)
+    part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
+    if kind == "step":
+        taken = (options["unit"], layers, part_number, options["axis"], options["section"], fit)
+        return from_step(path, content, *taken)
+    refuse_axis(options["axis"], options["section"])
+    if kind == "json":
+        refuse_fit(fit)
+        return from_json(path, content, options["unit"], layers, part_number, path == builtin_path(path.stem))
+    units = {"unit": options["unit"], "usual_unit": options["usual_unit"]}
+    if kind == "dxf":
+        from workhold.files.dxf.reader import read_dxf
 
+        return from_drawing(
+            path, read_dxf(path, content, **units, layers=layers, fit=fit), part_number, join_tolerance, fit, True
+        )
+    refuse_layers(layers)
+    from workhold.files.svg.reader import read_svg
 
-def kind_of(path: Path, content: bytes) -> str:
-    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    ending = path.suffix.lower().lstrip(".")
-    if ending in ("json", "dxf", "svg", "step"):
-        return ending
-    if ending == "stp":
-        return "step"
-    start = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
-    if start.startswith(b"{"):
-        return "json"
-    if start.startswith(b"<") and b"<svg" in content[:65536]:
-        return "svg"
-    if start.startswith(b"AutoCAD Binary DXF") or (start.startswith((b"0", b"999")) and b"SECTION" in content[:65536]):
-        return "dxf"
-    if start.startswith(b"ISO-10303-21"):
-        return "step"
-    raise InputError(
-        "this is neither a JSON, a DXF, an SVG nor a STEP file: export the part's outline as one of these."
-    )
+    return from_drawing(path, read_svg(content, **units, fit=fit), part_number, join_tolerance, fit)
 
 
 def from_json(
@@ -302,7 +263,6 @@ def from_drawing(
     part_number: int | None,
     tolerance: float,
     fit: float | None,
-    *,
     layered: bool = False,
 ) -> Loaded:
     """A workpiece from a drawing's chains; ``layered`` tells whether its layers can be chosen.

@@ -22,8 +22,9 @@ from workhold.files.outline.chain import Chain, Drawing, cleaned
 from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
 from workhold.files.outline.nesting import Part, nest
+from workhold.files.part.finding import kind_of, read_bytes
 from workhold.files.part.layers import DrawnLayer, drawn_layers
-from workhold.files.part.load import Loaded, kind_of, read_bytes, read_workpiece
+from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.questions import MARK, UNIT, worded
 
 __all__ = ["Survey", "survey"]

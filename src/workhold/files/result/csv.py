@@ -11,7 +11,7 @@ from workhold.files.result.rounding import known_figures
 from workhold.files.result.writer import fixture_rows
 from workhold.model.result import Result
 
-__all__ = ["result_csv_text", "write_result_csv", "write_result_csv_to"]
+__all__ = ["column_names", "result_csv_text", "write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
 POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
@@ -39,13 +39,18 @@ def write_result_csv_to(result: Result, stream: IO[str]) -> None:
         stream.write(text)
 
 
+def column_names(result: Result) -> list[str]:
+    """The names of the columns."""
+    pegs = [f"peg{peg}_{name}" for peg in range(1, result.toolkit.peg_count + 1) for name in PEG_COLUMNS]
+    moved = TRAVEL_COLUMNS[2 if result.toolkit.needs_pairs else 1]
+    return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs]
+
+
 def result_csv_text(result: Result) -> Iterator[str]:
     """The comma-separated values, piece by piece."""
-    figures = known_figures(result.table)
     toolkit, carriers = result.toolkit, result.toolkit.carriers
-    pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
-    moved = TRAVEL_COLUMNS[2 if toolkit.needs_pairs else 1]
-    yield ",".join([*POSE_COLUMNS, *moved, *(figure.key for figure in figures), *pegs]) + "\n"
+    yield ",".join(column_names(result)) + "\n"
+    moved = 3 + (2 if toolkit.needs_pairs else 1)
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number = 0
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
@@ -53,7 +58,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
             name, jaws = arrangements[kind]
-            pose, quality = row[6 * len(jaws) :][: 3 + len(moved)], row[6 * len(jaws) + 3 + len(moved) :]
+            pose, quality = row[6 * len(jaws) :][:moved], row[6 * len(jaws) + moved :]
             fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]

@@ -13,6 +13,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from attrs import evolve
 
 from workhold.conventions import EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
@@ -22,11 +23,20 @@ from workhold.files.step.departures import Outline, departure_remarks, refuse_ov
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
 from workhold.files.step.library import load_step_library
 from workhold.files.step.regions import Borders, area_of, borders, level_region, section, union
-from workhold.files.step.solids import AXES, along, chosen_solid, lost_remarks, read_solids, solid_remarks, sub_shapes
+from workhold.files.step.solids import (
+    AXES,
+    Solid,
+    along,
+    chosen_solid,
+    lost_remarks,
+    read_solids,
+    solid_remarks,
+    sub_shapes,
+)
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["read_step", "read_step_apart"]
+__all__ = ["border_remarks", "read_solid", "read_step", "read_step_apart"]
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -104,11 +114,29 @@ def read_step(
     InputError
         For files that cannot be read, and parts whose silhouette is not that of their upright faces.
     """
+    load_step_library()
+    solids = read_solids(content)
+    drawing = read_solid(solids, axis, section_height, part_number, fit)
+    return evolve(drawing, remarks=(*lost_remarks(content, solids), *drawing.remarks))
+
+
+def read_solid(
+    solids: tuple[Solid, ...],
+    axis: str | None,
+    section_height: float | None,
+    part_number: int | None,
+    fit: float | None,
+) -> Drawing:
+    """The outline of one of some solids, see :func:`read_step`.
+
+    Raises
+    ------
+    InputError
+        See there.
+    """
     axis = "z" if axis is None else axis.strip().lower()
     if axis not in AXES:
         raise InputError(f"the axis '{axis[:40]}' is not known: give x, y or z.")
-    load_step_library()
-    solids = read_solids(content)
     solid = chosen_solid(solids, part_number)
     shape = along(solid.shape, axis)
     faces = solid_faces(shape)
@@ -122,7 +150,6 @@ def read_step(
     if section_height is None:
         refuse_overhang(outline, faces, solid.shape, axis)
     remarks = [
-        *lost_remarks(content, solids),
         *solid_remarks(solids, solid, part_number),
         *border_remarks(edges),
         *departure_remarks(outline, faces, layers, shape, solid.shape, axis, section_height),

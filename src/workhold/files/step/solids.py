@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from math import isfinite
 from typing import Any
 
@@ -12,7 +13,7 @@ from workhold.errors import InputError
 from workhold.files.questions import PART_NUMBER
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "read_solids", "solid_remarks"]
+__all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "numbered", "read_solids", "solid_remarks"]
 
 # What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
@@ -53,14 +54,25 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     """
     refuse_other_formats(content)
     shape = transferred(content)
-    solids = [measured(solid) for solid in sub_shapes(shape, "SOLID")]
+    solids = numbered(sub_shapes(shape, "SOLID"))
     if not solids:
         if told(content):
             raise InputError("no solid of the STEP file can be read: repair it in a CAD program and export it again.")
         sheets = len(sub_shapes(shape, "FACE"))
         held = f"surfaces ({sheets}) but no solid" if sheets else "no solid"
         raise InputError(f"the STEP file holds {held}: export the part as a closed solid.")
-    solids.sort(key=lambda solid: (-solid.volume, solid.low, solid.high))
+    return solids
+
+
+def numbered(shapes: Iterable[Any]) -> tuple[Solid, ...]:
+    """Solids of Open CASCADE by decreasing volume.
+
+    Raises
+    ------
+    InputError
+        As :func:`measured`.
+    """
+    solids = sorted(map(measured, shapes), key=lambda solid: (-solid.volume, solid.low, solid.high))
     return tuple(Solid(k, s.shape, s.volume, s.low, s.high) for k, s in enumerate(solids, start=1))
 
 

@@ -1,0 +1,143 @@
+"""Papers of a fixture: its setup sheet, and its set-up for a CAM system or as a list of pins."""
+
+from __future__ import annotations
+
+from datetime import date
+from hashlib import file_digest
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from workhold.drawing.sheet_details import PAPERS
+from workhold.errors import InputError
+from workhold.files.atomic import write_bytes
+from workhold.model.part_zero import part_zero
+from workhold.model.units import unit_named
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+
+__all__ = ["MODEL_ENDINGS", "PAPER_ENDINGS", "save_sheet", "write_model", "write_paper"]
+
+PAPER_ENDINGS = (".pdf", ".svg", ".png")
+MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
+# A PNG is so many pixels wide; a second page makes it higher.
+PNG_WIDTH = 2400
+# What of a sheet's wishes a set-up for a CAM system has too.
+SIZES = ("thickness", "peg_length", "peg_height")
+
+
+def save_sheet(
+    fixture: Fixture,
+    path: str | Path,
+    *,
+    unit: str = "mm",
+    clearance: float | None = None,
+    result_file: str | Path | None = None,
+    **asked: Any,
+) -> None:
+    """Write the papers of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
+    from workhold.statics.jaw import jaw_stiffness
+
+    listed, ending = fixture.listing, Path(path).suffix.lower()
+    if fixture != listed.result[listed.row]:
+        raise InputError("this fixture was changed since it was listed: take the sheet of the one in its result.")
+    settings = {"zero": None, "dowel": None, **dict.fromkeys(SIZES), **asked, "unit": unit_named(unit)}
+    if ending in MODEL_ENDINGS:
+        write_model(path, listed.result, listed.row + 1, settings, clearance)
+        return
+    paper = settings.setdefault("paper", "a4")
+    if paper not in PAPERS:
+        raise InputError(f"the paper {str(paper)[:40]!r} is not known: choose {' or '.join(PAPERS)}.")
+    settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
+    settings.setdefault("day", date.today())
+    settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
+    write_paper(path, listed.result, listed.row + 1, result_file, settings)
+
+
+def write_paper(
+    path: str | Path, result: Result, rank: int, result_file: str | Path | None, settings: dict[str, Any]
+) -> None:
+    """Write a setup sheet.
+
+    Parameters
+    ----------
+    path : of a file whose name ends in .pdf, .svg or .png.
+    result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no file.
+    settings : as of :func:`workhold.drawing.result_sheet.result_details`.
+
+    Raises
+    ------
+    InputError
+        For another ending, values that cannot be, and when the file cannot be read or written.
+    """
+    from workhold.drawing.render import svg_to_png
+    from workhold.drawing.result_sheet import result_sheet
+    from workhold.drawing.scene import stacked
+
+    ending = Path(path).suffix.lower()
+    if ending not in PAPER_ENDINGS:
+        endings = ", ".join((*PAPER_ENDINGS, *MODEL_ENDINGS[:-1]))
+        raise InputError(f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}.")
+    pages = result_sheet(result, rank, result_hash=hash_of(result_file), **settings)
+    if ending == ".pdf":
+        from workhold.drawing.pdf import svg_to_pdf
+
+        write_bytes(path, svg_to_pdf(pages, settings["day"]))
+    elif ending == ".svg":
+        write_bytes(path, stacked(pages).encode("utf-8"))
+    else:
+        write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))
+
+
+def hash_of(result_file: str | Path | None) -> str:
+    """SHA-256 of a file in hexadecimal; empty where there is none.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read.
+    """
+    if result_file is None:
+        return ""
+    try:
+        with Path(result_file).open("rb") as stream:
+            return file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{result_file} cannot be read: {error.strerror or error}.") from error
+
+
+def write_model(path: str | Path, result: Result, rank: int, settings: dict[str, Any], clearance: float | None) -> None:
+    """Write the set-up for a CAM system, or the list of its pins.
+
+    Parameters
+    ----------
+    path : of a file whose name ends in .dxf, .step, .stp or .csv.
+    settings : ``unit``, ``zero``, ``dowel``, ``thickness``, ``peg_length`` and ``peg_height``, lengths in mm.
+    clearance : how far the cutter is to keep off the pegs of a DXF, in mm; None is the usual length.
+
+    Raises
+    ------
+    InputError
+        For a part zero that cannot be, and when the file cannot be written.
+    """
+    fixture, toolkit, unit = result[rank - 1], result.toolkit, settings["unit"]
+    zero, ending = part_zero(result.workpiece, settings["zero"], unit), Path(path).suffix.lower()
+    if ending == ".csv":
+        from workhold.files.pin_list import pin_list
+        from workhold.model.dowel import fit_words
+
+        fit, diameter = result.query.tolerance.fit, 2 * toolkit.carriers[0].peg_radius
+        dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
+        text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
+        write_bytes(path, text.encode("utf-8"))
+    elif ending == ".dxf":
+        from workhold.files.dxf.setup import CLEARANCE, write_setup_dxf
+
+        keep_off = CLEARANCE if clearance is None else clearance
+        write_setup_dxf(fixture, result.workpiece, toolkit, path, zero=zero, clearance=keep_off)
+    else:
+        from workhold.files.step.setup import write_setup_step
+
+        sizes = {name: settings[name] for name in SIZES}
+        write_setup_step(fixture, result.workpiece, toolkit, path, zero=zero, **sizes)

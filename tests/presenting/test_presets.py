@@ -1,0 +1,50 @@
+"""Toolkits by name from Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import workhold
+from workhold.errors import InputError
+from workhold.files.toolkit.presets import load_vise, preset_names
+
+CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence)
+
+
+def test_every_preset_is_one_of_its_class_alone() -> None:
+    """The same toolkit as the command line has by that name."""
+    listed = [(kind, name) for kind in CLASSES for name in kind.presets()]
+    assert sorted(name for _, name in listed) == sorted(preset_names())
+    for kind, name in listed:
+        assert kind.preset(name) == load_vise(name).toolkit
+        assert workhold.Tolerance.preset(name) == load_vise(name).tolerance
+
+
+def test_fields_can_be_changed() -> None:
+    assert workhold.Vise.preset("plate-20mm", columns=5, rows=4).rows == 4
+    assert workhold.OpeningVise.preset("plate-20mm").clamping == -1
+    assert workhold.Fence.preset("clamp-plate-20mm", wall_offset=10).clamp_radius == 5.0
+
+
+def test_a_file_of_ones_own_is_a_preset_too(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text('unit = "mm"\npitch = 12\ncolumns = 2\npeg_radius = 2\n')
+    assert workhold.Vise.preset(str(tmp_path / "mine.toml")).pitch == (12.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "changes", "words"),
+    [
+        (workhold.Vise, "clamp-plate-20mm", {}, "clamp-plate-20mm is a plate: ask Plate.preset for it"),
+        (workhold.Plate, "fence-20mm", {}, "fence-20mm is a fence: ask Fence.preset for it"),
+        (workhold.Vise, "plate-20", {}, "no toolkit has that name .try plate-20mm"),
+        (workhold.Vise, "plate-20mm", {"colums": 2}, "Vise cannot be made of .*colums"),
+        (workhold.Fence, "clamp-plate-20mm", {}, "wall_offset"),
+    ],
+)
+def test_what_is_no_preset_is_told_in_a_sentence(
+    kind: type[workhold.Vise], name: str, changes: dict[str, int], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        kind.preset(name, **changes)
