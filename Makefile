@@ -1,4 +1,4 @@
-# make demo | wheel | test | check | wheel-test | bench | prove | clean -- the first use makes a Python environment in .venv
+# make demo | wheel | test | check | wheel-test | docs | bench | prove | clean -- the first use makes a Python environment in .venv
 
 PYTHON ?= python3
 VENV := .venv
@@ -13,7 +13,7 @@ BUILD := PIP_CONSTRAINT=constraints.txt $(BIN)/python -m pip --disable-pip-versi
 # What the installed program is made of.
 SOURCES := $(shell find src building -name '*.py' -o -path 'src/workhold/data/*' -type f -o -path 'src/workhold/web/static/*' -type f)
 
-.PHONY: demo wheel test check wheel-test bench prove clean
+.PHONY: demo wheel test check wheel-test docs bench prove clean
 
 # Designs for the example bracket, draws the best fixtures and writes the setup sheet of the best.
 demo: $(INSTALLED)
@@ -46,6 +46,11 @@ check: $(INSTALLED_DEV)
 wheel-test: $(INSTALLED_DEV)
 	$(BIN)/python -m pytest -m wheel
 
+# The manual as a site, in site/: open site/index.html. Whatever is doubtful in it, such as a link that leads nowhere, is an error.
+docs: $(VENV)/.installed-docs,numba
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	@echo 'Open site/index.html.'
+
 # Every target of speed and memory with pass or short, and docs/benchmarks.md from the figures; BENCH=--quick tries a little.
 bench: $(INSTALLED)
 	$(INSTALL) numba
@@ -59,7 +64,7 @@ prove: $(INSTALLED_DEV)
 
 # Everything made by the above but the environment.
 clean:
-	rm -rf demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf demo site build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -path ./$(VENV) -prune -o -name __pycache__ -type d -exec rm -rf {} +
 
 $(BIN)/python:
@@ -77,7 +82,7 @@ $(INSTALLED): pyproject.toml constraints.txt $(SOURCES) | $(BIN)/python
 	fi
 	@touch $@
 
-$(INSTALLED_DEV): pyproject.toml constraints.txt | $(BIN)/python
+$(VENV)/.installed-%: pyproject.toml constraints.txt | $(BIN)/python
 	@echo 'Installing workhold and its tools into $(VENV) ...'
-	$(INSTALL) -e '.[$(EXTRAS)]'
+	$(INSTALL) -e '.[$*]'
 	@touch $@ $(INSTALLED)
