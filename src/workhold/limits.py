@@ -21,6 +21,7 @@ __all__ = [
     "MOST_RADIUS",
     "MOST_STEPS",
     "MOST_THREADS",
+    "NO_ROOM",
     "lacks_memory",
     "refuse_little_space",
     "refuse_long",
@@ -49,6 +50,8 @@ MOST_PEG_PAIRS = 500_000
 # Threads of one search.
 MOST_THREADS = 1_000
 
+# A full disk, a used up quota, a limit of the size of files.
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # What the system's loader, libraries and threads say where there is no memory for them.
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
 

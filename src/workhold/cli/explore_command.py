@@ -4,37 +4,32 @@ from __future__ import annotations
 
 import csv
 import io
-from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
-from attrs import frozen
 
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.many_toolkits import asked_vises, query_of
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.saying import tell
-from workhold.cli.search_options import QueryWords, with_fit_of
-from workhold.cli.values import length, length_unit, whole_number
+from workhold.cli.search_options import QueryWords
+from workhold.cli.values import length_unit
 from workhold.cli.vise_options import TOOLKIT
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.query import Query
     from workhold.model.restrictions import Restrictions
-    from workhold.model.tolerance import Tolerance
     from workhold.model.workpiece import Workpiece
     from workhold.search.exploring import Explored
 
 __all__ = ["explore"]
 
 SWEEP = "Vises and plates to try"
-# More vises than this are more likely a slip than a wish.
-MOST_VISES = 1000
 
 
 @spread
@@ -99,111 +94,6 @@ def explore(
     if len(found) < len(vises):
         tell(f"interrupted: {len(vises) - len(found)} vises were not tried.")
         raise typer.Exit(INTERRUPTED)
-
-
-@frozen
-class Named:
-    """A vise to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
-
-    name: str
-    kind: str
-    fields: dict[str, Any]
-    tolerance: Tolerance | None = None
-
-    def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
-        """The vise after changes, each of which has a name."""
-        name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
-        fields = {key: value for _, change in changes for key, value in change.items()}
-        return Named(name, self.kind, self.fields | fields, self.tolerance)
-
-
-def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
-    """The query for a vise, or why there is no such vise."""
-    from workhold.model.kinds import toolkit_of
-    from workhold.model.query import Query
-
-    try:
-        return Query(
-            workpiece,
-            toolkit_of(named.kind, named.fields),
-            **asked | {"tolerance": with_fit_of(asked["tolerance"], named.tolerance)},
-        )
-    except InputError as error:
-        return error
-
-
-def asked_vises(
-    names: list[str] | None,
-    toolkit: str | None,
-    pitch: str | None,
-    columns: str | None,
-    peg_radius: str | None,
-    unit: Unit,
-) -> list[Named]:
-    """The vises to try.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, lists that do not make a vise, and more than a thousand vises.
-    """
-    from workhold.files.toolkit.presets import load_vise, preset_names
-    from workhold.model.fence import Fence
-    from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of
-    from workhold.model.plate import Plate
-
-    is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
-    kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
-    if toolkit is not None and not is_kind:
-        names = [*(names or ()), toolkit]
-    lists: list[list[tuple[str, dict[str, Any]]]] = []
-    if pitch is not None:
-        lists.append([(f"pitch {word}", {"pitch": pitch_of(word, unit)}) for word in words_of("--pitch", pitch)])
-    if columns is not None:
-        numbers = [whole_number("--columns", word) for word in words_of("--columns", columns)]
-        lists.append([(f"{number} column{'s' if number != 1 else ''}", {"columns": number}) for number in numbers])
-    if peg_radius is not None:
-        radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
-        lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
-    if names is None and pitch is not None:
-        if peg_radius is None or (
-            columns is None and not issubclass(KINDS[kind or USUAL], Plate) and "columns" not in said
-        ):
-            raise InputError("a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise.")
-        bases = [Named("", kind or USUAL, dict(said))]
-    else:
-        asked = preset_names() if names is None else [name for words in names for name in words_of("--vise", words)]
-        # A kind picks those of the kind, and makes one sort of vise of another.
-        bases = [
-            Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
-            for one in map(load_vise, asked)
-            if kind is None
-            or all(issubclass(KINDS[kind], sort) == issubclass(KINDS[one.kind], sort) for sort in (Plate, Fence))
-        ]
-    vises = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
-    if len(vises) > MOST_VISES:
-        raise InputError(f"the lists combine to {len(vises)} vises: give lists that combine to {MOST_VISES} or fewer.")
-    return vises
-
-
-def words_of(option: str, text: str) -> list[str]:
-    """The entries of a list.
-
-    Raises
-    ------
-    InputError
-        When one is missing.
-    """
-    words = [word.strip() for word in text.split(",")]
-    if not all(words):
-        raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")
-    return words
-
-
-def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
-    """A pitch for both directions, or ``XxY``."""
-    x, cross, y = word.partition("x")
-    return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)
 
 
 def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:

@@ -19,9 +19,9 @@ from typer.main import get_command
 from workhold import __version__
 from workhold.cli.commands import PlainCommand, PlainGroup
 from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
-from workhold.cli.saying import NO_ROOM, forget, tell
+from workhold.cli.saying import forget, tell
 from workhold.errors import InputError
-from workhold.limits import lacks_memory, refuse_little_space
+from workhold.limits import NO_ROOM, lacks_memory, refuse_little_space
 
 __all__ = ["COMMANDS", "app", "run"]
 
@@ -68,6 +68,9 @@ COMMANDS = {
         "with its figures."
     ),
     "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
+    "batch": (
+        "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files."
+    ),
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
     "vises": "List the vises and plates that come with workhold, or show all figures of one.",

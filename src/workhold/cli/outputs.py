@@ -27,6 +27,8 @@ MARKS = (
     b"number,type,theta_deg,x,y,jaw_separation,",
     b"vise,fixtures,type_",
     b"hole,carrier,column,row,x,y,diameter,length,unit,dowel,face\n",
+    b"part,file,toolkit,",
+    b"workhold-table/1",
     b"<!-- workhold -->",
     b"tEXtSoftware\0workhold",
     b"/Producer (workhold)",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import sys
 from contextlib import suppress
@@ -10,12 +9,10 @@ from typing import TextIO
 
 import typer
 
+from workhold.limits import NO_ROOM
 from workhold.plain import plain, shortened
 
-__all__ = ["NO_ROOM", "forget", "tell"]
-
-# A full disk, a used up quota, a limit of the size of files.
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+__all__ = ["forget", "tell"]
 
 
 def tell(message: str) -> None:

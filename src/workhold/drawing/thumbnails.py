@@ -18,7 +18,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_THUMBNAILS", "best_at_a_glance", "draw_thumbnails"]
+__all__ = ["MOST_THUMBNAILS", "best_at_a_glance", "draw_thumbnail", "draw_thumbnails"]
 
 MOST_THUMBNAILS = 12
 EDGE = 32.0
@@ -26,6 +26,24 @@ HEADER = 50.0
 FOOTER = 26.0
 CAPTION = 44.0
 GAP = 14.0
+# A thumbnail by itself, in page units.
+ALONE, RIM = (320.0, 240.0), 6.0
+
+
+def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
+    """Draw one fixture as small as it can be looked at, without any words, to stand beside what is said of it.
+
+    Returns
+    -------
+    str
+        SVG text.
+    """
+    bench = bench_of(fixture, workpiece, toolkit)
+    width, height = ALONE
+    scene = Scene.page(ALONE, workpiece.name)
+    view = View.fitting(bench.extent, Box(RIM, RIM, width - RIM, height - RIM))
+    draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
+    return scene.svg()
 
 
 def draw_thumbnails(

@@ -28,6 +28,7 @@ from workhold.model.kinds import USUAL
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
@@ -35,12 +36,14 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "FORMAT",
+    "asked_entry",
     "fixture_rows",
     "head",
     "load_entry",
     "proof_entry",
     "result_text",
     "toolkit_fields",
+    "workpiece_entry",
     "written",
     "write_result",
     "write_result_to",
@@ -140,15 +143,33 @@ def with_place_again(numbers: tuple[Any, ...]) -> tuple[Any, ...]:
 
 def head(result: Result) -> dict[str, Any]:
     """Everything in the file but the fixtures, at full precision."""
-    query = result.query
     return {
         "format": FORMAT,
-        "workpiece": {
-            "name": query.workpiece.name,
-            "units": "mm",
-            "loops": [(loop + 0.0).tolist() for loop in query.workpiece.loops],
-            "departure": query.workpiece.departure,
-        },
+        "workpiece": workpiece_entry(result.workpiece),
+        **asked_entry(result.query),
+        "counts": result.counts,
+        "found": {kind: int(count) for kind, count in result.found.items()},
+        "distinct": {kind: int(count) for kind, count in result.distinct.items()},
+        "complete": bool(result.complete),
+        "notes": list(result.notes),
+        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
+        "statistics": {name: int(count) for name, count in result.statistics.items()},
+    } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
+    """A workpiece as it is written; its file has the same form."""
+    return {
+        "name": workpiece.name,
+        "units": "mm",
+        "loops": [(loop + 0.0).tolist() for loop in workpiece.loops],
+        "departure": workpiece.departure,
+    }
+
+
+def asked_entry(query: Query) -> dict[str, Any]:
+    """What a query asks about a workpiece, as it is written."""
+    return {
         **toolkit_entry(query.toolkit),
         "types": list(query.arrangements),
         "contact_margin": float(query.contact_margin),
@@ -163,14 +184,7 @@ def head(result: Result) -> dict[str, Any]:
         "best": query.best,
         **({} if query.listing is None else {"listing": query.listing}),
         "jaw_force": query.jaw_force,
-        "counts": result.counts,
-        "found": {kind: int(count) for kind, count in result.found.items()},
-        "distinct": {kind: int(count) for kind, count in result.distinct.items()},
-        "complete": bool(result.complete),
-        "notes": list(result.notes),
-        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
-        "statistics": {name: int(count) for name, count in result.statistics.items()},
-    } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+    }
 
 
 def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:

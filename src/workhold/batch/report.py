@@ -1,0 +1,241 @@
+"""The report of a batch: one page of plain HTML that needs nothing else, with what failed and why, and a table to sort.
+
+Records and sheets are linked where they stand beside the page; all else, pictures too, is in it.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections import Counter
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+from attrs import define, field, frozen
+
+from workhold.batch.store import Store
+from workhold.batch.tables import JobRow, Row
+from workhold.drawing.panel import plural
+from workhold.files.atomic import text_file
+from workhold.plain import plain
+
+__all__ = ["Report", "Summary"]
+
+# Rows on the page, and pictures among them; the tables have everything.
+MOST_ROWS, MOST_PICTURES = 5000, 400
+# What is told of a first choice: heading, column of the table of results, decimals.
+FIGURES = (
+    ("location error mm", "location_error", 3),
+    ("clamp amplification", "clamp_amplification", 2),
+    ("closure margin", "closure_margin", 3),
+    ("edge distance mm", "edge_distance", 1),
+    ("warnings", "warnings", 0),
+)
+# How a job may come out: said of one, and of some.
+STATES = {
+    "held": ("held", "held"),
+    "none": ("no fixture", "without a fixture"),
+    "refused": ("cannot be asked", "that cannot be asked"),
+    "unreadable": ("not readable", "not readable"),
+    "failed": ("failed", "failed"),
+    "open": ("not done yet", "not done yet"),
+}
+BAD = ("unreadable", "refused", "failed")
+
+HEAD = """<!DOCTYPE html>
+<!-- workhold -->
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy"
+ content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
+<title>workhold batch</title><style>
+body{font:15px/1.45 "DejaVu Sans",Verdana,Arial,sans-serif;color:#1a1a1a;margin:24px;background:#fff}
+h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}p{margin:4px 0;max-width:60em}
+table{border-collapse:collapse}th,td{padding:5px 10px;border-bottom:1px solid #d5d9df;vertical-align:middle;text-align:left}
+.box{overflow-x:auto}th{background:#eef1f5;position:sticky;top:0}th button{all:unset;cursor:pointer;font-weight:bold}
+th button:focus-visible{outline:2px solid #0b3a82}th[aria-sort=ascending] button::after{content:" \\25B2"}
+th[aria-sort=descending] button::after{content:" \\25BC"}td.n{text-align:right;font-variant-numeric:tabular-nums}
+td.bad{color:#b3122a}td.once{white-space:nowrap}small{display:block;color:#5f6670;min-width:11em;max-width:26em}
+td code{white-space:normal;display:block;max-width:26em}img{display:block;width:160px;height:120px}code{font-size:13px}
+input{font:inherit;padding:4px 8px;width:22em;max-width:90%;margin:6px 0}
+</style></head><body>
+"""
+
+SCRIPT = """<script>
+const table=document.getElementById("jobs"),body=table.tBodies[0];
+table.tHead.addEventListener("click",event=>{
+ const head=event.target.closest("th");if(!head||!event.target.closest("button"))return;
+ const up=head.getAttribute("aria-sort")!=="ascending",place=head.cellIndex;
+ for(const other of table.tHead.rows[0].cells)other.removeAttribute("aria-sort");
+ head.setAttribute("aria-sort",up?"ascending":"descending");
+ const key=row=>row.cells[place].dataset.key??row.cells[place].textContent;
+ const rows=[...body.rows].map((row,number)=>[key(row),row,number]);
+ rows.sort(([a,,i],[b,,j])=>{
+  if((a==="")!==(b===""))return a===""?1:-1;
+  const x=Number(a),y=Number(b),way=Number.isNaN(x)||Number.isNaN(y)?a.localeCompare(b,"en",{numeric:true}):x-y;
+  return way===0?i-j:up?way:-way;});
+ body.append(...rows.map(entry=>entry[1]));});
+document.getElementById("filter").addEventListener("input",event=>{
+ const words=event.target.value.toLowerCase().split(/\\s+/).filter(Boolean);
+ for(const row of body.rows){const text=row.textContent.toLowerCase();row.hidden=!words.every(word=>text.includes(word));}});
+</script></body></html>
+"""
+
+
+@frozen
+class Summary:
+    """What stands over the table.
+
+    Parameters
+    ----------
+    headline : what was asked.
+    sentences : how it went.
+    events : what happened on the way, such as the death of a worker.
+    """
+
+    headline: str
+    sentences: Sequence[str]
+    events: Sequence[str]
+
+
+@define(eq=False)
+class Report:
+    """Collects rows and writes the page.
+
+    Parameters
+    ----------
+    folder : of the page; what lies in it is linked.
+    store : of the records.
+    rows : HTML of each row on the page.
+    bad : what failed, a part and why, with the toolkits for which it holds.
+    states : how many jobs came out how.
+    left_out : how many rows there was no room for.
+    """
+
+    folder: Path
+    store: Store
+    rows: list[str] = field(factory=list, init=False)
+    bad: dict[tuple[str, str], list[str]] = field(factory=dict, init=False)
+    states: Counter[str] = field(factory=Counter, init=False)
+    pictures: int = field(default=0, init=False)
+    left_out: int = field(default=0, init=False)
+
+    def add(self, job: JobRow, sheet: Path | None = None) -> None:
+        """Take a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
+        row = job.row
+        self.states[row["state"]] += 1
+        if row["state"] in BAD and len(self.bad) < MOST_ROWS:
+            self.bad.setdefault((row["part"], row["reason"] or ""), []).append(row["toolkit"])
+        if len(self.rows) >= MOST_ROWS:
+            self.left_out += 1
+            return
+        self.rows.append(self.line(row, self.picture(job), sheet))
+
+    def picture(self, job: JobRow) -> str:
+        """The first choice of a job, as far as there is room for it."""
+        row = job.row
+        if row["state"] != "held" or self.pictures >= MOST_PICTURES:
+            return ""
+        from workhold.drawing.thumbnails import draw_thumbnail
+
+        self.pictures += 1
+        result = job.result(self.store)
+        svg = draw_thumbnail(result[0], result.workpiece, result.toolkit)
+        words = f"First choice for {row['part']} in {row['toolkit']}"
+        return f'<img alt="{told(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
+
+    def line(self, row: Row, picture: str, sheet: Path | None) -> str:
+        """The HTML of a row."""
+        state = STATES[row["state"]][0] + (", but none for a workshop" if row["fit"] is False else "")
+        why = " ".join(filter(None, (row["reason"], row["remarks"])))
+        cells = [
+            cell(picture, key=""),
+            cell(told(row["part"]) + self.ways_on(row, sheet), key=told(row["part"])),
+            cell(told(row["toolkit"]), name="once"),
+            cell(state + (f"<small>{told(why)}</small>" if why else ""), key=state, bad=row["state"] in BAD),
+            figure(row["fixtures"], 0),
+            *(figure(row[key], decimals) for _, key, decimals in FIGURES),
+            figure(row["seconds"], 2),
+            figure(row["estimated_seconds"], 2),
+        ]
+        return f"<tr>{''.join(cells)}</tr>\n"
+
+    def ways_on(self, row: Row, sheet: Path | None) -> str:
+        """How to get on from a row: its record, and its setup sheet or the line that makes it."""
+        if row["state"] != "held":
+            return ""
+        record = Path(row["record"])
+        link = (
+            f'<a href="{told(record.relative_to(self.folder).as_posix())}">the best</a>' if self.holds(record) else ""
+        )
+        if sheet is not None:
+            return f'<small>{link} <a href="{told(sheet.relative_to(self.folder).as_posix())}">setup sheet</a></small>'
+        name = Path(row["part"]).stem
+        line = f"workhold sheet {quote(str(record))} 1 --part-name {quote(name)} -o {quote(f'{name}.pdf')}"
+        return f"<small>{link}<details><summary>setup sheet</summary><code>{told(line)}</code></details></small>"
+
+    def holds(self, path: Path) -> bool:
+        """Whether a file stands beside the page."""
+        return path.is_relative_to(self.folder)
+
+    def write(self, path: Path, summary: Summary) -> None:
+        """Write the page.
+
+        Raises
+        ------
+        InputError
+            When it cannot be written.
+        """
+        headings = ["first choice", "part", "toolkit", "state", "fixtures", *(words for words, _, _ in FIGURES)]
+        headings += ["seconds", "predicted s"]
+        with text_file(path) as stream:
+            stream.write(f"{HEAD}<h1>{told(summary.headline)}</h1>\n")
+            for sentence in (self.counts, *summary.sentences):
+                stream.write(f"<p>{told(sentence)}</p>\n")
+            if self.left_out:
+                stream.write(f"<p>{self.left_out:,} further jobs are in the table of results only.</p>\n")
+            if summary.events:
+                items = "".join(f"<li>{told(event)}</li>\n" for event in summary.events)
+                stream.write(f"<h2>What happened on the way</h2>\n<ul>\n{items}</ul>\n")
+            if self.bad:
+                stream.write(f"<h2>What failed, and why</h2>\n{self.failures()}")
+            stream.write('<h2>All jobs</h2>\n<label>Only rows with <input id="filter" type="search"></label>\n')
+            heads = "".join(f'<th scope="col"><button type="button">{told(words)}</button></th>' for words in headings)
+            stream.write(f'<div class="box"><table id="jobs"><thead><tr>{heads}</tr></thead><tbody>\n')
+            stream.writelines(self.rows)
+            stream.write(f"</tbody></table></div>\n{SCRIPT}")
+
+    @property
+    def counts(self) -> str:
+        """How many jobs came out how, in a sentence."""
+        counted = [f"{self.states[state]:,} {words}" for state, (_, words) in STATES.items() if self.states[state]]
+        return f"{plural(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
+
+    def failures(self) -> str:
+        """What failed, as HTML."""
+        rows = "".join(
+            f"<tr><td>{told(part)}</td><td>{told(', '.join(toolkits))}</td><td>{told(reason)}</td></tr>\n"
+            for (part, reason), toolkits in self.bad.items()
+        )
+        heads = "".join(f'<th scope="col">{words}</th>' for words in ("part", "in", "why"))
+        return f'<div class="box"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>\n'
+
+
+def told(words: Any) -> str:
+    """Words as HTML, whatever they hold."""
+    return escape(plain(str(words)))
+
+
+def cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
+    """A cell of HTML; ``key`` is what it is sorted by, if not its text."""
+    classes = " ".join(filter(None, (name, "bad" if bad else "")))
+    attributes = (f' class="{classes}"' if classes else "") + ("" if key is None else f' data-key="{key}"')
+    return f"<td{attributes}>{content}</td>"
+
+
+def figure(value: float | None, decimals: int) -> str:
+    """A cell with a number."""
+    if value is None:
+        return cell("", name="n")
+    return cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")

@@ -1,0 +1,247 @@
+"""The two tables of a batch: a row for each job, and a row for each of the fixtures that are kept.
+
+As Parquet where pyarrow is installed, else as comma-separated values with the same columns; where nothing is known a cell is
+empty. Lengths are in mm, angles in degrees, forces in N.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Protocol
+
+from attrs import frozen
+
+from workhold.batch.jobs import Job
+from workhold.batch.measured import Measured
+from workhold.batch.records import plain_record
+from workhold.batch.store import Store
+from workhold.files.atomic import binary_file, text_file
+from workhold.model.quality import FIGURES
+from workhold.model.query import Query
+from workhold.model.result import Result
+from workhold.statics.judging import is_unfit
+
+__all__ = ["BEST", "MARK", "RESULTS", "JobRow", "has_parquet", "job_rows", "table_names", "write_tables"]
+
+# By which a table is known as one of workhold's own, see ``cli.outputs``.
+MARK = "workhold-table/1"
+FIGURE_COLUMNS = {figure.key: float for figure in FIGURES}
+RESULTS: Mapping[str, type] = {
+    **dict.fromkeys(("part", "file", "toolkit", "kind", "state"), str),
+    **dict.fromkeys(("fixtures", "distinct"), int),
+    **FIGURE_COLUMNS,
+    "fit": bool,
+    "faces": int,
+    **dict.fromkeys(("width", "height"), float),
+    **dict.fromkeys(("reason", "remarks", "record"), str),
+    **dict.fromkeys(("estimated_seconds", "seconds"), float),
+    "worker": str,
+}
+BEST: Mapping[str, type] = {
+    **dict.fromkeys(("part", "file", "toolkit"), str),
+    "rank": int,
+    **dict.fromkeys(("type", "direction"), str),
+    **dict.fromkeys(("theta_deg", "x", "y", "jaw_separation"), float),
+    **dict.fromkeys(("holes", "faces"), str),
+    **FIGURE_COLUMNS,
+    "record": str,
+}
+# Rows written together.
+BLOCK = 8192
+
+Row = dict[str, Any]
+
+
+@frozen(eq=False)
+class JobRow:
+    """A job with its row in the table of results, and the rows of its best fixtures."""
+
+    job: Job
+    row: Row
+    best: Sequence[Row]
+
+    def result(self, store: Store) -> Result:
+        """The result of a job that is done, as the command that shows it would read it."""
+        from workhold.files.result.reader import read_result
+
+        with store.file(self.job.name) as path:
+            return read_result(path)
+
+
+def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
+    """The rows of jobs, in their order."""
+    for job in jobs:
+        part, query = job.part, job.held_in.query
+        listed = part.request.listed
+        named = {"part": listed.name, "file": str(listed.path), "toolkit": job.held_in.name}
+        row: Row = dict.fromkeys(RESULTS) | named | {"remarks": " ".join(part.remarks) or None}
+        if isinstance(query, Query):
+            row["kind"] = query.toolkit.kind
+        if part.content:
+            row |= {"faces": part.faces, "width": part.size[0], "height": part.size[1]}
+        best: list[Row] = []
+        record = store.read(job.name) if job.name else None
+        if record is not None:
+            best = take_record(row, named, plain_record(record), job)
+            row["record"] = store.place(job.name)
+            best = [one | {"record": row["record"]} for one in best]
+        elif job.refusal:
+            row |= {"state": "refused" if part.content else "unreadable", "reason": job.refusal}
+        else:
+            row |= {"state": "failed" if job.failure else "open", "reason": job.failure or None}
+        if job.name:
+            seconds, worker = measured.known.get(job.name, (None, None))
+            row |= {"estimated_seconds": job.estimate, "seconds": seconds, "worker": worker}
+        yield JobRow(job, row, best)
+
+
+def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> list[Row]:
+    """Fill in a row from the record of its answer; the rows of its fixtures."""
+    if record["refusal"]:
+        row |= {"state": "refused", "reason": record["refusal"]}
+        return []
+    found = sum(record["found"].values())
+    row |= {"state": "held" if found else "none", "fixtures": found, "distinct": sum(record["distinct"].values())}
+    row["reason"] = " ".join(record["notes"]) or None
+    best = [
+        dict.fromkeys(BEST) | named | fixture_row(fixture, job) | {"rank": rank}
+        for rank, fixture in enumerate(record["fixtures"], 1)
+    ]
+    if best:
+        row |= {key: best[0][key] for key in FIGURE_COLUMNS}
+        off = record["tolerance"]["peg"] + record["tolerance"]["face"]
+        row["fit"] = not bool(is_unfit(row["closure_margin"], row["location_error"], off))
+    return best
+
+
+def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
+    """What a table tells of a fixture of a result file."""
+    from workhold.files.result.reader import peg_place
+
+    assert isinstance(job.held_in.query, Query)
+    carriers = {carrier.name: carrier for carrier in job.held_in.query.toolkit.carriers}
+    pair = fixture.get("directions")
+    direction = fixture.get("direction") if pair is None else " ".join(pair)
+    holes = []
+    for peg in fixture["pegs"]:
+        carrier, column, row = peg_place(peg, direction if pair is None else peg.get("direction"))
+        holes.append(carriers[carrier].place_name(column, row))
+    return {
+        "type": fixture["type"],
+        "direction": direction,
+        **fixture["pose"],
+        "jaw_separation": fixture.get("jaw_separation"),
+        "holes": " ".join(holes),
+        "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
+        **fixture["quality"],
+    }
+
+
+def has_parquet() -> bool:
+    """Whether tables can be written as Parquet here."""
+    return find_spec("pyarrow") is not None
+
+
+def table_names() -> tuple[str, str]:
+    """The files of the two tables, as they can be written here."""
+    ending = "parquet" if has_parquet() else "csv"
+    return f"results.{ending}", f"best.{ending}"
+
+
+class Rows(Protocol):
+    """What takes rows of a table."""
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Write some rows."""
+
+
+def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
+    """Write both tables of a folder, which take their names when the rows have ended; the rows go on to the caller.
+
+    Raises
+    ------
+    InputError
+        When a table cannot be written.
+    """
+    table = parquet_table if has_parquet() else csv_table
+    with ExitStack() as files:
+        results, best = (
+            files.enter_context(table(folder / name, columns))
+            for name, columns in zip(table_names(), (RESULTS, BEST), strict=True)
+        )
+        waiting: list[JobRow] = []
+        for row in rows:
+            waiting.append(row)
+            if len(waiting) == BLOCK:
+                add_all(waiting, results, best)
+            yield row
+        add_all(waiting, results, best)
+
+
+def add_all(waiting: list[JobRow], results: Rows, best: Rows) -> None:
+    """Write the rows that wait."""
+    results.add([one.row for one in waiting])
+    best.add([row for one in waiting for row in one.best])
+    waiting.clear()
+
+
+@frozen
+class CsvRows:
+    """Rows of comma-separated values."""
+
+    writer: Any
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Write some rows; see :class:`Rows`."""
+        self.writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
+
+
+def cell(value: Any) -> Any:
+    """A value as a cell shows it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.12g}" if isinstance(value, float) else value
+
+
+@contextmanager
+def csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[Rows]:
+    """A table as comma-separated values."""
+    with text_file(path) as stream:
+        writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
+        writer.writeheader()
+        yield CsvRows(writer)
+
+
+@frozen
+class ParquetRows:
+    """Rows of a Parquet file."""
+
+    writer: Any
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Write some rows; see :class:`Rows`."""
+        import pyarrow
+
+        if rows:
+            self.writer.write_table(pyarrow.Table.from_pylist(list(rows), schema=self.writer.schema))
+
+
+@contextmanager
+def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[Rows]:
+    """A table as Parquet; the same rows give the same bytes."""
+    import pyarrow
+    from pyarrow import parquet
+
+    kinds = {str: pyarrow.string(), int: pyarrow.int64(), float: pyarrow.float64(), bool: pyarrow.bool_()}
+    schema = pyarrow.schema([(name, kinds[kind]) for name, kind in columns.items()])
+    with (
+        binary_file(path) as stream,
+        parquet.ParquetWriter(stream, schema, compression="zstd", store_schema=False) as writer,
+    ):
+        yield ParquetRows(writer)
+        # Beside the schema it would stand too far from the end to be looked for.
+        writer.add_key_value_metadata({"made by": MARK})

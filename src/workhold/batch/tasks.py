@@ -1,0 +1,228 @@
+"""What a worker does: a task comes in, its record goes out. A worker needs nothing but the task and this program.
+
+Outcomes depend on nothing but the task, to the byte; only what they took is told beside them.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Mapping
+from io import StringIO
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from attrs import define, evolve, field, frozen
+
+from workhold.batch.naming import program
+from workhold.batch.records import part_record, plain_record, refusal_record, workpiece_of
+from workhold.errors import InputError, WorkholdError
+from workhold.limits import NO_ROOM, lacks_memory
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result
+
+__all__ = ["Answering", "Outcome", "Reading", "Task", "done"]
+
+
+@frozen
+class Task:
+    """A piece of work.
+
+    Parameters
+    ----------
+    name : see ``batch.naming``.
+    title : what it is called where people see it.
+    program : of the sender; a worker with another one would give other outcomes.
+    """
+
+    name: str
+    title: str
+    program: str = field(factory=program, kw_only=True)
+
+    def prepare(self) -> None:
+        """Load what the work needs.
+
+        Raises
+        ------
+        InputError
+            When this machine lacks something.
+        """
+        raise NotImplementedError
+
+    def record(self) -> bytes:
+        """Do the work.
+
+        Raises
+        ------
+        InputError
+            For what cannot be read or asked.
+        """
+        raise NotImplementedError
+
+
+@frozen
+class Reading(Task):
+    """Read a drawing.
+
+    Parameters
+    ----------
+    ending : of its file's name, which tells what it is.
+    content : of the file.
+    options : keyword arguments of ``files.part.load.read_workpiece``.
+    """
+
+    ending: str
+    content: bytes = field(repr=False)
+    options: Mapping[str, Any]
+
+    def prepare(self) -> None:
+        """Load the readers' kernels."""
+        import workhold.geometry.loop
+        import workhold.kernels.base.distance  # noqa: F401
+
+    def record(self) -> bytes:
+        """The part; see :meth:`Task.record`."""
+        from workhold.files.part_list import ListedPart, read_listed
+
+        with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
+            path = Path(folder) / f"part{self.ending}"
+            path.write_bytes(self.content)
+            read = read_listed(ListedPart("part", path), **self.options)
+        if read.loaded is None:
+            # Its user knows the file by another name.
+            raise InputError(read.refusal.removeprefix(f"{path.name}: "))
+        return part_record(read.loaded.workpiece, read.loaded.remarks)
+
+
+@frozen
+class Answering(Task):
+    """Find the fixtures of a part in a toolkit.
+
+    Parameters
+    ----------
+    part : the record of its drawing.
+    query : what is asked, of another part whose place it takes.
+    best : how many of the fixtures, the best, to keep; all are counted.
+    """
+
+    part: bytes = field(repr=False)
+    query: Query
+    best: int
+
+    def prepare(self) -> None:
+        """Load the search."""
+        import workhold.search.design  # noqa: F401
+
+    def record(self) -> bytes:
+        """The result file; see :meth:`Task.record`."""
+        from workhold.files.result.writer import write_result_to
+        from workhold.search.design import answer
+
+        query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
+        with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
+            kept = FirstFixtures(self.best, Path(folder))
+            result = answer(query, threads=1, receiver=kept)
+        table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
+        text = StringIO()
+        write_result_to(evolve(result, query=evolve(query, best=self.best), table=table), text)
+        return text.getvalue().encode()
+
+
+@define(eq=False)
+class FirstFixtures:
+    """Takes the fixtures of an answer, and keeps the first few of them; the others are never in memory all at once.
+
+    Parameters
+    ----------
+    most : how many to keep.
+    folder : where there is room for what is being sorted.
+    table : those kept.
+    """
+
+    most: int
+    folder: Path
+    table: FixtureTable | None = None
+
+    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
+        """Take them, best first."""
+        for table in tables:
+            first = table.take(np.arange(min(self.most - self.count, len(table))))
+            self.table = first if self.table is None else FixtureTable.joined([self.table, first])
+            if self.count == self.most:
+                return
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return 0 if self.table is None else len(self.table)
+
+
+@frozen
+class Outcome:
+    """What came of a task.
+
+    Parameters
+    ----------
+    name : of the task.
+    record : to keep; None where there is none, because the task failed in a way that may not come again, or because the
+        worker has put it where it belongs.
+    failure : why there is none, in a sentence; empty otherwise.
+    seconds : that the work took.
+    worker : who did it.
+    has_no_room : whether it failed for want of room on a disk, as others will.
+    """
+
+    name: str
+    record: bytes | None = field(repr=False)
+    failure: str = ""
+    seconds: float = 0.0
+    worker: str = ""
+    has_no_room: bool = False
+
+
+def done(task: Task, worker: str = "") -> Outcome:
+    """Do a task, whatever comes of it."""
+    start = perf_counter()
+    record, failure, has_no_room = None, "", False
+    try:
+        make_ready(task)
+        record = task.record()
+    except InputError as error:
+        record = refusal_record(str(error))
+    except UnfitWorkerError as error:
+        failure = str(error)
+    except Exception as error:
+        if lacks_memory(error):
+            failure = (
+                "This needs more memory than its worker may take: give it to fewer workers, or to a larger machine."
+            )
+        elif isinstance(error, OSError):
+            failure = f"The system refused something the work needs: {error.strerror or error}."
+            has_no_room = error.errno in NO_ROOM
+        else:
+            failure = f"A mistake of workhold, not of yours ({type(error).__name__}: {error}); please report it."
+    return Outcome(task.name, record, failure, perf_counter() - start, worker, has_no_room)
+
+
+class UnfitWorkerError(WorkholdError):
+    """A worker cannot do a task that others can."""
+
+
+def make_ready(task: Task) -> None:
+    """Prepare for a task.
+
+    Raises
+    ------
+    UnfitWorkerError
+        When the worker has another program, or lacks something.
+    """
+    if task.program != program():
+        raise UnfitWorkerError(
+            f"The worker has another workhold than the one that asks ({program()} and {task.program}): install the same on "
+            "both."
+        )
+    try:
+        task.prepare()
+    except InputError as error:
+        raise UnfitWorkerError(str(error)) from error

@@ -1,0 +1,236 @@
+"""Workers on this machine: processes that are kept ready, each doing one task after the other on one processor.
+
+They are started anew, not forked, hear no Ctrl-C, which is for who started them, and end when the pipe to them does: so none
+is left behind, however this process ends (``web.worker``).
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections import Counter, deque
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from itertools import islice
+from multiprocessing import get_context, resource_tracker
+from multiprocessing.connection import Connection, wait
+from threading import Event
+from typing import Any
+
+from attrs import define, evolve, field
+
+from workhold.batch.queues import MOST_TRIES, Watcher
+from workhold.batch.tasks import Outcome, Task, done
+from workhold.errors import InputError
+from workhold.web.worker import Order, worker_main
+
+__all__ = ["LocalWorkers", "processor_count"]
+
+# Seconds between looks at whether to stop.
+LOOK = 0.1
+# Workers that end before they are ready, one after the other, before all is given up.
+MOST_FAILED_STARTS = 3
+# Bytes of address space that a worker has at least; it takes a third of this before any work.
+LEAST_MEMORY = 2 << 30
+# Seconds that no task takes: there is no limit to its time.
+ENDLESS = 1e8
+
+
+def processor_count() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def memory_share(workers: int) -> int:
+    """Bytes that each of some workers may take: an equal share of this machine's memory, but enough to work with."""
+    try:
+        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        whole = 0
+    return max(whole // workers, LEAST_MEMORY)
+
+
+def do_task(task: Task, order: Order) -> Outcome:
+    """Do a task in a worker."""
+    return done(task)
+
+
+def worker(connection: Connection, memory_bytes: int) -> None:
+    """The main function of a worker."""
+    worker_main(connection, memory_bytes, {"task": do_task}, lambda: None)
+
+
+@define(eq=False)
+class Worker:
+    """A worker process and what it has in hand."""
+
+    title: str
+    process: Any
+    connection: Connection
+    is_ready: bool = False
+    task: Task | None = None
+
+    def end(self) -> None:
+        """End the process at once and let go of it."""
+        self.process.kill()
+        self.process.join()
+        with suppress(OSError):
+            self.connection.close()
+
+
+@define(eq=False)
+class LocalWorkers:
+    """A queue of worker processes; use it in a ``with`` block, which ends them.
+
+    Parameters
+    ----------
+    count : how many.
+    watcher : is told what happens.
+    memory_bytes : that each may take; None is an equal share of this machine's.
+    """
+
+    count: int
+    watcher: Watcher
+    memory_bytes: int | None = None
+    workers: list[Worker] = field(factory=list, init=False)
+    failed_starts: int = field(default=0, init=False)
+
+    def __enter__(self) -> LocalWorkers:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        while self.workers:
+            self.workers.pop().end()
+
+    def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
+        """See :class:`workhold.batch.queues.Queue`."""
+        waiting: deque[Task] = deque()
+        deaths = Counter[str]()
+        while not stop.is_set():
+            waiting.extend(islice(tasks, max(self.count - len(waiting), 0)))
+            self.hand_out(waiting)
+            if not any(one.task for one in self.workers) and not waiting:
+                return
+            for one in self.heard():
+                outcome = self.hear(one)
+                if outcome is None and one.task is not None and one not in self.workers:
+                    deaths[one.task.name] += 1
+                    outcome = self.lost(one, one.task, deaths[one.task.name])
+                    if outcome is None:
+                        waiting.appendleft(one.task)
+                if outcome is not None:
+                    yield outcome
+        # What was begun is given up; its worker could not be told to stop at once.
+        for one in [one for one in self.workers if one.task is not None]:
+            self.drop(one)
+
+    def hand_out(self, waiting: deque[Task]) -> None:
+        """Give what waits to the workers that are ready, and start some where there are too few of them."""
+        for one in self.workers:
+            if waiting and one.is_ready and one.task is None:
+                self.give(one, waiting.popleft())
+        free = sum(one.task is None for one in self.workers)
+        for _ in range(min(len(waiting) - free, self.count - len(self.workers))):
+            self.workers.append(self.started(self.free_title()))
+
+    def free_title(self) -> str:
+        """What a further worker is called."""
+        taken = {one.title for one in self.workers}
+        return next(title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken)
+
+    def started(self, title: str) -> Worker:
+        """Start a worker."""
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        memory = memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
+        process = context.Process(target=worker, args=(theirs, memory), daemon=True)
+        with deaf_children():
+            process.start()
+        theirs.close()
+        return Worker(title, process, ours)
+
+    def give(self, one: Worker, task: Task) -> None:
+        """Give a task to a worker; that a dead one cannot take it shows when it is heard."""
+        one.task = task
+        self.watcher.begun(one.title, task.title)
+        with suppress(OSError):
+            one.connection.send((1, "task", ENDLESS, task))
+
+    def heard(self) -> list[Worker]:
+        """The workers that have something to say, or are no more, after a moment at most."""
+        ready = wait([one.connection for one in self.workers], LOOK)
+        return [one for one in self.workers if one.connection in ready]
+
+    def hear(self, one: Worker) -> Outcome | None:
+        """What a worker says: an outcome; None when it is ready for the first time, or is no more."""
+        try:
+            kind, _, value = one.connection.recv()
+        except (EOFError, OSError):
+            self.drop(one)
+            if not one.is_ready:
+                self.refuse_failed_starts(one)
+            return None
+        if kind == "ready":
+            one.is_ready, self.failed_starts = True, 0
+            return None
+        task, one.task = one.task, None
+        self.watcher.ended(one.title)
+        assert task is not None
+        if kind != "done":
+            return Outcome(task.name, None, str(value), worker=one.title)
+        outcome: Outcome = value
+        return evolve(outcome, worker=one.title)
+
+    def drop(self, one: Worker) -> None:
+        """Let go of a worker."""
+        self.workers.remove(one)
+        one.end()
+        self.watcher.ended(one.title)
+
+    def refuse_failed_starts(self, one: Worker) -> None:
+        """Refuse to go on when one worker after the other ends before it is ready.
+
+        Raises
+        ------
+        InputError
+            With what ended the last of them.
+        """
+        self.failed_starts += 1
+        if self.failed_starts >= MOST_FAILED_STARTS:
+            raise InputError(
+                f"worker processes cannot be started: {self.failed_starts} in a row ended {ended_by(one)} before they were "
+                "ready; give them more memory, or fewer of them."
+            )
+
+    def lost(self, one: Worker, task: Task, times: int) -> Outcome | None:
+        """Tell of a worker that died with a task in hand; the failure of the task where it was not the first time."""
+        how = ended_by(one)
+        if times < MOST_TRIES:
+            self.watcher.told(f"{one.title} ended {how} while it worked on {task.title}, which is tried again.")
+            return None
+        self.watcher.told(f"{one.title} ended {how} while it worked on {task.title}, for the second time.")
+        words = f"Two workers ended, the last {how}, while they worked on this: it may need more memory than there is."
+        return Outcome(task.name, None, words, worker=one.title)
+
+
+def ended_by(one: Worker) -> str:
+    """How a worker that is no more ended, in words."""
+    code = one.process.exitcode
+    return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
+
+
+@contextmanager
+def deaf_children() -> Iterator[None]:
+    """Let a process that is started meanwhile not hear Ctrl-C, from its first moment on; this one hears it afterwards."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # It would let Ctrl-C through again when it is started.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,253 @@
+"""``workhold batch``: every part with every toolkit, on all processors or on a cluster."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from workhold.cli.batch_progress import batch_progress
+from workhold.cli.commands import option, spread
+from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
+from workhold.cli.many_toolkits import Named, asked_vises, query_of, words_of
+from workhold.cli.options import PartWords
+from workhold.cli.outputs import ForceOption, refuse_output_folder
+from workhold.cli.saying import tell
+from workhold.cli.search_options import QueryWords
+from workhold.cli.values import length_unit, optional_count
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from workhold.batch.jobs import HeldIn, Request
+    from workhold.batch.measured import Measured
+    from workhold.batch.queues import Queue
+    from workhold.batch.report import Report
+    from workhold.batch.run import Batch
+    from workhold.batch.store import Store
+
+__all__ = ["batch"]
+
+TOOLKITS, WORK = "Toolkits to try", "The work"
+# Fixtures that are kept of each job.
+USUAL_BEST = "10"
+RECORDS, MEASURED, REPORT, SHEETS = "work", "measured.csv", "report.html", "sheets"
+# Parts told on the terminal that cannot be read or failed; the report names all.
+MOST_TOLD = 10
+
+PartsArgument = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="PARTS...",
+        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each with its part, "
+        "toolkits, restrictions and loads.",
+    ),
+]
+SheetsOption = Annotated[
+    bool,
+    typer.Option("--sheets", help="Write the setup sheet of each first choice as PDF.", rich_help_panel="Results"),
+]
+
+
+@spread
+def batch(
+    parts: PartsArgument,
+    *,
+    toolkit: list[str] | None = option(
+        TOOLKITS,
+        "NAMES|FILES",
+        "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, plate, fence) "
+        "with the lists below. May be repeated.",
+        "--toolkit",
+        "--toolkits",
+    ),
+    pitch: str | None = option(TOOLKITS, "LIST", "Pitches, such as 8,10,12.5 or 10x12.5."),
+    columns: str | None = option(TOOLKITS, "LIST", "Numbers of columns, such as 1,2,4."),
+    peg_radius: str | None = option(TOOLKITS, "LIST", "Peg radii, such as 2.5,3."),
+    words: QueryWords,
+    out: str = option(
+        "Results", "DIR", "The folder for tables, report and records; the same again goes on.", default=""
+    ),
+    best: str = option("Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST),
+    sheets: SheetsOption = False,
+    force: ForceOption = False,
+    workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
+    reading: PartWords,
+) -> None:
+    """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
+
+    What is done is kept as it comes: the same command again, after whatever ended the first, goes on where that stopped. A
+    part that cannot be read is a row with the reason.
+
+    Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
+    """
+    if not out:
+        raise InputError("the folder for the results is not given: name one with --out.")
+    kept = optional_count("--best", best) or 1
+    count = optional_count("--workers", workers)
+    folder = Path(out)
+    from workhold.batch.tables import has_parquet, table_names
+
+    names = (*table_names(), REPORT)
+    refuse_output_folder(folder, names, (*parts, words.loads), force)
+    requests = requests_of(parts, toolkit, pitch, columns, peg_radius, words, reading, folder)
+    from workhold.batch.measured import Measured
+    from workhold.batch.run import Work, run_batch
+    from workhold.batch.store import FolderStore
+    from workhold.batch.workers import LocalWorkers, processor_count
+    from workhold.kernels.base.compiling import is_first_run
+
+    store = FolderStore(folder / RECORDS)
+    start = perf_counter()
+    with ask_to_stop("what is done is kept, tables and report are written") as stop:
+        keep_what_is_found()
+        if is_first_run():
+            from workhold.cli.warming import compile_kernels
+
+            compile_kernels(stop)
+        with batch_progress() as progress, ExitStack() as workshop:
+            queue: Queue = workshop.enter_context(LocalWorkers(count or processor_count(), progress))
+            measured = Measured(folder / MEASURED)
+            done = run_batch(requests, kept, Work(store, queue, measured, progress, stop))
+    spent = perf_counter() - start
+    report = write_all(done, store, measured, folder, spent, progress.events, sheets)
+    from workhold.cli.tables import print_tables
+
+    for part, reason in list(report.bad)[:MOST_TOLD]:
+        tell(f"{part}: {reason}")
+    if len(report.bad) > MOST_TOLD:
+        tell(f"and {len(report.bad) - MOST_TOLD:,} more, which the report names.")
+    print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
+    if not has_parquet():
+        tell("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
+    if not done.is_complete:
+        tell("interrupted: start the same command again to go on.")
+        raise typer.Exit(INTERRUPTED)
+
+
+def requests_of(
+    parts: Sequence[str],
+    toolkit: list[str] | None,
+    pitch: str | None,
+    columns: str | None,
+    peg_radius: str | None,
+    words: QueryWords,
+    reading: PartWords,
+    folder: Path,
+) -> list[Request]:
+    """What is asked of each part, in the order of the command line.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing, parts that do not exist, and jobs without a toolkit.
+    """
+    from attrs import evolve
+
+    from workhold.batch.jobs import Request
+    from workhold.cli.job_file import JOB_ENDINGS, read_jobs
+    from workhold.files.part_list import part_list
+
+    unit = length_unit(reading.unit)
+    lists = pitch is not None or toolkit is not None
+    named = asked_toolkits(toolkit, pitch, columns, peg_radius, reading) if lists else None
+    words.asked(unit)
+    requests = []
+    plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
+    if plain:
+        if named is None:
+            raise InputError("no toolkit is given: name one or more with --toolkit (see workhold vises).")
+        options, held_in = reading.options(), held_in_all(named, words, reading)
+        requests = [Request(part, options, held_in) for part in part_list(plain, [folder])]
+    for name in parts:
+        if name in plain:
+            continue
+        for job in read_jobs(Path(name)):
+            try:
+                own_reading, own_words = evolve(reading, **job.reading), evolve(words, **job.query)
+                own = named
+                if job.toolkits is not None:
+                    own = asked_toolkits(list(job.toolkits), None, None, None, own_reading)
+                if own is None:
+                    raise InputError("no toolkit is given: name one or more under toolkit, or for all of them.")
+                options, held_in = own_reading.options(), held_in_all(own, own_words, own_reading)
+                requests += [Request(part, options, held_in) for part in part_list([job.part], [folder])]
+            except InputError as error:
+                raise InputError(f"{job.place}: {error}") from error
+    return requests
+
+
+def asked_toolkits(
+    names: list[str] | None, pitch: str | None, columns: str | None, peg_radius: str | None, reading: PartWords
+) -> list[Named]:
+    """The toolkits of names, files and lists; of several names one may be a kind.
+
+    Raises
+    ------
+    InputError
+        See :func:`workhold.cli.many_toolkits.asked_vises`.
+    """
+    from workhold.model.kinds import ALIASES, KINDS
+
+    words = [word for text in names or () for word in words_of("--toolkit", text)]
+    kinds = [word for word in words if word.lower() in (*KINDS, *ALIASES)]
+    if len(kinds) > 1:
+        raise InputError(f"{kinds[0]} and {kinds[1]} are two kinds of toolkit: give one, and others by name or file.")
+    others = [word for word in words if word not in kinds]
+    if kinds and pitch is None and not others:
+        raise InputError(f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits.")
+    kind = kinds[0] if kinds else None
+    return asked_vises(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
+
+
+def held_in_all(named: Sequence[Named], words: QueryWords, reading: PartWords) -> list[HeldIn]:
+    """What is asked in each toolkit.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    from workhold.batch.jobs import ANY_PART, HeldIn
+
+    asked = words.asked(length_unit(reading.unit))
+    return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
+
+
+def run_sentence(done: Batch, spent: float) -> str:
+    """How the run went."""
+    from workhold.cli.tables import plural
+
+    before = f"; {done.kept:,} were known from before" if done.kept else ""
+    return f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
+
+
+def write_all(
+    done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
+) -> Report:
+    """Write tables, report and, where asked for, sheets.
+
+    Raises
+    ------
+    InputError
+        When they cannot be written.
+    """
+    from workhold.batch.report import Summary
+    from workhold.batch.results import write_results
+    from workhold.cli.tables import plural
+    from workhold.version import __version__
+
+    toolkits = len({job.held_in.name for job in done.jobs})
+    headline = f"{plural(len(done.parts), 'part')} in {plural(toolkits, 'toolkit')}"
+    sentences = [
+        run_sentence(done, spent),
+        f"Made by workhold {__version__}; the tables beside this page have every figure.",
+    ]
+    if not done.is_complete:
+        sentences.append("The run was interrupted: the same command again goes on.")
+    where = folder / SHEETS if sheets and done.is_complete else None
+    return write_results(done, store, measured, folder, REPORT, Summary(headline, sentences, events), where)

@@ -1,0 +1,129 @@
+"""A queue in this process, tasks that fail in chosen ways, and what looks on; importable by worker processes too."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Event
+
+from attrs import define, field, frozen
+
+from workhold.batch.jobs import ANY_PART, HeldIn, Request
+from workhold.batch.measured import Measured
+from workhold.batch.records import refusal_record
+from workhold.batch.run import Batch, Work, run_batch
+from workhold.batch.store import FolderStore
+from workhold.batch.tasks import Outcome, Task, done
+from workhold.errors import InputError
+from workhold.files.part_list import part_list
+from workhold.model.query import Query
+from workhold.model.vise import Vise
+
+COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
+FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))
+IMPOSSIBLE = HeldIn("impossible", InputError("there is no such vise."))
+
+
+@define
+class Onlooker:
+    """Counts along and remembers what it was told."""
+
+    stages: list[tuple[str, int]] = field(factory=list)
+    done: int = 0
+    sentences: list[str] = field(factory=list)
+
+    def stage(self, doing: str, count: int, seconds: float) -> None:
+        self.stages.append((doing, count))
+
+    def one_done(self, seconds: float) -> None:
+        self.done += 1
+
+    def begun(self, worker: str, title: str) -> None:
+        pass
+
+    def ended(self, worker: str) -> None:
+        pass
+
+    def told(self, sentence: str) -> None:
+        self.sentences.append(sentence)
+
+
+@define
+class InlineQueue:
+    """Does tasks in this process, until it has done so many; remembers their titles."""
+
+    most: int | None = None
+    titles: list[str] = field(factory=list)
+
+    def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
+        for task in tasks:
+            if self.most is not None and len(self.titles) >= self.most:
+                stop.set()
+                return
+            self.titles.append(task.title)
+            yield self.outcome(task)
+
+    def outcome(self, task: Task) -> Outcome:
+        return done(task, "inline")
+
+
+def run_in(
+    folder: Path, *given: object, queue: InlineQueue, held_in: tuple[HeldIn, ...] = (COARSE,), best: int = 3
+) -> Batch:
+    """Run a batch of parts into a folder."""
+    requests = [Request(part, {}, held_in) for part in part_list([str(one) for one in given])]
+    measured = Measured(folder / "measured.csv")
+    return run_batch(requests, best, Work(FolderStore(folder / "work"), queue, measured, Onlooker(), Event()))
+
+
+def records_in(folder: Path) -> dict[str, bytes]:
+    """All records of a folder, by their paths."""
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(folder.rglob("work/*/*.json"))}
+
+
+@frozen
+class Fatal(Task):
+    """Ends its own process, as often as it is told to."""
+
+    folder: Path
+    times: int
+
+    def prepare(self) -> None:
+        pass
+
+    def record(self) -> bytes:
+        for time in range(self.times):
+            try:
+                (self.folder / f"{self.name}-{time}").touch(exist_ok=False)
+            except FileExistsError:
+                continue
+            os.kill(os.getpid(), signal.SIGKILL)
+        return refusal_record(f"{self.name} was done.")
+
+
+@frozen
+class Failing(Task):
+    """Raises an error."""
+
+    error: Exception
+
+    def prepare(self) -> None:
+        pass
+
+    def record(self) -> bytes:
+        raise self.error
+
+
+@frozen
+class Unprepared(Failing):
+    """Lacks something that it needs."""
+
+    def prepare(self) -> None:
+        raise self.error
+
+
+def ends_at_once(connection: object, memory_bytes: int) -> None:
+    """The main function of a worker that ends before it is ready."""
+    os._exit(3)

@@ -1,0 +1,111 @@
+"""The report: whole in one file, harmless whatever parts are called, and sorted by a click."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
+from test_run import square
+
+from workhold.batch import report as module
+from workhold.batch.measured import Measured
+from workhold.batch.report import Report, Summary
+from workhold.batch.results import write_results
+from workhold.batch.store import FolderStore
+from workhold.cli.outputs import is_own
+
+HOSTILE = '<script>alert(1)</script>\x1b[31m & ".json'
+
+
+class Page(HTMLParser):
+    """What a page refers to, and its words."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.scripts = 0
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.scripts += tag == "script"
+        self.links += [value or "" for name, value in attributes if name in ("href", "src")]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Report]:
+    """The report of a few parts, with sheets."""
+    folder = tmp_path_factory.mktemp("report")
+    parts = [square(folder / f"p{side}.json", side) for side in (30, 44, 52)]
+    parts.append(square(folder / "other.json", 47))
+    hostile = folder / HOSTILE.replace("/", "")
+    hostile.write_text("{")
+    batch = run_in(folder, *parts, hostile, queue=InlineQueue(), held_in=(COARSE, IMPOSSIBLE))
+    summary = Summary("Parts & <tools>", ["It went well."], ["worker 1 ended <by> signal 9."])
+    store, measured = FolderStore(folder / "work"), Measured(folder / "measured.csv")
+    report = write_results(batch, store, measured, folder, "report.html", summary, folder / "sheets")
+    return folder, report
+
+
+def test_the_page_needs_nothing_else(written: tuple[Path, Report]) -> None:
+    folder, report = written
+    text = (folder / "report.html").read_text()
+    page = Page(text)
+    assert page.scripts == 1 and "\x1b" not in text and "<by>" not in text and "<tools>" not in text
+    outside = [link for link in page.links if not link.startswith("data:image/svg+xml;base64,")]
+    assert len(page.links) - len(outside) == 4
+    assert len(outside) == 8 and all((folder / link).is_file() for link in outside)
+    assert not re.search(r"(?:https?:)?//[a-z]", re.sub(r"base64,[^\"]*", "", text))
+    assert is_own(folder / "report.html")
+    assert report.counts == "10 jobs: 4 held, 4 that cannot be asked, 2 not readable."
+    for words in ("It went well.", "worker 1 ended", "there is no such vise.", "not valid JSON"):
+        assert words in text
+
+
+def test_what_there_is_no_room_for_is_told(
+    written: tuple[Path, Report], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "MOST_ROWS", 2)
+    monkeypatch.setattr(module, "MOST_PICTURES", 1)
+    folder = written[0]
+    batch = run_in(folder, folder / "p30.json", folder / "p44.json", folder / "p52.json", queue=InlineQueue(0))
+    store = FolderStore(folder / "work")
+    write_results(batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), None)
+    text = (tmp_path / "r.html").read_text()
+    assert "1 further jobs are in the table of results only." in text
+    assert text.count("<tr>") == 3 and text.count("<img") == 1
+    # The line that makes the sheet.
+    assert f"workhold sheet {store.place(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf" in text
+
+
+def test_rows_are_sorted_and_chosen_in_a_browser(written: tuple[Path, Report]) -> None:
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright")
+    if not Path("/usr/bin/chromium").exists():
+        pytest.skip("needs /usr/bin/chromium")
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+        page = browser.new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda message: errors.append(message.text))
+        page.goto((written[0] / "report.html").as_uri())
+
+        def column(place: int) -> list[str]:
+            return page.locator(f"#jobs tbody tr:visible td:nth-child({place})").evaluate_all(
+                "cells => cells.map(cell => cell.dataset.key ?? cell.textContent)"
+            )
+
+        for downward in (False, True):
+            page.get_by_role("button", name="fixtures").click()
+            numbers = [float(text) for text in column(5) if text]
+            assert len(numbers) == 4 and numbers == sorted(numbers, reverse=downward)
+            assert column(5)[4:] == [""] * 6
+        page.get_by_role("button", name="part", exact=True).click()
+        names = [name for text in column(2) if (name := Path(text).name).startswith("p")]
+        assert names == ["p30.json"] * 2 + ["p44.json"] * 2 + ["p52.json"] * 2
+        page.get_by_label("Only rows with").fill("coarse p4")
+        assert [Path(text).name for text in column(2)] == ["p44.json"]
+        assert errors == []
+        browser.close()

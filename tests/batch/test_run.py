@@ -1,0 +1,207 @@
+"""A batch: records alone tell what is done, and no part, failure or full disk ends more than it must."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from pathlib import Path
+
+import pytest
+from attrs import define
+from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, run_in
+
+from workhold.batch import store as store_module
+from workhold.batch.measured import Measured
+from workhold.batch.store import FolderStore
+from workhold.batch.tables import job_rows
+from workhold.batch.tasks import Outcome, Task, done
+from workhold.errors import InputError
+
+
+def square(path: Path, side: float, name: str = "square") -> Path:
+    """A file with a square with a cut corner."""
+    loops = [[[0, 0, 0], [side, 0, 0], [side, side - 8, 0], [side - 5, side, 0], [0, side, 0]]]
+    path.write_text(json.dumps({"name": name, "units": "mm", "loops": loops}))
+    return path
+
+
+@pytest.fixture
+def shop(tmp_path: Path) -> Path:
+    """Three parts, of which two are equal, and one that cannot be read."""
+    folder = tmp_path / "shop"
+    folder.mkdir()
+    square(folder / "a.json", 30)
+    square(folder / "b.json", 44)
+    square(folder / "copy.json", 30, "another name")
+    (folder / "bad.json").write_text("{")
+    return folder
+
+
+def states_of(batch: object, folder: Path) -> dict[tuple[str, str], str]:
+    rows = job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))  # type: ignore[attr-defined]
+    return {(one.row["part"], one.row["toolkit"]): one.row["state"] for one in rows}
+
+
+def test_every_part_with_every_toolkit_is_a_row(shop: Path, tmp_path: Path) -> None:
+    batch = run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, IMPOSSIBLE))
+    assert states_of(batch, tmp_path) == {
+        ("a.json", "coarse"): "held",
+        ("a.json", "impossible"): "refused",
+        ("b.json", "coarse"): "held",
+        ("b.json", "impossible"): "refused",
+        ("bad.json", "coarse"): "unreadable",
+        ("bad.json", "impossible"): "unreadable",
+        ("copy.json", "coarse"): "held",
+        ("copy.json", "impossible"): "refused",
+    }
+    assert batch.is_complete
+    reasons = {job.refusal for job in batch.jobs}
+    assert "there is no such vise." in reasons and any("not valid JSON" in reason for reason in reasons)
+
+
+def test_equal_parts_share_a_task_and_the_longest_comes_first(shop: Path, tmp_path: Path) -> None:
+    queue = InlineQueue()
+    batch = run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE))
+    jobs = [title for title in queue.titles if " in " in title]
+    assert jobs == ["b.json in fine", "b.json in coarse", "a.json in fine", "a.json in coarse"]
+    assert (batch.fresh, batch.kept) == (4, 0)
+
+
+def test_a_second_run_redoes_nothing(shop: Path, tmp_path: Path) -> None:
+    run_in(tmp_path, shop, queue=InlineQueue())
+    before = records_in(tmp_path)
+    (shop / "a.json").rename(shop / "renamed.json")
+    again = run_in(tmp_path, shop, queue=InlineQueue(0))
+    assert again.is_complete and (again.fresh, again.kept) == (0, 2)
+    assert records_in(tmp_path) == before
+
+
+def test_a_run_that_stops_anywhere_goes_on_where_it_stopped(shop: Path, tmp_path: Path) -> None:
+    whole = tmp_path / "whole"
+    run_in(whole, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
+    parts = 0
+    for most in range(1, 20):
+        queue = InlineQueue(1)
+        batch = run_in(tmp_path / "parts", shop, queue=queue, held_in=(COARSE, FINE))
+        if batch.is_complete:
+            break
+        assert len(queue.titles) == 1 and len(records_in(tmp_path / "parts")) == most
+        assert "open" in states_of(batch, tmp_path / "parts").values() or not batch.jobs
+        parts = most
+    # The last record was the last task's.
+    assert parts == len(records_in(whole)) - 1 and records_in(tmp_path / "parts") == records_in(whole)
+
+
+def test_a_record_that_lost_its_end_is_made_again(shop: Path, tmp_path: Path) -> None:
+    run_in(tmp_path, shop, queue=InlineQueue())
+    before = records_in(tmp_path)
+    for name in before:
+        (tmp_path / name).write_bytes(before[name][:-1])
+    run_in(tmp_path, shop, queue=InlineQueue())
+    assert records_in(tmp_path) == before
+
+
+def test_another_question_is_another_task(shop: Path, tmp_path: Path) -> None:
+    run_in(tmp_path, shop, queue=InlineQueue())
+    queue = InlineQueue()
+    run_in(tmp_path, shop, queue=queue, best=4)
+    assert sorted(queue.titles) == ["a.json in coarse", "b.json in coarse"]
+
+
+@define
+class Full(InlineQueue):
+    """Has no room on its own disk."""
+
+    def outcome(self, task: Task) -> Outcome:
+        return Outcome(task.name, None, "The system refused something.", has_no_room=True)
+
+
+@define
+class Fragile(InlineQueue):
+    """Loses every task of one title."""
+
+    title: str = ""
+
+    def outcome(self, task: Task) -> Outcome:
+        return Outcome(task.name, None, "Two workers ended.") if task.title == self.title else done(task)
+
+
+def test_a_failure_is_a_row_and_is_tried_again_by_the_next_run(shop: Path, tmp_path: Path) -> None:
+    lost = run_in(tmp_path, shop, queue=Fragile(title="b.json in coarse"))
+    assert states_of(lost, tmp_path)["b.json", "coarse"] == "failed"
+    assert {job.failure for job in lost.jobs} == {"", "Two workers ended."}
+    queue = InlineQueue()
+    again = run_in(tmp_path, shop, queue=queue)
+    assert queue.titles == ["b.json in coarse"]
+    assert states_of(again, tmp_path)["b.json", "coarse"] == "held"
+
+
+def test_a_part_whose_reading_fails_is_a_row(shop: Path, tmp_path: Path) -> None:
+    lost = run_in(tmp_path, shop, queue=Fragile(title="b.json"))
+    assert states_of(lost, tmp_path)["b.json", "coarse"] == "unreadable"
+    assert states_of(lost, tmp_path)["a.json", "coarse"] == "held"
+
+
+def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
+    shop: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[Path] = []
+    write = store_module.write_bytes
+
+    def until_full(path: Path, record: bytes) -> None:
+        if len(written) == 5:
+            with store_module.plain_errors(path):
+                raise OSError(errno.ENOSPC, "No space left on device")
+        written.append(path)
+        write(path, record)
+
+    monkeypatch.setattr(store_module, "write_bytes", until_full)
+    with pytest.raises(InputError, match=r"No space left on device\. What is done is kept: make room, and start"):
+        run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
+    monkeypatch.undo()
+    assert len(records_in(tmp_path)) == 5
+    queue = InlineQueue()
+    assert run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE)).is_complete
+    assert len(queue.titles) == len(records_in(tmp_path)) - 5
+    with pytest.raises(InputError, match=r"The system refused something\. What is done is kept"):
+        run_in(tmp_path, shop, queue=Full(), best=9)
+
+
+def test_a_record_that_another_run_has_made_meanwhile_is_taken(shop: Path, tmp_path: Path) -> None:
+    class Meanwhile(InlineQueue):
+        def outcome(self, task: Task) -> Outcome:
+            if task.title == "b.json in fine":
+                run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
+            return done(task)
+
+    queue = Meanwhile()
+    batch = run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE))
+    assert [title for title in queue.titles if " in " in title] == ["b.json in fine"]
+    assert set(states_of(batch, tmp_path).values()) == {"held", "unreadable"}
+
+
+def test_a_file_that_changes_while_the_batch_runs_is_told(shop: Path, tmp_path: Path) -> None:
+    class Changing(InlineQueue):
+        def outcome(self, task: Task) -> Outcome:
+            for path in shop.glob("[ab].json"):
+                square(path, 60)
+            return done(task)
+
+    # Longest first: the largest file is read before the others are looked at again.
+    square(shop / "long.json", 50, "n" * 500)
+    batch = run_in(tmp_path, shop, queue=Changing())
+    changed = {part.request.listed.name: part.refusal for part in batch.parts if "changed" in part.refusal}
+    assert set(changed) >= {"b.json"}
+
+
+def test_what_tasks_took_is_kept_and_lines_cut_short_are_passed_over(shop: Path, tmp_path: Path) -> None:
+    batch = run_in(tmp_path, shop, queue=InlineQueue())
+    path = tmp_path / "measured.csv"
+    known = Measured(path).known
+    assert set(known) == {Path(name).stem for name in records_in(tmp_path)}
+    assert all(seconds > 0 and worker == "inline" for seconds, worker in known.values())
+    path.write_bytes(path.read_bytes()[:-9] + os.urandom(20))
+    assert len(Measured(path).known) <= len(known)
+    rows = [one.row for one in job_rows(batch.jobs, FolderStore(tmp_path / "work"), Measured(path))]
+    assert all(row["estimated_seconds"] > 0 for row in rows if row["state"] == "held")

@@ -1,0 +1,103 @@
+"""The tables: the same rows in either form, and everything in them as the records say."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
+
+from workhold.batch import tables
+from workhold.batch.jobs import ANY_PART, HeldIn
+from workhold.batch.measured import Measured
+from workhold.batch.run import Batch
+from workhold.batch.store import FolderStore
+from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
+from workhold.cli.outputs import is_own
+from workhold.files.result.reader import read_result
+from workhold.model.fence import Fence
+from workhold.model.plate import Plate
+from workhold.model.query import Query
+
+PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
+FENCE = HeldIn("fence", Query(ANY_PART, Fence(pitch=20, peg_radius=3, wall_offset=20)))
+PAIR = HeldIn("pair", Query(ANY_PART, Plate(pitch=20, peg_radius=3, clamps=2)))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("tables")
+
+
+@pytest.fixture(scope="module")
+def batch(folder: Path) -> Batch:
+    """A part in every kind of toolkit, and one that cannot be read."""
+    (folder / "bad.json").write_text("{")
+    loop = [[0, 0, 0], [70, 0, 0], [61, 44, 0], [25, 49, 0], [4, 38, 0]]
+    (folder / "good.json").write_text(json.dumps({"units": "mm", "loops": [loop]}))
+    parts = folder / "good.json", folder / "bad.json"
+    return run_in(folder, *parts, queue=InlineQueue(), held_in=(COARSE, PLATE, FENCE, PAIR, IMPOSSIBLE))
+
+
+@pytest.fixture
+def rows(batch: Batch, folder: Path) -> Iterator[JobRow]:
+    return job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+
+
+def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
+    held_in = set()
+    for one in rows:
+        assert list(one.row) == list(RESULTS)
+        if one.row["state"] != "held":
+            assert not one.best and one.row["reason"]
+            continue
+        result = read_result(Path(one.row["record"]))
+        held_in.add(one.row["toolkit"])
+        assert one.row["fixtures"] == sum(result.found.values()) and one.row["fit"] in (True, False)
+        assert 1 <= len(one.best) == len(result) <= 3
+        for rank, (row, fixture) in enumerate(zip(one.best, result, strict=True), 1):
+            assert list(row) == list(BEST) and row["rank"] == rank
+            held = [peg for peg in fixture.pegs if not peg.is_on_wall]
+            assert row["holes"] == " ".join(peg.hole for peg in held)
+            assert row["faces"] == " ".join(str(peg.face) for peg in held)
+            assert row["theta_deg"] == pytest.approx(fixture.pose.theta_deg)
+            for key, value in fixture.quality.items():
+                assert row[key] == pytest.approx(value)
+        assert one.row["location_error"] == one.best[0]["location_error"]
+    assert held_in == {"coarse", "plate", "fence", "pair"}
+
+
+def test_both_forms_have_the_same_rows(
+    batch: Batch, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
+
+    def written() -> list[JobRow]:
+        store, measured = FolderStore(folder / "work"), Measured(folder / "measured.csv")
+        return list(write_tables(job_rows(batch.jobs, store, measured), tmp_path))
+
+    rows = written()
+    monkeypatch.setattr(tables, "has_parquet", lambda: False)
+    assert table_names() == ("results.csv", "best.csv")
+    written()
+    for name, wanted in (("results", [one.row for one in rows]), ("best", [row for one in rows for row in one.best])):
+        table = parquet.read_table(tmp_path / f"{name}.parquet").to_pylist()
+        assert table == wanted
+        with (tmp_path / f"{name}.csv").open(newline="") as stream:
+            for plain, row in zip(csv.DictReader(stream), wanted, strict=True):
+                assert {key: tables.cell(value) for key, value in row.items()} == {
+                    key: type(tables.cell(row[key]))(value) if row[key] is not None else None
+                    for key, value in plain.items()
+                }
+        for ending in ("csv", "parquet"):
+            assert is_own(tmp_path / f"{name}.{ending}")
+
+
+def test_tables_appear_whole_or_not_at_all(rows: Iterator[JobRow], tmp_path: Path) -> None:
+    taken = write_tables(rows, tmp_path)
+    next(taken)
+    taken.close()
+    assert list(tmp_path.iterdir()) == []

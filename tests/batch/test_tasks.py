@@ -1,0 +1,138 @@
+"""Tasks: the same record wherever they are done, and only what would come out the same again is one."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+import pytest
+from attrs import evolve
+from batch_helpers import COARSE, FINE, Failing, Unprepared
+
+from workhold import load
+from workhold.batch import naming
+from workhold.batch.naming import name_of, program
+from workhold.batch.records import is_whole, plain_record, workpiece_of
+from workhold.batch.store import FolderStore
+from workhold.batch.tasks import Answering, Reading, done
+from workhold.errors import InputError
+from workhold.files.part.builtin import builtin_path
+from workhold.files.result.writer import result_text
+from workhold.model.query import Query
+from workhold.search.design import answer
+
+FLANGE = builtin_path("flange")
+assert FLANGE is not None
+
+
+def part_of(content: bytes, ending: str = ".json") -> bytes:
+    """The record of a drawing."""
+    record = done(Reading("name", "title", ending, content, {})).record
+    assert record is not None
+    return record
+
+
+@pytest.fixture(scope="module")
+def part() -> bytes:
+    """The record of a part that comes with the program."""
+    return part_of(FLANGE.read_bytes())
+
+
+def test_a_drawing_becomes_the_part_that_it_is(part: bytes) -> None:
+    record = plain_record(part)
+    flange = load("flange")
+    assert workpiece_of(record).loops[0].tolist() == flange.loops[0].tolist()
+    assert (record["faces"], record["refusal"]) == (len(flange.faces), "")
+    assert record["size"] == [flange.bounds[2] - flange.bounds[0], flange.bounds[3] - flange.bounds[1]]
+
+
+def test_a_drawing_that_cannot_be_read_is_a_record_without_a_name_of_its_file() -> None:
+    record = plain_record(part_of(b"0\nSECTION\n", ".dxf"))
+    assert record["refusal"].startswith("the DXF file is cut short")
+
+
+def test_an_answer_is_the_first_of_all_fixtures_and_counts_all(part: bytes) -> None:
+    assert isinstance(COARSE.query, Query)
+    outcome = done(Answering("name", "title", part, COARSE.query, 3))
+    whole = answer(Query(evolve(load("flange"), name="part"), COARSE.query.toolkit), threads=2)
+    assert sum(whole.found.values()) > 3
+    first = evolve(whole, query=evolve(whole.query, best=3), table=whole.table.take(slice(0, 3)))
+    assert outcome.record == "".join(result_text(first)).encode()
+    assert done(Answering("other", "title", part, COARSE.query, 3)).record == outcome.record
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (MemoryError(), "more memory"),
+        (OSError(errno.ENOMEM, "Cannot allocate memory"), "more memory"),
+        (OSError(errno.EIO, "Input/output error"), "refused something the work needs: Input/output error"),
+        (RuntimeError("odd"), r"A mistake of workhold, not of yours \(RuntimeError: odd\)"),
+    ],
+)
+def test_what_may_not_come_again_is_no_record(error: Exception, words: str) -> None:
+    import re
+
+    outcome = done(Failing("name", "title", error=error))
+    assert outcome.record is None and not outcome.has_no_room
+    assert re.search(words, outcome.failure)
+
+
+def test_what_would_come_again_is_a_record() -> None:
+    outcome = done(Failing("name", "title", error=InputError("no such face.")))
+    assert outcome.record is not None and plain_record(outcome.record)["refusal"] == "no such face."
+
+
+def test_a_worker_that_is_not_fit_is_no_reason_to_refuse_a_part() -> None:
+    lacking = done(Unprepared("name", "title", error=InputError("no kernels.")))
+    assert (lacking.record, lacking.failure) == (None, "no kernels.")
+    other = done(Failing("name", "title", program="0.0.1 abc", error=InputError("no such face.")))
+    assert other.record is None and "another workhold" in other.failure
+
+
+def test_a_full_disk_is_told_from_other_failures() -> None:
+    assert done(Failing("name", "title", error=OSError(errno.ENOSPC, "No space left on device"))).has_no_room
+
+
+def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = {
+        name_of(*content)
+        for content in ((b"a", b"b"), (b"ab",), (b"a", "b"), (b"a", {"k": 1}), (COARSE.entry, 3), (COARSE.entry, 4))
+    }
+    assert len(names | {name_of(FINE.entry, 3)}) == 7
+    before = name_of(b"a")
+    monkeypatch.setattr(naming, "program", lambda: "another")
+    assert name_of(b"a") != before
+
+
+def test_the_program_is_all_that_has_a_say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for place in ("search/a.py", "cli/b.py"):
+        (tmp_path / place).parent.mkdir()
+        (tmp_path / place).write_text("1")
+    monkeypatch.setattr(naming, "PACKAGE", tmp_path)
+
+    def now() -> str:
+        program.cache_clear()
+        return program()
+
+    try:
+        first = now()
+        (tmp_path / "cli/b.py").write_text("2")
+        assert now() == first
+        (tmp_path / "search/a.py").write_text("2")
+        assert now() != first
+    finally:
+        monkeypatch.undo()
+        program.cache_clear()
+
+
+def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> None:
+    store = FolderStore(tmp_path)
+    assert store.read("abcd") is None and not store.has("abcd")
+    store.write("abcd", part)
+    assert store.has("abcd") and store.read("abcd") == part
+    assert Path(store.place("abcd")) == tmp_path / "ab" / "abcd.json"
+    for length in range(len(part)):
+        assert not is_whole(part[:length])
+    Path(store.place("abcd")).write_bytes(part[:-1])
+    assert store.read("abcd") is None and not store.has("abcd")
