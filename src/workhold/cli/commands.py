@@ -69,14 +69,14 @@ class PlainGroup(TyperGroup):
         return as_typed(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Read the words in front of the subcommand, or show the help where there is none.
+        """Read the words in front of the subcommand, or show the help where there is none and no shell asks for one.
 
         Raises
         ------
         typer.Exit
             Without any word.
         """
-        if not args:
+        if not args and not ctx.resilient_parsing:
             typer.echo(ctx.get_help())
             raise typer.Exit(BAD_INPUT)
         return super().parse_args(ctx, args)

@@ -13,6 +13,7 @@ import typer
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.explanations import explain_none
+from workhold.cli.json_output import JsonOption, print_json, refuse_both
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output, refuse_output_folder
 from workhold.cli.pictures import picture_names
@@ -78,6 +79,7 @@ def design(
     force: ForceOption = False,
     list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
     unfit: UnfitOption = False,
+    json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.
@@ -95,6 +97,7 @@ def design(
     engine = choice("--engine", engine, ENGINES)
     listed = whole_number("--list", list_)
     form = output_form(out, format_)
+    refuse_both(json_, out)
     folder = None if draw is None else Path(draw)
     if out is not None and out != STANDARD_OUTPUT:
         refuse_output(out, (part, held_in.vise, words.loads), force)
@@ -123,6 +126,12 @@ def design(
             result = answered(query, engine, streamed, threads=workers, progress=told, cancel=cancel)
     if out is not None and streamed is None:
         write_output(result, out, form)
+    if json_:
+        further = further_data(result, engine, workers, folder, shown)
+        print_json(**report_data(result, listed, unfit, out), **further)
+        if not result.complete:
+            raise typer.Exit(INTERRUPTED)
+        return
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
     report(result, spent, out, form, listed, shown, unfit)
     if not result.complete:
@@ -194,6 +203,34 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
     if not result.complete:
         marked = f", and {out} is marked so" if written else ""
         tell(f"interrupted: this is a part of the fixtures only{marked}.")
+
+
+def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> dict[str, Any]:
+    """What :func:`report` says, as plain data."""
+    from workhold.listing.alike import entries
+    from workhold.presenting.data import result_data
+
+    return {**result_data(result, entries(result, unfit), max(listed, 0)), "result_file": out}
+
+
+def further_data(result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit) -> dict[str, Any]:
+    """Why there is no fixture, and the pictures drawn, as plain data; a search that was interrupted has neither."""
+    explained, written = None, []
+    if result.complete and not any(result.found.values()) and engine == "curves":
+        from workhold.presenting.data import explanation_data
+        from workhold.search.explaining import explain
+
+        why = explain(result.query, threads, unit)
+        explained = explanation_data(why, result.toolkit)
+        if folder is not None and why.nearest is not None:
+            from workhold.cli.pictures import NEAREST_MISS, draw_one
+
+            written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
+    elif result.complete and folder is not None:
+        from workhold.cli.pictures import draw_best
+
+        written = draw_best(result, folder, unit)
+    return {"explanation": explained, "pictures": [str(path) for path in written]}
 
 
 def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from workhold.cli.commands import option, spread
+from workhold.cli.json_output import JsonOption, print_written
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.values import length, length_unit, optional_positive_length
@@ -46,6 +47,7 @@ def drill(
     ),
     thickness: str | None = option(PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."),
     unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
 ) -> None:
     """Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.
 
@@ -78,9 +80,7 @@ def drill(
         from workhold.files.step.plates import write_plates_step
 
         write_plates_step(made, path, thick)
-    from workhold.cli.tables import print_tables
-
-    print_tables(f"Written to {path}.")
+    print_written(json_, f"Written to {path}.", path)
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:

@@ -11,6 +11,7 @@ import typer
 
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.many_toolkits import asked_vises, query_of
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
@@ -49,6 +50,7 @@ def explore(
     words: QueryWords,
     out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
     force: ForceOption = False,
+    json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
     """Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each with its figures.
@@ -84,10 +86,18 @@ def explore(
     types = list(dict.fromkeys(name for one in found for name in one.found))
     # Toolkits with one clamp and with two have a default ranking each; the first that can be asked tells the columns.
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
-    print_explored(found, types, ranking, shown)
+    if not json_:
+        print_explored(found, types, ranking, shown)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))
+    if json_:
+        from workhold.presenting.data import explored_data
+
+        best = first_of(found, ranking)
+        told = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
+        print_json(toolkits=explored_data(found), **told, written=[] if out is None else [out])
+    elif out is not None:
         from workhold.cli.tables import print_tables
 
         print_tables(f"Written to {out}.")
@@ -115,7 +125,6 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
     from workhold.cli.tables import Table, figure_text, heading, print_tables
     from workhold.files.toolkit.presets import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR
-    from workhold.search.exploring import first_choice
 
     keys = dict.fromkeys([*ranking, FIGURES[LOCATION_ERROR].key])
     figures = [figure for key in keys for figure in FIGURES if figure.key == key]
@@ -137,12 +146,20 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
-    best = first_choice(found, ranking, is_sold)
+    best = first_of(found, ranking)
     if best is not None:
         told = [figure for figure in figures if figure.key in best.figures]
         words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in told)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
+
+
+def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
+    """The vise to take, see :func:`workhold.search.exploring.first_choice`."""
+    from workhold.files.toolkit.presets import is_sold
+    from workhold.search.exploring import first_choice
+
+    return first_choice(found, ranking, is_sold)
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:

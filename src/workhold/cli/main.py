@@ -76,7 +76,9 @@ COMMANDS = {
     "vises": "List the vises and plates that come with workhold, or show all figures of one.",
     "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
+    "schema": "Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.",
     "serve": "Serve the page: from a drawing to a setup sheet in the browser.",
+    "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 
 
@@ -113,6 +115,14 @@ class Workhold(PlainGroup):
         """Take the arguments; a help that was asked for is shown here."""
         with outcomes():
             return super().make_context(*args, **extra)
+
+    def _main_shell_completion(self, ctx_args: Any, prog_name: str, complete_var: str | None = None) -> None:
+        """Answer a shell that asks for words; Typer knows no shell until it is told to."""
+        if any(name.endswith("_COMPLETE") for name in os.environ):
+            import typer.completion
+
+            typer.completion.completion_init()  # type: ignore[attr-defined]
+        super()._main_shell_completion(ctx_args, prog_name, complete_var)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.values import length_unit
 
 __all__ = ["parts"]
 
 
-def parts(unit: str | None = SHOWN_UNIT) -> None:
+def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
     """List the built-in parts.
 
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the
@@ -21,6 +22,11 @@ def parts(unit: str | None = SHOWN_UNIT) -> None:
     from workhold.files.part.load import load
 
     shown = length_unit(unit)
+    if json_:
+        from workhold.presenting.data import part_data
+
+        print_json(parts=[{**part_data(load(one.name)), "description": one.description} for one in builtin_parts()])
+        return
     decimals = shown.decimals - 2
     width, height = f">width {shown.abbreviation}", f">height {shown.abbreviation}"
     table = Table(("name", width, height, ">faces", "description"))

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from workhold.cli.commands import option
+from workhold.cli.json_output import JsonOption, print_written
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
@@ -63,6 +64,7 @@ def sheet(
     jaw_force: str | None = JAW_FORCE,
     jaw: str = JAW,
     friction: str | None = FRICTION,
+    json_: JsonOption = False,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
 
@@ -109,9 +111,7 @@ def sheet(
         write_model(path, result, rank, settings, keep_off)
     else:
         write_paper(path, result, rank, result_file, {**settings, "loads": given or result.query.loads})
-    from workhold.cli.tables import print_tables
-
-    print_tables(f"Written to {path}.")
+    print_written(json_, f"Written to {path}.", path)
 
 
 def day_of(text: str) -> date:

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from workhold.cli.commands import option
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.saying import tell
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
 from workhold.cli.values import length_unit, optional_force, picture_ending, positive_number
+
+if TYPE_CHECKING:
+    from workhold.model.result import Result
+    from workhold.model.units import Unit
+    from workhold.statics.loads import LoadCase
 
 __all__ = ["show"]
 
@@ -26,6 +34,7 @@ def show(
     jaw: str = JAW,
     friction: str | None = FRICTION,
     unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its quality, and what
     loads do to it (those of the result, if none are given here).
@@ -53,24 +62,12 @@ def show(
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
 
-    from workhold.cli.load_tables import load_tables
-    from workhold.cli.tables import fixture_tables, print_tables, quality_table
+    from workhold.statics.loads import load_cases
 
-    quality = quality_table(fixture, result.toolkit.moving.noun, shown_unit)
-    print_tables(*fixture_tables(fixture, result.toolkit, rank, len(result), shown_unit), "", quality)
-    if asked or result.query.loads:
-        from workhold.statics.loads import load_cases
-
-        cases = load_cases(
-            fixture,
-            result.workpiece,
-            result.toolkit,
-            asked or result.query.loads,
-            closing_force,
-            coefficient,
-            stiffness,
-        )
-        print_tables(*load_tables(cases, fixture, result.toolkit, shown_unit))
+    loads_asked = asked or result.query.loads
+    cases = load_cases(fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness)
+    if not json_:
+        print_fixture(result, rank, cases, shown_unit)
     if not result.complete:
         tell("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None and ending is not None:
@@ -79,4 +76,28 @@ def show(
 
         svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit)
         write_bytes(picture, render(svg, ending))
+    if json_:
+        from workhold.presenting.data import fixture_data, load_case_data
+
+        print_json(
+            fixture=fixture_data(fixture, result.toolkit, rank),
+            listed=len(result),
+            complete=bool(result.complete),
+            loads=[load_case_data(case) for case in cases],
+            written=[] if picture is None else [str(picture)],
+        )
+    elif picture is not None:
+        from workhold.cli.tables import print_tables
+
         print_tables(f"Drawn in {picture}.")
+
+
+def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit) -> None:
+    """Print how to set up the fixture of a rank, its quality and what loads do to it."""
+    from workhold.cli.load_tables import load_tables
+    from workhold.cli.tables import fixture_tables, print_tables, quality_table
+
+    fixture, toolkit = result[rank - 1], result.toolkit
+    quality = quality_table(fixture, toolkit.moving.noun, unit)
+    print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), "", quality)
+    print_tables(*load_tables(cases, fixture, toolkit, unit))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.progress import progress_bar, search_progress
 from workhold.cli.ranked import ResultArgument
 from workhold.cli.values import optional_count, whole_number
@@ -34,6 +35,7 @@ def verify(
     threads: Annotated[
         str | None, typer.Option(metavar="N", help="Threads of that search; as many as processors if not given.")
     ] = None,
+    json_: JsonOption = False,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 
@@ -59,11 +61,13 @@ def verify(
     if complete:
         outcome = compared(outcome, listing, workers)
     seconds = perf_counter() - start
-    print_tables(
-        *unproven_sentences(outcome, listed),
-        f"{summary(outcome)}; {seconds:.1f} s",
-        *scope(outcome, complete, listing),
-    )
+    if json_:
+        from workhold.presenting.data import verification_data
+
+        print_json(**verification_data(outcome))
+    else:
+        sentences = unproven_sentences(outcome, listed)
+        print_tables(*sentences, f"{summary(outcome)}; {seconds:.1f} s", *scope(outcome, complete, listing))
     if complete and not outcome.is_compared:
         raise typer.Exit(INTERRUPTED)
     if not outcome.holds:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.values import length_unit
 
@@ -25,6 +26,7 @@ def vises(
         typer.Argument(metavar="[VISE]", help="Show all figures of this one: a name, or a TOML file of your own."),
     ] = None,
     unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
 ) -> None:
     """List the vises and plates that come with workhold, or show all figures of one.
 
@@ -35,9 +37,14 @@ def vises(
     """
     shown = None if unit is None else length_unit(unit)
     from workhold.cli.tables import print_tables
-    from workhold.files.toolkit.presets import load_vise
+    from workhold.files.toolkit.presets import load_vise, preset_names
     from workhold.model.units import MILLIMETRE
 
+    if json_:
+        from workhold.presenting.data import toolkit_data
+
+        print_json(toolkits=[toolkit_data(load_vise(one)) for one in (preset_names() if name is None else [name])])
+        return
     if name is None:
         print_tables(vises_table(shown or MILLIMETRE))
         return

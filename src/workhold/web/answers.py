@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from itertools import count
-from math import hypot, isfinite
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamp import ShownClamp
 from workhold.model.explanation import Explanation
@@ -23,12 +23,12 @@ from workhold.model.shown import Shown, shown
 from workhold.model.tightening import order_words
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.presenting.data import finite
 
 if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
     from workhold.files.part.survey import Survey
     from workhold.files.toolkit.reader import LoadedVise
-    from workhold.statics.loads import LoadCase, Worst
 
 __all__ = [
     "arrangements_answer",
@@ -36,7 +36,6 @@ __all__ = [
     "explanation_answer",
     "figures_answer",
     "fixture_answer",
-    "load_case_answer",
     "part_answer",
     "place_in",
     "proof_answer",
@@ -63,11 +62,6 @@ def place_in(sentence: str) -> dict[str, float] | None:
         return None if match is None else {"x": float(match[1]), "y": float(match[2])}
     except ValueError:
         return None
-
-
-def finite(value: float) -> float | None:
-    """A number, or None for one that JSON does not have."""
-    return float(value) if isfinite(value) else None
 
 
 def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
@@ -364,26 +358,6 @@ def proof_answer(proof: Proof) -> dict[str, Any]:
     """The account of a search, with how many candidates are undecided and the first of them."""
     entry = proof_entry(proof)
     return {**entry, "undecided": entry["undecided"][:MOST_UNDECIDED], "undecided_count": len(proof.undecided)}
-
-
-def load_case_answer(case: LoadCase) -> dict[str, Any]:
-    """What a load does to a fixture."""
-    return {
-        "load": load_entry(case.load),
-        "jaw_force": finite(case.jaw_force),
-        "smallest": [finite(value) for value in case.smallest],
-        "largest": [finite(value) for value in case.largest],
-        "reaction": worst_answer(case.reaction),
-        "needed": worst_answer(case.needed),
-        "needed_with_friction": None if case.needed_with_friction is None else finite(case.needed_with_friction),
-        "keeps_contact": bool(case.keeps_contact),
-    }
-
-
-def worst_answer(worst: Worst) -> dict[str, Any]:
-    """Where and in which direction a load is worst."""
-    x, y = worst.point
-    return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
 
 
 def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:

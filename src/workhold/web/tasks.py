@@ -245,13 +245,13 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
 
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
     """What loads do to a fixture."""
+    from workhold.presenting.data import load_case_data
     from workhold.statics.loads import load_cases
-    from workhold.web.answers import load_case_answer
 
     fixture, workpiece, toolkit, form = payload
     asked = [load.load() for load in form.loads]
     cases = load_cases(fixture, workpiece, toolkit, asked, form.jaw_force, form.friction, form.jaw)
-    return [load_case_answer(case) for case in cases]
+    return [load_case_data(case) for case in cases]
 
 
 def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[str, str]]:

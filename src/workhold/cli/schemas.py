@@ -1,0 +1,85 @@
+"""JSON Schemas of what goes in and out, generated from the forms that check it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+__all__ = ["SCHEMAS", "schema_of"]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def part_schema() -> dict[str, Any]:
+    """Of a workpiece in JSON."""
+    from workhold.files.part.form import WorkpieceForm
+
+    return WorkpieceForm.model_json_schema()
+
+
+def toolkit_schema() -> dict[str, Any]:
+    """Of a toolkit's TOML file: that of its kind."""
+    from pydantic import TypeAdapter
+
+    from workhold.files.toolkit.form import FORMS, ViseForm
+    from workhold.model.kinds import ALIASES, KINDS, USUAL
+
+    forms = [ViseForm, *FORMS.values()]
+    schema = TypeAdapter(forms[0] | forms[1] | forms[2]).json_schema()  # type: ignore[operator]
+    kinds: dict[str, list[str]] = {}
+    for name in (*KINDS, *ALIASES):
+        kind = ALIASES[name][0] if name in ALIASES else name
+        kinds.setdefault(FORMS.get(kind, ViseForm).__name__, []).append(name)
+    for form, names in kinds.items():
+        schema["$defs"][form]["properties"]["kind"] = {"enum": names, "title": "Kind"}
+        if USUAL not in names:
+            schema["$defs"][form]["required"].append("kind")
+    return schema
+
+
+def loads_schema() -> dict[str, Any]:
+    """Of a loads file."""
+    from workhold.files.loads_form import LoadsFile
+
+    return LoadsFile.model_json_schema()
+
+
+def query_schema() -> dict[str, Any]:
+    """Of a search as it is asked over HTTP."""
+    from workhold.web.forms import JobForm
+
+    return JobForm.model_json_schema()
+
+
+def result_schema() -> dict[str, Any]:
+    """Of a result file."""
+    from workhold.files.result.fixture_forms import ResultFile
+
+    return ResultFile.model_json_schema()
+
+
+# The schemas by name, each with what it is of.
+SCHEMAS: Mapping[str, tuple[str, Callable[[], dict[str, Any]]]] = {
+    "part": ("a part in JSON", part_schema),
+    "toolkit": ("a vise, a plate or a fence, as its TOML file says it", toolkit_schema),
+    "loads": ("a loads file, TOML or JSON", loads_schema),
+    "query": ("a search as it is asked over HTTP", query_schema),
+    "result": ("a result file in JSON", result_schema),
+}
+
+
+def schema_of(name: str) -> dict[str, Any]:
+    """The JSON Schema of a name.
+
+    Forms of which one is chosen by a word in the file are told apart by all they say, so that one of them must fit at least.
+    """
+    words, make = SCHEMAS[name]
+    schema: dict[str, Any] = loosened(make())
+    return {"$schema": DIALECT, **schema, "title": f"workhold {name}", "description": f"The shape of {words}."}
+
+
+def loosened(schema: Any) -> Any:
+    """A schema with "any of these" wherever it says "exactly one of these"."""
+    if isinstance(schema, dict):
+        return {("anyOf" if key == "oneOf" else key): loosened(value) for key, value in schema.items()}
+    return [loosened(one) for one in schema] if isinstance(schema, list) else schema

@@ -1,0 +1,226 @@
+"""What commands and tools say, as plain data for JSON: lengths in mm, angles in degrees, forces in N.
+
+A number that JSON does not have, such as an infinite force, is None. The page has answers of its own (``web.answers``),
+which also tell where everything is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import degrees, isfinite, pi
+from typing import TYPE_CHECKING, Any
+
+from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.geometry.face import Face
+from workhold.geometry.segment import Arc
+from workhold.model.explanation import Explanation
+from workhold.model.fixture import Fixture
+from workhold.model.proof import Proof
+from workhold.model.result import Result
+from workhold.model.setting import settings_of
+from workhold.model.tightening import order_words
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    from workhold.files.toolkit.reader import LoadedVise
+    from workhold.listing.alike import Entries
+    from workhold.search.exploring import Explored
+    from workhold.statics.loads import LoadCase, Worst
+    from workhold.verification import Verification
+
+__all__ = [
+    "explanation_data",
+    "explored_data",
+    "finite",
+    "fixture_data",
+    "load_case_data",
+    "part_data",
+    "result_data",
+    "toolkit_data",
+    "verification_data",
+]
+
+
+def finite(value: float) -> float | None:
+    """A number, or None for one that JSON does not have."""
+    return float(value) if isfinite(value) else None
+
+
+def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
+    """A part and its faces; the remarks are about how it was read."""
+    first, loop_of = 0, {}
+    for index, loop in enumerate(workpiece.loops):
+        loop_of.update(dict.fromkeys(range(first, first + len(loop)), index))
+        first += len(loop)
+    return {
+        "name": workpiece.name,
+        "bounds": list(workpiece.bounds),
+        "departure": workpiece.departure,
+        "holes": len(workpiece.loops) - 1,
+        "faces": [{"number": face.number, "loop": loop_of[face.number], **face_data(face)} for face in workpiece.faces],
+        "remarks": list(remarks),
+    }
+
+
+def face_data(face: Face) -> dict[str, Any]:
+    """A face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
+    segment = face.segment
+    ends = {"from": list(segment.start), "to": list(segment.end)}
+    if not isinstance(segment, Arc):
+        return {"kind": "line", "length": segment.length, **ends}
+    sweep = degrees(min(2 * segment.half_sweep, 2 * pi))
+    circle = {"radius": segment.radius, "center": list(segment.center), "sweep_deg": sweep}
+    return {"kind": "arc", "concave": segment.sign < 0, **circle, **ends}
+
+
+def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
+    """How to set up a fixture."""
+    pair = fixture.pair
+    return {
+        **({} if rank is None else {"rank": rank}),
+        "type": fixture.type,
+        "direction": fixture.direction,
+        "pegs": [
+            {
+                "hole": peg.hole,
+                "carrier": peg.carrier,
+                "stands_on": "wall" if peg.is_on_wall else toolkit.carrier(peg.carrier).noun,
+                "column": peg.column,
+                "row": peg.row,
+                "x": peg.x,
+                "y": peg.y,
+                "faces": [peg.face] if peg.beside is None else [peg.face, peg.beside],
+                "force": finite(peg.force),
+            }
+            for peg in fixture.pegs
+        ],
+        "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
+        "settings": [
+            {"name": one.name, "sign": one.sign, "length": one.length} for one in settings_of(fixture, toolkit)
+        ],
+        **(
+            {}
+            if pair is None
+            else {"pairs": pair.count, "ratio": [finite(one) for one in pair.ratio], "order": order_words(fixture)}
+        ),
+        "quality": {key: finite(value) for key, value in fixture.quality.items()},
+    }
+
+
+def load_case_data(case: LoadCase) -> dict[str, Any]:
+    """What a load does to a fixture."""
+    return {
+        "load": load_entry(case.load),
+        "jaw_force": finite(case.jaw_force),
+        "smallest": [finite(value) for value in case.smallest],
+        "largest": [finite(value) for value in case.largest],
+        "reaction": worst_data(case.reaction),
+        "needed": worst_data(case.needed),
+        "needed_with_friction": None if case.needed_with_friction is None else finite(case.needed_with_friction),
+        "keeps_contact": bool(case.keeps_contact),
+    }
+
+
+def worst_data(worst: Worst) -> dict[str, Any]:
+    """Where and in which direction a load is worst; the peg is counted from 0."""
+    x, y = worst.point
+    return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
+
+
+def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
+    """What a search found, with the first of its entries."""
+    indices, like = (numbers[:count].tolist() for numbers in (shown.index, shown.like))
+    return {
+        "workpiece": result.workpiece.name,
+        "toolkit": {"kind": result.toolkit.kind, **toolkit_fields(result.toolkit)},
+        "found": {kind: int(number) for kind, number in result.found.items()},
+        "distinct": {kind: int(number) for kind, number in result.distinct.items()},
+        "listed": len(result),
+        "unfit": shown.unfit,
+        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
+        "complete": bool(result.complete),
+        "notes": list(result.notes),
+        "proof": None if result.proof is None else proof_data(result.proof),
+        "ranking": list(result.query.ranking),
+        "fixtures": [
+            {**fixture_data(result[index], result.toolkit, index + 1), "like_it": more}
+            for index, more in zip(indices, like, strict=True)
+        ],
+    }
+
+
+def proof_data(proof: Proof) -> dict[str, Any]:
+    """The account of a search as a result file has it, but that faces are called so."""
+    entry = proof_entry(proof)
+    lost = [
+        {("faces" if key == "segments" else key): value for key, value in one.items()} for one in entry["undecided"]
+    ]
+    return {**entry, "undecided": lost}
+
+
+def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
+    """Why there is no fixture, and what would help."""
+    nearest = explanation.nearest
+    return {
+        "contacts": explanation.contacts,
+        "removals": [
+            {"rule": removal.rule, "before": removal.before, "after": removal.after} for removal in explanation.removals
+        ],
+        "last_rule": explanation.last_rule,
+        "nearest": None
+        if nearest is None
+        else {"words": nearest.words, "fixture": fixture_data(nearest.fixture, toolkit)},
+        "helps": [
+            {
+                "change": help.change,
+                "fixtures": help.fixtures,
+                "complete": help.complete,
+                "fields": None if help.fields is None else {key: written(value) for key, value in help.fields.items()},
+            }
+            for help in explanation.helps
+        ],
+    }
+
+
+def toolkit_data(loaded: LoadedVise) -> dict[str, Any]:
+    """A toolkit by name or of a file."""
+    return {
+        "name": loaded.name,
+        "kind": loaded.kind,
+        "title": loaded.title,
+        "source": loaded.source,
+        "assumed": list(loaded.assumed),
+        "fields": toolkit_fields(loaded.toolkit),
+        "tolerance": tolerance_entry(loaded.tolerance),
+    }
+
+
+def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
+    """What each toolkit can do for a part."""
+    return [
+        {
+            "name": item.name,
+            "fixtures": item.fixtures,
+            "found": dict(item.found),
+            "fit": bool(item.fit),
+            "figures": {key: finite(value) for key, value in item.figures.items()},
+            "reason": item.reason,
+        }
+        for item in found
+    ]
+
+
+def verification_data(outcome: Verification) -> dict[str, Any]:
+    """What was proven of a result; fixtures are told by their rank."""
+    return {
+        "holds": outcome.holds,
+        "fixtures": outcome.fixtures,
+        "proven": outcome.proven,
+        "refuted": outcome.refuted,
+        "undecided": outcome.undecided,
+        "bits": outcome.bits,
+        "is_compared": outcome.is_compared,
+        "faults": list(outcome.faults),
+        "unproven": [{"rank": one.index + 1, "verdict": one.verdict, "reason": one.reason} for one in outcome.unproven],
+    }
