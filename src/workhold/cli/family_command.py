@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from workhold.cli.commands import option, spread
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
@@ -74,6 +75,7 @@ def family(
     threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given."),
     out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file."),
     force: ForceOption = False,
+    json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
     """Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
@@ -131,13 +133,22 @@ def family(
         )
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
-    report(found, plan, spent, shown)
+    if not json_:
+        report(found, plan, spent, shown)
     if out is not None:
-        from workhold.cli.tables import print_tables
         from workhold.family.file import family_text
         from workhold.files.atomic import write_bytes
 
         write_bytes(out, family_text(found).encode("utf-8"))
+    if json_:
+        from json import loads
+
+        from workhold.family.file import family_text
+
+        print_json(**loads(family_text(found)), written=[] if out is None else [out])
+    elif out is not None:
+        from workhold.cli.tables import print_tables
+
         print_tables(f"Written to {out}.")
 
 
