@@ -52,8 +52,8 @@ def test_show_tells_the_fixture(run: Any, folder: Path) -> None:
     content = told(run("show", "r.json", 2, "--json", "--unit", "inch", "--load", "moment=500", "--draw", "two.svg"))
     fixture, opened = content["fixture"], workhold.open("r.json")[1]
     assert (fixture["rank"], content["listed"], content["complete"]) == (2, 6, True)
-    assert [(peg["hole"], *peg["faces"], peg["x"]) for peg in fixture["pegs"]] == [
-        (peg.hole, peg.face, peg.x) for peg in opened.pegs
+    assert [(peg["hole"], *peg["faces"], peg["x"], peg["force"]) for peg in fixture["pegs"]] == [
+        (peg.hole, peg.face, peg.x, peg.force) for peg in opened.pegs
     ]
     assert fixture["pose"]["theta_deg"] == opened.pose.theta_deg
     assert [one["length"] for one in fixture["settings"]] == [opened.jaw_separation]

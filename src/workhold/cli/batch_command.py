@@ -12,6 +12,7 @@ import typer
 from workhold.cli.batch_progress import batch_progress
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
+from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.many_toolkits import Named, asked_vises, query_of, words_of
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output_folder
@@ -75,6 +76,7 @@ def batch(
     best: str = option("Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST),
     sheets: SheetsOption = False,
     force: ForceOption = False,
+    json_: JsonOption = False,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
     reading: PartWords,
 ) -> None:
@@ -121,7 +123,12 @@ def batch(
         tell(f"{part}: {reason}")
     if len(report.bad) > MOST_TOLD:
         tell(f"and {len(report.bad) - MOST_TOLD:,} more, which the report names.")
-    print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
+    if json_:
+        bad = [{"part": part, "reason": reason} for part, reason in report.bad]
+        counts = {"parts": len(done.parts), "found": done.fresh, "known_before": done.kept}
+        print_json(**counts, complete=done.is_complete, bad=bad, written=[str(folder / name) for name in names])
+    else:
+        print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
         tell("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
     if not done.is_complete:
