@@ -10,7 +10,7 @@ import pytest
 
 from family_parts import shop_parts
 from workhold.cli import family_command
-from workhold.cli.family_command import loss_text
+from workhold.family.losses import loss_text
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -74,6 +74,18 @@ def test_without_a_choice_it_is_told_how_to_choose(run: Any, drawings: Path) -> 
     assert "Set-up" not in outcome.stdout
 
 
+def test_curve_and_sheets_are_drawn(run: Any, drawings: Path, tmp_path: Path) -> None:
+    curve, sheets = tmp_path / "c.png", tmp_path / "s.pdf"
+    part = drawings / "ell-1.json"
+    for _ in range(2):
+        outcome = run("family", part, *VISE, "--setups", 1, "--draw", curve, "--sheets", sheets)
+        assert outcome.exit_code == 0, outcome.stderr
+    assert curve.read_bytes().startswith(b"\x89PNG") and sheets.read_bytes().startswith(b"%PDF")
+    assert f"Written to {curve}, {sheets}." in outcome.stdout
+    assert run("family", part, *VISE, "--max-loss", 2, "--sheets", tmp_path / "s.svg").exit_code == 0
+    assert "<!-- workhold -->" in (tmp_path / "s.svg").read_text()
+
+
 def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: dict[str, Any] = {}
 
@@ -111,6 +123,10 @@ def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.Mo
         (("widget", *VISE, "--time-limit", "-1"), "not a positive number"),
         (("widget", *VISE, "--rank-by", "beauty"), "is no figure to rank by"),
         (("widget", *VISE, "--out", "missing/f.json"), "there is no folder missing"),
+        (("widget", *VISE, "--draw", "c.pdf"), "let the name end in .svg or .png"),
+        (("widget", *VISE, "--setups", "1", "--sheets", "s.txt"), "let the name end in .pdf, .svg or .png"),
+        (("widget", *VISE, "--sheets", "s.pdf"), "--sheets needs a plan: say which"),
+        (("widget", *VISE, "--out", "f.svg", "--draw", "./f.svg"), "named for two outputs"),
         (("odd.dxf", *VISE), "none of the parts can be used: odd.dxf: "),
         (("widget", *VISE, "--type", "III"), "--type"),
     ],

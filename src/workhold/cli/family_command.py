@@ -16,7 +16,7 @@ from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords, with_fit_of
-from workhold.cli.values import choice, length_unit, number, optional_count, positive_number
+from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
 from workhold.cli.vise_options import ViseWords
 from workhold.errors import InputError
 
@@ -33,6 +33,9 @@ __all__ = ["family"]
 FAMILY, OUTPUT = "The family", "Results"
 EVERY_TYPE = "both"
 SECONDS = "60"
+SHEET_ENDINGS = (".pdf", ".svg", ".png")
+# A PNG is so many pixels wide; every set-up makes it higher.
+PNG_WIDTH = 2400
 
 UnfitOption = Annotated[
     bool,
@@ -74,6 +77,12 @@ def family(
     ),
     threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given."),
     out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file."),
+    draw: str | None = option(OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png."),
+    sheets: str | None = option(
+        OUTPUT,
+        "FILE",
+        "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or .png.",
+    ),
     force: ForceOption = False,
     json_: JsonOption = False,
     reading: PartWords,
@@ -102,8 +111,16 @@ def family(
     load_solver()
     listed = part_list(parts)
     inputs = [*(one.path for one in listed), held_in.vise, held_in.toolkit, words.loads]
-    if out is not None:
-        refuse_output(out, inputs, force)
+    if draw is not None:
+        picture_ending(Path(draw))
+    if sheets is not None and Path(sheets).suffix.lower() not in SHEET_ENDINGS:
+        raise InputError(f"--sheets {sheets} names no kind of sheet: let the name end in .pdf, .svg or .png.")
+    if sheets is not None and most is None and loss is None:
+        raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
+    outputs = [name for name in (out, draw, sheets) if name is not None]
+    refuse_one_name_twice(outputs)
+    for name in outputs:
+        refuse_output(name, inputs, force)
     asked["arrangements"] = None if type_ == EVERY_TYPE else type_
     members, left_out = queries_of(listed, toolkit, asked, reading.options())
     if not members:
@@ -133,23 +150,72 @@ def family(
         )
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
     spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
-    if not json_:
-        report(found, plan, spent, shown)
-    if out is not None:
-        from workhold.family.file import family_text
-        from workhold.files.atomic import write_bytes
-
-        write_bytes(out, family_text(found).encode("utf-8"))
+    written = write_all(found, plan, out, draw, sheets, shown)
     if json_:
         from json import loads
 
         from workhold.family.file import family_text
 
-        print_json(**loads(family_text(found)), written=[] if out is None else [out])
-    elif out is not None:
+        print_json(**loads(family_text(found)), written=written)
+        return
+    report(found, plan, spent, shown)
+    if written:
         from workhold.cli.tables import print_tables
 
-        print_tables(f"Written to {out}.")
+        print_tables(f"Written to {', '.join(written)}.")
+
+
+def refuse_one_name_twice(names: list[str]) -> None:
+    """Refuse outputs that would replace each other.
+
+    Raises
+    ------
+    InputError
+        Naming the file.
+    """
+    resolved = [Path(name).resolve() for name in names]
+    for place, path in enumerate(resolved):
+        if path in resolved[:place]:
+            raise InputError(f"{names[place]} is named for two outputs: give each a name of its own.")
+
+
+def write_all(
+    found: Family, plan: Plan | None, out: str | None, draw: str | None, sheets: str | None, unit: Unit
+) -> list[str]:
+    """Write what was asked for; the names of the files written."""
+    from workhold.files.atomic import write_bytes
+
+    contents: dict[str, bytes] = {}
+    if out is not None:
+        from workhold.family.file import family_text
+
+        contents[out] = family_text(found).encode("utf-8")
+    if draw is not None and found.members:
+        from workhold.drawing.render import render
+        from workhold.family.curve_picture import draw_curve
+
+        contents[draw] = render(draw_curve(found, None if plan is None else plan.point), Path(draw).suffix)
+    if sheets is not None and plan is not None:
+        contents[sheets] = sheets_bytes(found, plan, Path(sheets).suffix.lower(), unit)
+    for name, content in contents.items():
+        write_bytes(name, content)
+    return list(contents)
+
+
+def sheets_bytes(found: Family, plan: Plan, ending: str, unit: Unit) -> bytes:
+    """The sheets of a plan as the bytes of a file."""
+    from datetime import date
+
+    from workhold.drawing.pdf import svg_to_pdf
+    from workhold.drawing.render import svg_to_png
+    from workhold.drawing.scene import stacked
+    from workhold.family.setup_pages import draw_setups
+
+    day = date.today()
+    pages = draw_setups(plan, found.figure, day, unit)
+    if ending == ".pdf":
+        return svg_to_pdf(pages, day)
+    return stacked(pages).encode("utf-8") if ending == ".svg" else svg_to_png(stacked(pages), PNG_WIDTH)
 
 
 def loss_of(text: str) -> float:
@@ -233,7 +299,7 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
         return
     for number_, setup in enumerate(plan.setups, 1):
         heading = f"Set-up {number_} of {len(plan.setups)}: {pegs_words(setup, toolkit)}"
-        place = "" if number_ == 1 else f" ({plural(setup.moved, 'peg')} to place, the rest stands)"
+        place = "" if number_ == 1 else f" ({setup.moved} to place, the rest stands)"
         print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
         if any(one.turned for one in setup.holdings):
             print_tables("A number with ' is that of the list after half a turn of everything, which swaps the jaws.")
@@ -246,6 +312,7 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
 def curve_table(found: Family, unit: Unit) -> Table:
     """The curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
     from workhold.cli.tables import Table, figure_text, heading
+    from workhold.family.losses import loss_text
 
     table = Table((">set-ups", ">worst loss", ">pegs moved", f">{heading(found.figure, unit)}", "worst part"))
     for plan in found.plans:
@@ -262,13 +329,6 @@ def curve_table(found: Family, unit: Unit) -> Table:
     return table
 
 
-def loss_text(loss: float) -> str:
-    """A loss as it is shown, rounded up so that it is one within which all is."""
-    from math import ceil
-
-    return f"{ceil(loss * 1000 - 1e-6) / 1000:.3f}" if isfinite(loss) else "any"
-
-
 def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
     """The holes of a set-up."""
     return ", ".join(peg.hole for peg in setup.standing.fixture.pegs if not peg.is_on_wall)
@@ -277,12 +337,15 @@ def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
     """The parts of a set-up and how each lies."""
     from workhold.cli.tables import Table, figure_text, heading
+    from workhold.family.losses import loss_text
     from workhold.model.setting import settings_of
 
     settings = settings_of(setup.standing.fixture, found.toolkit)
     names = [f">{setting.sign} {unit.abbreviation}" for setting in settings]
     columns = ("part", ">fixture", ">angle", f">x {unit.abbreviation}", f">y {unit.abbreviation}", *names, ">loss")
-    table = Table((*columns, f">{heading(found.figure, unit)}"), spare=1)
+    # With two clamps there are lengths enough for a terminal.
+    with_figure = len(settings) < 2
+    table = Table((*columns, f">{heading(found.figure, unit)}") if with_figure else columns)
     for one in setup.holdings:
         fixture = one.fixture
         pose = fixture.pose
@@ -295,6 +358,6 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             unit.number(pose.y),
             *lengths,
             loss_text(one.loss),
-            figure_text(found.figure, one.figure, unit),
+            *([figure_text(found.figure, one.figure, unit)] if with_figure else []),
         )
     return table

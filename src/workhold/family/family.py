@@ -136,7 +136,7 @@ def family_of(
     ...     return Workpiece.from_loops("", [[[0, 0, 0], [width, 0, 0], [width / 3, height, 0]]])
     >>> parts = [Asked(str(size), Query(triangle(*size), vise, ranking=by)) for size in ((40, 35), (50, 40), (62, 31))]
     >>> [(point.setups, round(point.loss, 2)) for point in family_of(parts).points]
-    [(1, 1.41), (2, 1.08), (3, 1.0)]
+    [(1, 1.17), (2, 1.07), (3, 1.0)]
     """
     load_solver()
     if most_loss is not None and not most_loss >= 1.0:

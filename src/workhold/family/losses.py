@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil, isfinite
 
 import numpy as np
 from attrs import frozen
@@ -16,7 +17,7 @@ from workhold.model.result import FixtureTable
 from workhold.model.tolerance import Tolerance
 from workhold.statics.judging import unfit
 
-__all__ = ["FAMILY_RANKING", "PAIR_FAMILY_RANKING", "Threshold", "losses", "may_be_used", "threshold"]
+__all__ = ["FAMILY_RANKING", "PAIR_FAMILY_RANKING", "Threshold", "loss_text", "losses", "may_be_used", "threshold"]
 
 # A family is asked for what it loses in location; after that what a machinist looks at counts.
 LOCATION = "location_error"
@@ -71,6 +72,15 @@ def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
     ratio = np.full(len(values), np.inf)
     np.divide(above, below, out=ratio, where=usable)
     return np.where(values == best, 1.0, np.maximum(np.round(ratio, LOSS_DECIMALS), 1.0))
+
+
+def loss_text(loss: float) -> str:
+    """A loss as it is shown, rounded up, so that what is shown is one within which it is.
+
+    >>> loss_text(1.0), loss_text(1.1871), loss_text(float("inf"))
+    ('1.000', '1.188', 'any')
+    """
+    return f"{ceil(loss * 1000 - 1e-6) / 1000:.3f}" if isfinite(loss) else "any"
 
 
 def may_be_used(
