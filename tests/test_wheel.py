@@ -91,7 +91,16 @@ def test_the_sdist_has_what_it_takes_to_build_test_and_cite(built):
     (sdist,) = built.glob("workhold-*.tar.gz")
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    for name in ("LICENSE", "CITATION.cff", "CONTRIBUTING.md", "SECURITY.md", "Makefile", "constraints.txt"):
+    for name in (
+        "LICENSE",
+        "CITATION.cff",
+        "CONTRIBUTING.md",
+        "SECURITY.md",
+        "Makefile",
+        "Containerfile",
+        "constraints.txt",
+        "mkdocs.yml",
+    ):
         assert name in names
     for folder, ending in (("docs", "md"), ("tests", "py"), ("benchmarks", "py"), ("src", "py"), ("examples", "dxf")):
         there = {str(path.relative_to(ROOT)) for path in (ROOT / folder).rglob(f"*.{ending}")}
