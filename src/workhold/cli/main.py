@@ -78,6 +78,7 @@ COMMANDS = {
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
     "schema": "Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.",
     "serve": "Serve the page: from a drawing to a setup sheet in the browser.",
+    "mcp": "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol.",
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 

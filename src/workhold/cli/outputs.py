@@ -37,13 +37,14 @@ MARKS = (
 )
 
 
-def refuse_output(path: str | Path, inputs: Iterable[str | Path | None], force: bool) -> None:
+def refuse_output(path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force") -> None:
     """Refuse an output file before any work is done for it.
 
     Parameters
     ----------
     inputs : what the command reads: files, names of other things, and None for what is not given.
     force : whether a file that workhold has not written may be replaced.
+    called : what that is called where it is asked for.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def refuse_output(path: str | Path, inputs: Iterable[str | Path | None], force: 
     from workhold.files.atomic import refuse_unwritable
 
     refuse_unwritable(path)
-    refuse_replacing(Path(path), inputs, force)
+    refuse_replacing(Path(path), inputs, force, called)
 
 
 def refuse_output_folder(folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool) -> None:
@@ -72,7 +73,7 @@ def refuse_output_folder(folder: Path, names: Iterable[str], inputs: Iterable[st
         refuse_replacing(folder / name, inputs, force)
 
 
-def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool) -> None:
+def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force") -> None:
     """Refuse to write over an input, and over a foreign file unless that is asked for.
 
     Raises
@@ -85,7 +86,7 @@ def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: boo
     if any(is_same(path, given) for given in inputs if given is not None):
         raise InputError(f"{path} is also what is read: give the output another name.")
     if not force and not is_own(path):
-        raise InputError(f"{path} was not written by workhold: give another name, or --force to replace it.")
+        raise InputError(f"{path} was not written by workhold: give another name, or {called} to replace it.")
 
 
 def is_same(path: Path, given: str | Path) -> bool:

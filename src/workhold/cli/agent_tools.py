@@ -1,0 +1,222 @@
+"""What ``workhold mcp`` offers to agents: load, design, show, sheet and explain, as functions of checked arguments.
+
+Nothing here knows the protocol. A result stays in its file; the next tool is told the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from threading import Event, Timer
+from typing import Any
+
+from attrs import frozen
+
+from workhold.cli.outputs import refuse_output
+from workhold.cli.ranked import result_with
+from workhold.cli.search_options import with_fit_of
+from workhold.cli.tool_forms import DesignArguments, LoadArguments, SheetArguments, ShowArguments, ToolArguments
+from workhold.errors import InputError
+from workhold.files.loads_file import load_from_words
+from workhold.files.loads_form import LoadTable
+from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.result.save import save
+from workhold.files.toolkit.presets import load_vise
+from workhold.listing.alike import entries
+from workhold.model.kinds import ALIASES, KINDS, toolkit_of
+from workhold.model.load import Load
+from workhold.model.query import Query, asked_ranking
+from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
+from workhold.model.result import Result
+from workhold.model.tolerance import Tolerance
+from workhold.model.toolkit import Toolkit
+from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
+
+__all__ = ["TOOLS", "Answer", "Tool"]
+
+
+@frozen
+class Answer:
+    """What a tool says, as plain data, and a picture as SVG text where one was asked for."""
+
+    data: dict[str, Any]
+    picture: str | None = None
+
+
+@frozen
+class Tool:
+    """A tool.
+
+    Parameters
+    ----------
+    words : what it does, for an agent.
+    arguments : their form.
+    run : takes the arguments, a folder for files that nobody has named, and an event that ends a search.
+    """
+
+    words: str
+    arguments: type[ToolArguments]
+    run: Callable[[Any, Path, Event], Answer]
+
+
+def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
+    """The part and its faces."""
+    loaded = read(asked)
+    return Answer(part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None)
+
+
+def read(asked: LoadArguments) -> Loaded:
+    """The part.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, in the words of a tool's arguments.
+    """
+    return read_workpiece(asked.part, **asked.reading())
+
+
+def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
+    """The best fixtures, and where all of them are."""
+    out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
+    refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
+    loaded, result = answered(asked, cancel)
+    save(result, out)
+    told = result_data(result, entries(result), asked.count)
+    data = {**told, "result_file": out, "remarks": list(loaded.remarks)}
+    return Answer(data, result.draw() if asked.picture and len(result) else None)
+
+
+def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
+    """Why there is no fixture, and what would help; where there are some, how many."""
+    _, result = answered(asked, cancel)
+    found = sum(result.found.values())
+    if found or not result.complete:
+        why = (
+            f"There are {found:,} fixtures: design tells them."
+            if found
+            else "The search was ended before any was found."
+        )
+        return Answer({"found": found, "complete": bool(result.complete), "sentence": why})
+    from workhold.search.explaining import explain as explained
+
+    explanation = explained(result.query)
+    words = explanation.nearest.words if explanation.nearest else "; ".join(result.notes)
+    return Answer({"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)})
+
+
+def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
+    """The part, and the answer of the search, which is ended when its time is over.
+
+    Raises
+    ------
+    InputError
+        For a part, a toolkit or wishes that cannot be.
+    """
+    from workhold.search.design import answer
+
+    loaded = read(asked)
+    toolkit, tolerance = held_in(asked.toolkit, asked.fields)
+    loads = loads_of(asked.loads)
+    zones = [
+        circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon) for one in asked.keep_out
+    ]
+    query = Query(
+        loaded.workpiece,
+        toolkit,
+        asked.types,
+        asked.contact_margin,
+        Restrictions(avoid=asked.avoid, zones=zones, angles=asked.angles),
+        asked_ranking(None, asked.prefer, loads),
+        with_fit_of(None, tolerance),
+        loads,
+        asked.best,
+        asked.jaw_force,
+    )
+    clock = Timer(asked.seconds, cancel.set)
+    clock.start()
+    try:
+        return loaded, answer(query, cancel=cancel)
+    finally:
+        clock.cancel()
+
+
+def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
+    """A toolkit of a preset, a file or a kind, with fields that are given or changed, and its tolerance where it has one.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    try:
+        if name in KINDS or name in ALIASES:
+            return toolkit_of(name, fields), None
+        loaded = load_vise(name)
+        return toolkit_of(loaded.kind, {**loaded.fields, **fields}), loaded.tolerance
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"the fields of the toolkit are not as they should be: {error}.") from error
+
+
+def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
+    """Loads from their descriptions.
+
+    Raises
+    ------
+    InputError
+        For the first that cannot be used.
+    """
+    given = (table.model_dump(exclude_unset=True) for table in tables)
+    return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
+
+
+def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
+    """How to set up a fixture, and what loads do to it."""
+    from workhold.statics.loads import load_cases
+
+    result = result_with(asked.result_file, asked.rank)
+    fixture, loads = result[asked.rank - 1], loads_of(asked.loads) or result.query.loads
+    force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
+    cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
+    told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
+    data = {"fixture": fixture_data(fixture, result.toolkit, asked.rank), **told}
+    return Answer(data, fixture.draw() if asked.picture else None)
+
+
+def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
+    """The setup sheet, written."""
+    refuse_output(asked.path, (asked.result_file,), asked.force, "force")
+    result = result_with(asked.result_file, asked.rank)
+    wishes = asked.model_dump(exclude={"result_file", "rank", "path", "force"})
+    result[asked.rank - 1].save_sheet(asked.path, result_file=asked.result_file, **wishes)
+    return Answer({"written": [asked.path]})
+
+
+TOOLS: Mapping[str, Tool] = {
+    "load": Tool(
+        "Read a part and list its numbered faces; numbers of faces are what avoid takes.", LoadArguments, load
+    ),
+    "design": Tool(
+        "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; tells the best and "
+        "writes all to a result file.",
+        DesignArguments,
+        design,
+    ),
+    "show": Tool(
+        "Show how to set up one fixture of a result file: holes, opening, pose, quality, and what loads do to it.",
+        ShowArguments,
+        show,
+    ),
+    "sheet": Tool(
+        "Write the setup sheet of a fixture of a result file, or its set-up as DXF or STEP, or its list of pins.",
+        SheetArguments,
+        sheet,
+    ),
+    "explain": Tool(
+        "Tell why there is no way to hold a part, which rule took the last candidates away, and which changes would help.",
+        DesignArguments,
+        explain,
+    ),
+}
