@@ -82,7 +82,7 @@ def test_presets_are_toolkits_and_bring_their_tolerance(folder: Path) -> None:
 
 def test_explain_tells_why_there_is_none(folder: Path) -> None:
     """And that there are some where there are."""
-    why = told("explain", folder, part="wedge.json", **VISE, angles=[[0, 0.01]])
+    why = told("explain", folder, part="wedge.json", **VISE, angles=[[1, 1.01]])
     assert why["found"] == 0 and why["last_rule"] and why["sentence"] and why["removals"][-1]["after"] == 0
     some = told("explain", folder, part="wedge.json", **VISE)
     assert some["found"] > 0 and "design tells them" in some["sentence"]
