@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import io
 import re
 import subprocess
@@ -14,6 +15,8 @@ import pytest
 import yaml
 
 from workhold.errors import InputError
+from workhold.model.kinds import KINDS
+from workhold.model.vise import OpeningVise
 from workhold.version import __version__
 
 ROOT = Path(__file__).parent.parent
@@ -89,6 +92,22 @@ def test_what_is_to_be_cited_is_this_version() -> None:
     assert cited["version"] == __version__
     assert {"type", "title", "authors"} <= set.intersection(*(set(one) for one in cited["references"]))
     assert cited["references"][0]["title"] == "Modular Fixture Design for Generalized Polyhedra"
+
+
+def test_the_smallest_toolkit_is_as_small_as_told() -> None:
+    """Its lines are counted, those of the words about it too, and none of the others has fewer."""
+    lines = {one: len(inspect.getsource(one).splitlines()) for one in KINDS.values()}
+    page = (ROOT / "docs" / "adding-a-toolkit.md").read_text()
+    assert min(lines, key=lambda one: lines[one]) is OpeningVise
+    told = (f"## The smallest: {lines[OpeningVise]} lines", f"it has {lines[OpeningVise]} lines")
+    assert all(words in page for words in told)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_named_in_the_documentation_exist(page: Path) -> None:
+    """What a page names in a folder of the project is there."""
+    named = re.findall(r"`(?:python )?((?:benchmarks|building|docs|examples|tests)/[\w./-]+)`", page.read_text())
+    assert [name for name in named if not (ROOT / name).exists()] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

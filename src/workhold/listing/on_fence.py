@@ -1,4 +1,4 @@
-"""Placing fixtures of a fence: where the clamp is bolted, and which of them cannot be placed (TOOLKITS.md).
+"""Placing fixtures of a fence: where the clamp is bolted, and which of them cannot be placed.
 
 As on a plate (``listing.on_plate``) a clamp with a travel is bolted in the nearest hole behind its tip from which its body
 clears locator and part, and that is still on the plate; here rows count from the wall, so none lies below row 0.

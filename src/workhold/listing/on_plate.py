@@ -1,4 +1,4 @@
-"""Placing fixtures of a plate with a clamp: where the clamp is bolted, and which of them cannot be placed (TOOLKITS.md).
+"""Placing fixtures of a plate with a clamp: where the clamp is bolted, and which of them cannot be placed.
 
 The clamp slides along a line of the plate's own holes. With a travel it is bolted in a hole of that line behind its tip, in
 the nearest one from which its body, a capsule from the hole to the tip, clears locators and part, and that is still on the

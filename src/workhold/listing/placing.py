@@ -1,4 +1,4 @@
-"""Placing fixtures in the holes of the carriers (MODEL.md, "written out"), and which of them cannot be placed.
+"""Placing fixtures in the holes of the carriers, and which of them cannot be placed.
 
 Pegs stand in the columns nearest to those of the other carrier, moved outward only as far as the largest travel or a blocked
 hole demands, first the standing ones, then the moving ones. Rows are shifted so that the lowest is 0, or centred where the

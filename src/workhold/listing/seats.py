@@ -1,4 +1,4 @@
-"""Seats: three locators, the faces they touch and the pose, with all the clamps that may push there (TWO_CLAMPS.md).
+"""Seats: three locators, the faces they touch and the pose, with all the clamps that may push there.
 
 The search of each direction finds contacts of three locators and one clamp. Those that share their locators and the pose are
 one seat; a clamp that holds the part by itself is left out, for it needs no second.

@@ -1,4 +1,4 @@
-"""The figures of quality: what each is called, its unit, and which way is better (MODEL.md, "Quality").
+"""The figures of quality: what each is called, its unit, and which way is better (docs/quality.md).
 
 How they are computed is in ``statics.quality``.
 """
