@@ -87,21 +87,15 @@ def test_curve_and_sheets_are_drawn(run: Any, drawings: Path, tmp_path: Path) ->
 
 
 def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: dict[str, Any] = {}
-
-    def family_of(asked: Any, **options: Any) -> Any:
-        seen.update(options, queries=[one.query for one in asked])
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("workhold.family.family.family_of", family_of)
+    seen = asked_by(monkeypatch)
     outcome = run(
         *("family", drawings, *VISE, "--avoid", "1", "--angle", "0..90", "--keep-out", "circle=1,2,3", "--type", "II"),
         *("--contact-margin", "0.5", "--rank-by", "closure-margin,tilt", "--limit", "location-error=0.05", "--unfit"),
         *("--time-limit", "3", "--tolerance", "0.02", "--max-loss", "1.5", "--threads", "1"),
     )
     assert outcome.exit_code == 130
-    assert len(seen["queries"]) == 4
-    for query in seen["queries"]:
+    assert len(seen["asked"]) == 4
+    for query in (one.query for one in seen["asked"]):
         assert query.restrictions.avoid == (1,) and query.restrictions.angles == ((0.0, 90.0),)
         assert len(query.restrictions.zones) == 1 and query.arrangements == ("II",) and query.contact_margin == 0.5
         assert query.ranking == ("closure_margin", "tilt") and query.tolerance.peg == 0.02
@@ -109,6 +103,56 @@ def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.Mo
     assert (limit.figure.key, limit.value) == ("location_error", 0.05)
     assert (seen["unfit"], seen["most_loss"], seen["seconds"], seen["threads"]) == (True, 1.5, 3.0, 1)
     assert [one.name for one in seen["left_out"]] == ["odd.dxf"]
+
+
+def asked_by(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Keep what a family is asked for, and end there."""
+    seen: dict[str, Any] = {}
+
+    def family_of(asked: Any, **options: Any) -> Any:
+        seen.update(options, asked=asked)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("workhold.family.family.family_of", family_of)
+    return seen
+
+
+def test_jobs_bring_rules_of_their_own(
+    run: Any, drawings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = asked_by(monkeypatch)
+    jobs = tmp_path / "jobs.toml"
+    part = drawings / "ell-1.json"
+    jobs.write_text(f'[[job]]\npart = "{part}"\navoid = [2]\n[[job]]\npart = "{part}"\nangle = ["0..90"]\n')
+    assert run("family", drawings / "bracket-2.json", jobs, *VISE, "--avoid", "1").exit_code == 130
+    told = [(one.name, one.query.restrictions.avoid, one.query.restrictions.angles) for one in seen["asked"]]
+    assert told == [
+        ("bracket-2.json", (1,), ()),
+        ("ell-1.json", (2,), ()),
+        ("ell-1.json (2)", (1,), ((0.0, 90.0),)),
+    ]
+    jobs.write_text(f'toolkit = "plate-20mm"\n[[job]]\npart = "{part}"\n')
+    outcome = run("family", jobs, *VISE)
+    assert outcome.exit_code == 2 and "the parts of a family share that of the command line" in outcome.stderr
+    jobs.write_text(f'[[job]]\npart = "{part}"\nrank_by = "tilt"\n[[job]]\npart = "{part}"\n')
+    monkeypatch.undo()
+    outcome = run("family", jobs, *VISE)
+    assert outcome.exit_code == 2 and "the losses of a family are of one figure" in outcome.stderr
+
+
+def test_both_sides_and_the_zero(run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = asked_by(monkeypatch)
+    part = drawings / "ell-1.json"
+    assert run("family", part, *VISE, "--both-sides", "--same-zero", "--zero", "5,6").exit_code == 130
+    one, other = seen["asked"]
+    assert (one.name, one.zero.point) == ("ell-1.json", (5.0, 6.0))
+    assert (other.name, other.zero.point) == ("ell-1.json, side 2", (-5.0, 6.0))
+    assert other.query.workpiece.bounds[0] == -one.query.workpiece.bounds[2]
+    assert seen["same_zero"] is True
+    assert run("family", part, *VISE).exit_code == 130
+    assert len(seen["asked"]) == 1 and seen["same_zero"] is False
+    outcome = run("family", part, *VISE, "--zero", "hole 3")
+    assert outcome.exit_code == 2 and "ell-1.json: part zero 'hole 3' cannot be used" in outcome.stderr
 
 
 @pytest.mark.parametrize(

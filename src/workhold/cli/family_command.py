@@ -5,27 +5,27 @@ from __future__ import annotations
 from math import isfinite
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from workhold.cli.commands import option, spread
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.family_parts import asked_of, jobs_of
+from workhold.cli.family_report import report
 from workhold.cli.json_output import JsonOption, print_json
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
-from workhold.cli.saying import tell
-from workhold.cli.search_options import QueryWords, with_fit_of
+from workhold.cli.search_options import QueryWords
 from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
 from workhold.cli.vise_options import ViseWords
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.cli.table import Table
-    from workhold.family.family import Asked, Family, LeftOut
+    from workhold.family.family import Family
     from workhold.family.losses import Threshold
-    from workhold.family.plan import Plan, SetUp
-    from workhold.model.toolkit import Toolkit
+    from workhold.family.plan import Plan
     from workhold.model.units import Unit
 
 __all__ = ["family"]
@@ -41,11 +41,28 @@ UnfitOption = Annotated[
     bool,
     typer.Option("--unfit", help="Use also what is no fixture for a workshop.", rich_help_panel=FAMILY),
 ]
+BothSidesOption = Annotated[
+    bool,
+    typer.Option(
+        "--both-sides",
+        help="Hold every part turned over as well, for the second operation.",
+        rich_help_panel=FAMILY,
+    ),
+]
+SameZeroOption = Annotated[
+    bool,
+    typer.Option(
+        "--same-zero",
+        help="All parts of a set-up have their zero at one place and are turned alike.",
+        rich_help_panel=FAMILY,
+    ),
+]
 PartsArgument = Annotated[
     list[str],
     typer.Argument(
         metavar="PARTS...",
-        help="The parts: DXF, SVG, JSON or STEP files, folders with such files, or built-in names.",
+        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each with its part, "
+        "restrictions and loads.",
     ),
 ]
 
@@ -65,6 +82,14 @@ def family(
         "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be repeated.",
     ),
     unfit: UnfitOption = False,
+    both_sides: BothSidesOption = False,
+    zero: str | None = option(
+        FAMILY,
+        "POINT",
+        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the origin of "
+        "the drawing where that is on the part, else the corner.",
+    ),
+    same_zero: SameZeroOption = False,
     time_limit: str = option(
         FAMILY,
         "SECONDS",
@@ -101,16 +126,15 @@ def family(
     seconds = positive_number("--time-limit", time_limit)
     workers = optional_count("--threads", threads)
     toolkit, tolerance = held_in.asked(shown)
-    asked = words.asked(shown)
-    asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
+    words.asked(shown)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.family.covering import load_solver
-    from workhold.files.part_list import part_list
 
     thresholds = [threshold_of(text) for text in limit or ()]
     load_solver()
-    listed = part_list(parts)
-    inputs = [*(one.path for one in listed), held_in.vise, held_in.toolkit, words.loads]
+    jobs = jobs_of(parts, words, reading)
+    inputs = [*parts, *(job.listed.path for job in jobs), held_in.vise, held_in.toolkit]
+    inputs += [job.words.loads for job in jobs]
     if draw is not None:
         picture_ending(Path(draw))
     if sheets is not None and Path(sheets).suffix.lower() not in SHEET_ENDINGS:
@@ -121,8 +145,10 @@ def family(
     refuse_one_name_twice(outputs)
     for name in outputs:
         refuse_output(name, inputs, force)
-    asked["arrangements"] = None if type_ == EVERY_TYPE else type_
-    members, left_out = queries_of(listed, toolkit, asked, reading.options())
+    types = None if type_ == EVERY_TYPE else type_
+    members, left_out = asked_of(jobs, toolkit, tolerance, types, zero)
+    if both_sides:
+        members = [side for one in members for side in (one, one.turned_over)]
     if not members:
         raise InputError(f"none of the parts can be used: {left_out[0].name}: {left_out[0].reason}")
     start = perf_counter()
@@ -130,11 +156,12 @@ def family(
 
     first_run = is_first_run()
     if first_run:
-        from workhold.cli.ending import ask_to_stop
         from workhold.cli.warming import compile_kernels
 
         with ask_to_stop("nothing is found yet") as cancel:
             compile_kernels(cancel)
+        if cancel.is_set():
+            raise typer.Exit(INTERRUPTED)
     from workhold.family.family import family_of
 
     with search_progress(keeps=False) as progress:
@@ -144,6 +171,7 @@ def family(
             unfit=unfit,
             most_loss=loss,
             seconds=seconds,
+            same_zero=same_zero,
             threads=workers,
             left_out=left_out,
             progress=progress,
@@ -246,118 +274,3 @@ def threshold_of(text: str) -> Threshold:
     if not equals or not isfinite(number(value)):
         raise InputError(f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05.")
     return threshold(name, number(value))
-
-
-def queries_of(
-    listed: Any, toolkit: Toolkit, asked: dict[str, Any], options: dict[str, Any]
-) -> tuple[list[Asked], list[LeftOut]]:
-    """What is asked for each part that can be read, and the parts that cannot."""
-    from hashlib import sha256
-
-    from workhold.family.family import Asked, LeftOut
-    from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
-    from workhold.files.part_list import read_listed
-    from workhold.model.query import Query
-
-    ranking = asked["ranking"] or (PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING)
-    members, left_out = [], []
-    for one in listed:
-        read = read_listed(one, **options)
-        if read.loaded is None:
-            left_out.append(LeftOut(one.name, str(one.path), read.refusal.rstrip(".")))
-            continue
-        for remark in read.loaded.remarks:
-            tell(f"{one.name}: {remark}")
-        digest = sha256(Path(one.path).read_bytes()).hexdigest() if Path(one.path).is_file() else ""
-        query = Query(read.loaded.workpiece, toolkit, **{**asked, "ranking": ranking})
-        members.append(Asked(one.name, query, str(one.path), digest))
-    return members, left_out
-
-
-def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
-    """Tell the curve, what was left out, and the plan."""
-    from workhold.cli.tables import plural, print_tables
-
-    toolkit = found.toolkit
-    for part in found.left_out:
-        tell(f"{part.name} is left out: {part.reason}.")
-    if not found.members:
-        print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
-        return
-    assert found.table is not None
-    print_tables(curve_table(found, unit))
-    sentences = [
-        f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at least one of them; "
-        f"{spent}.",
-        f"The loss is the {found.figure.words} over the best that each part has {toolkit.wording.inside}.",
-    ]
-    if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
-        sentences.append("Time was over before all of it was proven: a longer --time-limit may show less.")
-    print_tables(*sentences)
-    if plan is None:
-        print_tables("See the plan of a line with --setups K, or of the fewest set-ups within a loss with --max-loss.")
-        return
-    for number_, setup in enumerate(plan.setups, 1):
-        heading = f"Set-up {number_} of {len(plan.setups)}: {pegs_words(setup, toolkit)}"
-        place = "" if number_ == 1 else f" ({setup.moved} to place, the rest stands)"
-        print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
-        if any(one.turned for one in setup.holdings):
-            print_tables("A number with ' is that of the list after half a turn of everything, which swaps the jaws.")
-        for one in setup.holdings:
-            if not one.in_place:
-                holes = ", ".join(peg.hole for peg in one.fixture.pegs)
-                print_tables(f"{one.member.name} needs the same pegs in other columns: {holes}.")
-
-
-def curve_table(found: Family, unit: Unit) -> Table:
-    """The curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
-    from workhold.cli.tables import Table, figure_text, heading
-    from workhold.family.losses import loss_text
-
-    table = Table((">set-ups", ">worst loss", ">pegs moved", f">{heading(found.figure, unit)}", "worst part"))
-    for plan in found.plans:
-        point = plan.point
-        worst = max((one for setup in plan.setups for one in setup.holdings), key=lambda one: one.loss)
-        count = f"{point.setups}" if point.at_least == point.setups else f"{point.at_least} to {point.setups}"
-        table.add_row(
-            count,
-            loss_text(point.loss),
-            str(plan.moved),
-            figure_text(found.figure, worst.figure, unit),
-            worst.member.name,
-        )
-    return table
-
-
-def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
-    """The holes of a set-up."""
-    return ", ".join(peg.hole for peg in setup.standing.fixture.pegs if not peg.is_on_wall)
-
-
-def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
-    """The parts of a set-up and how each lies."""
-    from workhold.cli.tables import Table, figure_text, heading
-    from workhold.family.losses import loss_text
-    from workhold.model.setting import settings_of
-
-    settings = settings_of(setup.standing.fixture, found.toolkit)
-    names = [f">{setting.sign} {unit.abbreviation}" for setting in settings]
-    columns = ("part", ">fixture", ">angle", f">x {unit.abbreviation}", f">y {unit.abbreviation}", *names, ">loss")
-    # With two clamps there are lengths enough for a terminal.
-    with_figure = len(settings) < 2
-    table = Table((*columns, f">{heading(found.figure, unit)}") if with_figure else columns)
-    for one in setup.holdings:
-        fixture = one.fixture
-        pose = fixture.pose
-        lengths = [unit.number(setting.length) for setting in settings_of(fixture, found.toolkit)]
-        table.add_row(
-            one.member.name,
-            f"{one.number:,}" + ("'" if one.turned else ""),
-            f"{pose.theta_deg:.3f}",
-            unit.number(pose.x),
-            unit.number(pose.y),
-            *lengths,
-            loss_text(one.loss),
-            *([figure_text(found.figure, one.figure, unit)] if with_figure else []),
-        )
-    return table

@@ -13,7 +13,9 @@ from workhold.family.covering import load_solver
 from workhold.family.curve import Point, Table, curve_of, table_of
 from workhold.family.losses import Threshold
 from workhold.family.members import Member, member_of
+from workhold.family.other_side import OTHER_SIDE, other_side, zero_of_other_side
 from workhold.family.plan import Plan, plan_of
+from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.quality import FIGURES, Figure, figure_number
 from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
@@ -34,12 +36,21 @@ class Asked:
     name : what it is called among the others.
     query : what is asked for it: the whole list of its fixtures.
     path, digest : its file and the SHA-256 of that, "" where there is none.
+    zero : its zero; the usual one of its part if None.
     """
 
     name: str
     query: Query
     path: str = ""
     digest: str = ""
+    zero: PartZero | None = None
+
+    @property
+    def turned_over(self) -> Asked:
+        """The other side of the part."""
+        zero = part_zero(self.query.workpiece) if self.zero is None else self.zero
+        name = f"{self.name}, {OTHER_SIDE}"
+        return evolve(self, name=name, query=other_side(self.query), zero=zero_of_other_side(zero))
 
 
 @frozen
@@ -108,6 +119,7 @@ def family_of(
     unfit: bool = False,
     most_loss: float | None = None,
     seconds: float | None = None,
+    same_zero: bool = False,
     threads: int | None = None,
     left_out: Sequence[LeftOut] = (),
     progress: Callable[[float, int], None] = lambda fraction, found: None,
@@ -120,13 +132,15 @@ def family_of(
     thresholds, unfit : which fixtures may be used, see ``family.losses.may_be_used``.
     most_loss : larger losses are not accepted; None is any.
     seconds : after which the curve tells what is known until then; None proves all of it.
+    same_zero : whether the zeros of all parts of a set-up must lie at one place, and the parts be turned alike.
     left_out : parts that are left out already.
     progress : called with the fraction done and how many fixtures were found.
 
     Raises
     ------
     InputError
-        When SciPy is not installed, a loss below 1 is asked for, and as ``search.design.answer``.
+        When SciPy is not installed, a loss below 1 is asked for, parts are asked for in different toolkits or for different
+        figures, and as ``search.design.answer``.
 
     Examples
     --------
@@ -141,6 +155,12 @@ def family_of(
     load_solver()
     if most_loss is not None and not most_loss >= 1.0:
         raise InputError(f"a largest loss of {most_loss:g} cannot be: every loss is 1 or more.")
+    first = asked[0].query
+    for one in asked:
+        if one.query.toolkit != first.toolkit:
+            raise InputError(f"{one.name} is asked for in another toolkit: the parts of a family share theirs.")
+        if one.query.ranking[0] != first.ranking[0]:
+            raise InputError(f"{one.name} is ranked by another figure: the losses of a family are of one figure.")
     members, out, found = list[Member](), list(left_out), 0
     for place, one in enumerate(asked):
 
@@ -151,12 +171,11 @@ def family_of(
         query = evolve(one.query, best=None, listing="all" if one.query.toolkit.needs_pairs else None)
         result = answer(query, threads=threads, progress=share)
         found += len(result)
-        member = member_of(one.name, result, thresholds, unfit, one.path, one.digest)
+        member = member_of(one.name, result, thresholds, unfit, one.path, one.digest, one.zero, same_zero)
         if len(member.words) and (most_loss is None or member.loss.min() <= most_loss):
             members.append(member)
         else:
             out.append(LeftOut(one.name, one.path, reason_of(member, bool(len(member.words)))))
-    first = asked[0].query
     figure = FIGURES[figure_number(first.ranking[0]) or 0]
     if not members:
         return Family(first.toolkit, figure, (), tuple(out), (), None)

@@ -38,6 +38,7 @@ def family_text(family: Family) -> str:
             "name": one.name,
             "path": one.path,
             "hash": one.digest,
+            "zero": [length(value) for value in one.zero.point],
             "fixtures": one.fixtures,
             "patterns": one.patterns,
             "best": significant(one.best),
@@ -114,6 +115,7 @@ def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]
             "y": length(fixture.pose.y),
         },
         **opening_entry(fixture, toolkit),
+        "zero": [length(value) for value in fixture.pose.apply(*one.member.zero.point)],
         "figure": significant(one.figure),
         "loss": significant(one.loss),
     }

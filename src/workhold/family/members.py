@@ -15,9 +15,10 @@ from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError
 from workhold.family.holding import turned
 from workhold.family.losses import Threshold, losses, may_be_used
-from workhold.family.patterns import half_turn, pattern_words
+from workhold.family.patterns import half_turn, pattern_words, zero_words
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
+from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.quality import FIGURES, figure_number
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
@@ -41,6 +42,7 @@ class Member:
     path : its file, "" where there is none.
     digest : SHA-256 of that file in hexadecimal, "" where there is none.
     query : what was asked for it.
+    zero : its zero, X0 Y0.
     fixtures : how many fixtures it has.
     patterns : how many patterns hold it, one and its half turn counted once.
     best : the best value of the figure that losses are told of; NaN where it has no fixture.
@@ -55,6 +57,7 @@ class Member:
     path: str
     digest: str
     query: Query
+    zero: PartZero
     fixtures: int
     patterns: int
     best: float
@@ -72,6 +75,8 @@ def member_of(
     unfit: bool = False,
     path: str = "",
     digest: str = "",
+    zero: PartZero | None = None,
+    same_zero: bool = False,
 ) -> Member:
     """The member that a part is, from all its fixtures.
 
@@ -79,6 +84,8 @@ def member_of(
     ----------
     result : all fixtures, ranked; the first figure of its ranking is that of losses.
     thresholds, unfit : what may be used, see ``family.losses.may_be_used``.
+    zero : the part's zero; the usual one if None.
+    same_zero : whether patterns are told apart by where the zero lies as well, and how the part is turned.
 
     Raises
     ------
@@ -95,13 +102,16 @@ def member_of(
     best = float(values[good][np.argmin(loss[good])]) if good.any() else float("nan")
     used = np.flatnonzero(good & may_be_used(table, thresholds, query.tolerance, unfit))
     words, cost, turn = pattern_words(table.take(used), query.toolkit), loss[used], used >= len(result)
+    count = distinct_patterns(words, number[used], turn)
+    zero = part_zero(query.workpiece) if zero is None else zero
+    if same_zero:
+        words = np.concatenate([words, zero_words(table.take(used), query.toolkit, zero)], axis=1)
     # Rows are ranked, and sorting keeps that order: of equal losses the first is the best.
     order = np.lexsort([cost, *words.T[::-1]])
     first = order[changes(list(words[order].T))]
     kept = spilled(table.take(used[first]))
-    count = distinct_patterns(words, number[used], turn)
     chosen = words[first], cost[first], number[used[first]], turn[first], kept
-    return Member(name, path, digest, query, len(result), count, best, *chosen)
+    return Member(name, path, digest, query, zero, len(result), count, best, *chosen)
 
 
 def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:

@@ -5,19 +5,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import packed
+from workhold.model.part_zero import PartZero
 from workhold.model.plate import turned_half
 from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.vise import Vise
 
-__all__ = ["column_groups", "counted", "half_turn", "pattern_words"]
+__all__ = ["column_groups", "counted", "half_turn", "pattern_words", "zero_words"]
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 # Columns, rows and arrangements in packed numbers; more columns or rows than this no search can look through.
 MOST_STEPS, MOST_ARRANGEMENTS = (1 << 18) - 1, 15
+# Places of part zeros within this, in mm, and turns of parts within this, in degrees, are one. Where one such step ends and
+# the next begins is at no round number, so that rounding does not tell apart what is equal.
+SAME_ZERO, SAME_TURN, BEGINNING = 1e-3, 1e-4, 0.3819660113
 # Larger than any column or row.
 BEYOND = 1 << 40
 
@@ -77,3 +82,25 @@ def least(values: IntArray, inside: BoolArray) -> IntArray:
     """The smallest (N, 1) of the values (N, P) that count, 0 where none does."""
     found = np.where(inside, values, BEYOND).min(axis=1, keepdims=True, initial=BEYOND)
     return np.where(found == BEYOND, 0, found)
+
+
+def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
+    """Where the zero of a part lies from the pegs of its fixtures, and how the part is turned, (N, 3) in whole steps.
+
+    They are the same for fixtures of one pattern in which parts have their zeros at one place and are turned alike.
+    """
+    carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
+    counts = np.array([counted(one) for one in toolkit.carriers])[carriers]
+    still = np.array(column_groups(toolkit))[carriers] == 0
+    pitch = toolkit.carriers[0].pitch
+    column = least(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
+    row = least(table.row.astype(np.int64), counts[:, :, 1])[:, 0] if toolkit.wall is None else 0
+    x, y = rotated(zero.point[0], zero.point[1], table.theta)
+    degrees = np.degrees(table.theta) + SAME_TURN / 2
+    places = [
+        (x + table.position[:, 0] - column * pitch[0]) / SAME_ZERO,
+        (y + table.position[:, 1] - row * pitch[1]) / SAME_ZERO,
+        # A hair below a whole turn is none.
+        (degrees % 360.0) / SAME_TURN,
+    ]
+    return np.stack([np.floor(values + BEGINNING).astype(np.int64) for values in places], axis=1)

@@ -23,7 +23,6 @@ from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.family.losses import loss_text
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.model.holes import hole_name
-from workhold.model.part_zero import part_zero
 from workhold.model.quality import Figure
 from workhold.model.setting import Setting, settings_of
 from workhold.model.units import MILLIMETRE, Unit
@@ -148,7 +147,7 @@ def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box
         group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
         view = View.fitting(bench.extent, inner, scale)
         draw_bench(group, bench, view, weight=0.55, longest=24.0, axes=False)
-        zero = view(bench.fixture.pose.apply(*part_zero(one.member.query.workpiece).point))
+        zero = view(bench.fixture.pose.apply(*one.member.zero.point))
         if inner.grown(4).contains(Box(*zero, *zero)):
             draw_zero(group, zero, 4.0)
         name = shortened(one.member.name, NAME, cell.width - 12, bold=True)
@@ -190,7 +189,7 @@ def setting_name(setting: Setting) -> str:
 def table_row(one: Holding, titles: Titles) -> list[str]:
     """What is set and programmed for a part."""
     fixture, number = one.fixture, titles.lengths.number
-    x, y = fixture.pose.apply(*part_zero(one.member.query.workpiece).point)
+    x, y = fixture.pose.apply(*one.member.zero.point)
     return [
         one.member.name,
         *(number(setting.length) for setting in settings_of(fixture, one.member.query.toolkit)),
@@ -205,7 +204,7 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
 
 def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
     """What stands below the table: what signs mean, what is a part's zero, and whose pegs stand in other columns."""
-    zeros = {part_zero(one.member.query.workpiece).words for one in holdings}
+    zeros = {one.member.zero.words for one in holdings}
     origin = hole_name(holdings[0].member.query.toolkit.carriers[0].name, 0, 0)
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
     wall = holdings[0].member.query.toolkit.wall

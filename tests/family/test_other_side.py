@@ -1,0 +1,141 @@
+"""A part turned over: the mirrored part with mirrored rules has the mirrored fixtures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from family_parts import shop_parts
+from workhold import Plate, Query, Vise, Workpiece, answer
+from workhold.family.family import Asked, family_of
+from workhold.family.holding import holes_of
+from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
+from workhold.family.other_side import other_side, zero_of_other_side
+from workhold.model.load import Load
+from workhold.model.part_zero import PartZero, part_zero
+from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
+from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.verification.fixture_proof import Judge
+
+pytest.importorskip("scipy", reason="the extra [batch] is not installed")
+
+# Of lines and arcs, with a hole, unlike its mirror image.
+LEVER = Workpiece.from_loops(
+    "lever",
+    [[[0, 0, 0], [60, 0, 0.4], [60, 22, 0], [20, 40, 0], [0, 35, -0.2]], [[12, 12, 0], [24, 12, 0], [18, 24, 0]]],
+)
+LOAD = Load([(50, 12)], 200.0, (20.0, 70.0), moment=300.0)
+
+
+def lever_query(restrictions: Restrictions) -> Query:
+    """What is asked for the lever, under a load."""
+    vise = Vise(pitch=10, columns=2, peg_radius=3)
+    return Query(LEVER, vise, restrictions=restrictions, ranking=["location_error"], loads=[LOAD])
+
+
+@pytest.mark.parametrize(
+    "restrictions",
+    [Restrictions(), Restrictions(avoid=(4,)), Restrictions(zones=[circle_zone(70.0, 11.0, 5.0)])],
+    ids=["nothing", "face", "zone"],
+)
+def test_the_other_side_has_the_mirrored_fixtures(restrictions: Restrictions) -> None:
+    query = lever_query(restrictions)
+    one, other = answer(query, threads=1), answer(other_side(query), threads=1)
+    free = answer(lever_query(Restrictions()), threads=1)
+    assert len(one) == len(other) > 0 and (len(one) < len(free)) == bool(restrictions)
+    # Half a turn of everything chooses among two forms of one fixture, with a location error each: type I is left out.
+    mine, theirs = (
+        np.sort(
+            np.round(result.table.quality[result.table.arrangement == 1], 6)[:, [LOCATION_ERROR, LOAD_REACTION]], axis=0
+        )
+        for result in (one, other)
+    )
+    assert len(mine) > 0
+    assert mine == pytest.approx(theirs, rel=1e-4)
+    assert np.sort(one.table.quality[:, LOAD_REACTION]) == pytest.approx(
+        np.sort(other.table.quality[:, LOAD_REACTION]), rel=1e-6
+    )
+
+
+def test_turned_over_twice_it_is_as_before() -> None:
+    query = lever_query(Restrictions(avoid=(1, 6), zones=[circle_zone(70.0, 11.0, 5.0)], angles=[(-10.0, 30.0)]))
+    again = other_side(other_side(query))
+    assert [loop.tolist() for loop in again.workpiece.loops] == [loop.tolist() for loop in LEVER.loops]
+    assert again.restrictions.avoid == query.restrictions.avoid and again.restrictions.angles == ((-10.0, 30.0),)
+    assert again.loads == query.loads
+    turned = other_side(query)
+    before, after = ({face.number: face.segment for face in part.faces} for part in (LEVER, turned.workpiece))
+    for number, image in zip(query.restrictions.avoid, reversed(turned.restrictions.avoid), strict=True):
+        x, y = before[number].at(0.0)
+        assert any(after[k].at(0.0) == pytest.approx((-x, y)) for k in turned.restrictions.avoid), image
+
+
+def test_the_zero_is_the_same_point_of_the_part() -> None:
+    zero = part_zero(LEVER, "hole 1")
+    other = zero_of_other_side(zero)
+    assert other == PartZero((-zero.point[0], zero.point[1]), zero.words)
+    turned = Asked("lever", lever_query(Restrictions())).turned_over
+    assert turned.zero == PartZero((0.0, 0.0), "origin of the drawing")
+    assert turned.zero.point == pytest.approx(zero_of_other_side(part_zero(LEVER)).point)
+    assert turned.name == "lever, side 2"
+    assert Asked("lever", lever_query(Restrictions()), zero=zero).turned_over.zero == other
+
+
+def test_both_sides_share_pins() -> None:
+    parts = [
+        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=FAMILY_RANKING)) for p in shop_parts(2)
+    ]
+    family = family_of([side for one in parts for side in (one, one.turned_over)], threads=1)
+    assert [one.name for one in family.members] == ["ell-1", "ell-1, side 2", "bracket-2", "bracket-2, side 2"]
+    judges = {id(one): Judge(one.query) for one in family.members}
+    for plan in family.plans:
+        held = [one for setup in plan.setups for one in setup.holdings]
+        assert len(held) == 4
+        assert all(judges[id(one.member)].rule_on(one.fixture).verdict == "proven" for one in held)
+    assert len(family.plans[0].setups) == 1
+
+
+@pytest.mark.parametrize("toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)])
+def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
+    ranking = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+    # Rectangles of one height: a common corner can lie at one place.
+    parts = [
+        Workpiece.from_loops(str(w), [[[0, 0, 0], [w, 0, 0], [w, 45.0, 0], [0, 45.0, 0]]])
+        for w in (60.0, 63.0, 71.5, 84.0)
+    ]
+    asked = [Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in parts]
+    free, strict = family_of(asked, threads=1), family_of(asked, same_zero=True, threads=1)
+    assert len(strict.members) == 4
+    for plan in strict.plans:
+        for setup in plan.setups:
+            places = [one.fixture.pose.apply(*one.member.zero.point) for one in setup.holdings]
+            turns = [one.fixture.pose.theta_deg for one in setup.holdings]
+            assert np.ptp(np.array(places), axis=0) == pytest.approx([0.0, 0.0], abs=2e-3)
+            assert np.ptp(turns) == pytest.approx(0.0, abs=2e-4)
+            assert len({tuple(holes_of(one.row, toolkit)) for one in setup.holdings}) == 1
+        best = min(point.loss for point in free.points if point.setups <= plan.point.setups)
+        assert best <= plan.point.loss
+    assert len(strict.plans[-1].setups) >= len(free.plans[-1].setups)
+    if isinstance(toolkit, Plate):
+        # Beside the common corner the rest of the part may be any.
+        assert strict.points[0].setups < 4
+
+
+def test_rounding_does_not_part_what_is_at_one_place() -> None:
+    from attrs import evolve
+
+    from workhold.family.patterns import zero_words
+
+    result = answer(Query(shop_parts(1)[0], Vise(pitch=10, columns=1, peg_radius=3)), threads=1)
+    table, zero = result.table, PartZero((3.0, 4.0), "")
+    words = zero_words(table, result.toolkit, zero)
+    for hair in (1e-9, -1e-9):
+        near = evolve(table, position=table.position + hair, theta=np.abs(table.theta + hair * 1e-3))
+        assert (zero_words(near, result.toolkit, zero) == words).mean() > 0.999
+    assert (zero_words(evolve(table, position=table.position + 0.002), result.toolkit, zero) != words)[:, :2].all()
+    whole = evolve(table, theta=np.full(len(table), 2 * np.pi - 1e-12))
+    none = evolve(table, theta=np.zeros(len(table)))
+    assert (zero_words(whole, result.toolkit, zero) == zero_words(none, result.toolkit, zero)).all()
+    # Where the pegs stand is of no account, only where the part lies from them.
+    lifted = evolve(table, row=table.row + 3, position=table.position + np.array([0.0, 30.0]))
+    assert (zero_words(lifted, result.toolkit, zero) == words).all()
