@@ -14,7 +14,7 @@ from workhold.batch.jobs import ANY_PART, HeldIn, Request
 from workhold.batch.measured import Measured
 from workhold.batch.records import refusal_record
 from workhold.batch.run import Batch, Work, run_batch
-from workhold.batch.store import FolderStore
+from workhold.batch.store import FolderStore, Store
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
@@ -70,12 +70,18 @@ class InlineQueue:
 
 
 def run_in(
-    folder: Path, *given: object, queue: InlineQueue, held_in: tuple[HeldIn, ...] = (COARSE,), best: int = 3
+    folder: Path,
+    *given: object,
+    queue: InlineQueue,
+    held_in: tuple[HeldIn, ...] = (COARSE,),
+    best: int = 3,
+    store: Store | None = None,
 ) -> Batch:
     """Run a batch of parts into a folder."""
     requests = [Request(part, {}, held_in) for part in part_list([str(one) for one in given])]
+    store = FolderStore(folder / "work") if store is None else store
     measured = Measured(folder / "measured.csv")
-    return run_batch(requests, best, Work(FolderStore(folder / "work"), queue, measured, Onlooker(), Event()))
+    return run_batch(requests, best, Work(store, queue, measured, Onlooker(), Event()))
 
 
 def records_in(folder: Path) -> dict[str, bytes]:

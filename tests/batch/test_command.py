@@ -60,8 +60,17 @@ def wait_for_records(process: subprocess.Popen[str], folder: Path) -> None:
         sleep(0.01)
 
 
-def test_two_workers_killed_in_the_middle_make_what_one_makes(shop: Path, alone: Path, tmp_path: Path) -> None:
-    for number, code in ((signal.SIGKILL, -9), (signal.SIGTERM, 143), (signal.SIGINT, 130)):
+@pytest.mark.parametrize(
+    "signals",
+    [
+        ((signal.SIGKILL, -9), (signal.SIGINT, 130)),
+        pytest.param(((signal.SIGTERM, 143), (signal.SIGINT, 130)) * 3, marks=pytest.mark.prove),
+    ],
+)
+def test_two_workers_killed_in_the_middle_make_what_one_makes(
+    shop: Path, alone: Path, tmp_path: Path, signals: tuple[tuple[signal.Signals, int], ...]
+) -> None:
+    for number, code in signals:
         with started(shop, *TOOLS, "--out", tmp_path / "out", "--workers", 2) as process:
             wait_for_records(process, tmp_path / "out")
             os.kill(process.pid, number)

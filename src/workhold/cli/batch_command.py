@@ -24,12 +24,14 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from workhold.batch.cluster import ClusterWorkers
     from workhold.batch.jobs import HeldIn, Request
     from workhold.batch.measured import Measured
-    from workhold.batch.queues import Queue
     from workhold.batch.report import Report
     from workhold.batch.run import Batch
     from workhold.batch.store import Store
+    from workhold.batch.workers import LocalWorkers
+    from workhold.cli.batch_progress import BatchProgress
 
 __all__ = ["batch"]
 
@@ -78,6 +80,16 @@ def batch(
     force: ForceOption = False,
     json_: JsonOption = False,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
+    cluster: str | None = option(
+        WORK, "ADDRESS", "Work on a Dask cluster instead, by the address of its scheduler, such as tcp://10.0.0.5:8786."
+    ),
+    local_cluster: str | None = option(WORK, "N", "Work on a Dask cluster of N processes on this machine instead."),
+    records: str | None = option(
+        WORK,
+        "URL|DIR",
+        "Where records are kept, if not in the folder of --out: a folder that all workers of a cluster see, or an object "
+        "store such as s3://bucket/batch. Workers write there themselves.",
+    ),
     reading: PartWords,
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
@@ -90,7 +102,11 @@ def batch(
     if not out:
         raise InputError("the folder for the results is not given: name one with --out.")
     kept = optional_count("--best", best) or 1
-    count = optional_count("--workers", workers)
+    count, processes = optional_count("--workers", workers), optional_count("--local-cluster", local_cluster)
+    if sum(word is not None for word in (workers, cluster, local_cluster)) > 1:
+        raise InputError("--workers, --cluster and --local-cluster are three places to work: give one of them.")
+    if cluster is not None or processes is not None:
+        refuse_no_cluster()
     folder = Path(out)
     from workhold.batch.tables import has_parquet, table_names
 
@@ -100,19 +116,20 @@ def batch(
     from workhold.batch.measured import Measured
     from workhold.batch.run import Work, run_batch
     from workhold.batch.store import FolderStore
-    from workhold.batch.workers import LocalWorkers, processor_count
+    from workhold.batch.url_store import store_at
     from workhold.kernels.base.compiling import is_first_run
 
-    store = FolderStore(folder / RECORDS)
+    store = FolderStore(folder / RECORDS) if records is None else store_at(records)
     start = perf_counter()
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
-        if is_first_run():
+        if cluster is None and is_first_run():
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(stop)
         with batch_progress() as progress, ExitStack() as workshop:
-            queue: Queue = workshop.enter_context(LocalWorkers(count or processor_count(), progress))
+            queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
+            workshop.enter_context(queue)
             measured = Measured(folder / MEASURED)
             done = run_batch(requests, kept, Work(store, queue, measured, progress, stop))
     spent = perf_counter() - start
@@ -131,9 +148,41 @@ def batch(
         print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
         tell("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
+    gone = getattr(queue, "gone", "")
+    if gone:
+        raise InputError(gone)
     if not done.is_complete:
         tell("interrupted: start the same command again to go on.")
         raise typer.Exit(INTERRUPTED)
+
+
+def refuse_no_cluster() -> None:
+    """Refuse a cluster where the library for it is not installed.
+
+    Raises
+    ------
+    InputError
+        With what to install.
+    """
+    from importlib.util import find_spec
+
+    if find_spec("distributed") is None:
+        raise InputError(
+            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
+        )
+
+
+def place_to_work(
+    progress: BatchProgress, count: int | None, cluster: str | None, processes: int | None, store: Store | None
+) -> LocalWorkers | ClusterWorkers:
+    """The queue asked for; ``store`` is where the workers of a cluster put records themselves."""
+    if cluster is None and processes is None:
+        from workhold.batch.workers import LocalWorkers, processor_count
+
+        return LocalWorkers(count or processor_count(), progress)
+    from workhold.batch.cluster import ClusterWorkers
+
+    return ClusterWorkers(progress, cluster, processes or 0, store)
 
 
 def requests_of(

@@ -1,0 +1,191 @@
+"""A queue on a cluster of Dask (``dask.distributed``): a scheduler hands tasks to workers on any number of machines.
+
+Workers need this program and nothing else: a task is sent whole, and its record comes back, or goes where it is kept. What a
+lost worker had in hand goes to another one, as far as there are any; when the scheduler is lost, the run ends with what
+there is.
+
+M. Rocklin, "Dask: Parallel Computation with Blocked algorithms and Task Scheduling", SciPy 2015.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+from queue import Empty, SimpleQueue
+from threading import Event
+from time import monotonic
+from typing import Any
+
+from attrs import define, evolve, field
+
+from workhold.batch.queues import Watcher
+from workhold.batch.store import Store
+from workhold.batch.tasks import Outcome, Task, done
+from workhold.batch.workers import deaf_children
+from workhold.errors import InputError
+
+__all__ = ["ClusterWorkers"]
+
+# Seconds between looks at whether to stop, between counts of the workers, and without any worker before that is told.
+LOOK, COUNT, PATIENCE = 0.1, 2.0, 20.0
+# Seconds for a scheduler to answer.
+ANSWER = 20
+# Tasks at the scheduler for each thread of a worker, so that none waits for the next one.
+AHEAD = 3
+
+
+@define(eq=False)
+class ClusterWorkers:
+    """A queue of the workers of a cluster; use it in a ``with`` block.
+
+    Parameters
+    ----------
+    watcher : is told what happens.
+    address : of a scheduler, such as ``tcp://10.0.0.5:8786``; None starts a cluster on this machine.
+    count : of worker processes of a cluster on this machine.
+    store : where workers put records themselves; None lets them come back.
+    gone : why the scheduler is no more, in a sentence; empty while it is there.
+    """
+
+    watcher: Watcher
+    address: str | None = None
+    count: int = 0
+    store: Store | None = None
+    gone: str = field(default="", init=False)
+    client: Any = field(default=None, init=False)
+    stack: ExitStack = field(factory=ExitStack, init=False)
+    threads: int = field(default=0, init=False)
+    counted_at: float = field(default=0.0, init=False)
+    idle_since: float = field(default=0.0, init=False)
+
+    def __enter__(self) -> ClusterWorkers:
+        from distributed import Client, LocalCluster
+
+        # What Dask has to say of what is lost is told in sentences of this program's own.
+        self.stack.callback(logging.disable, logging.root.manager.disable)
+        logging.disable(logging.CRITICAL)
+        at: Any = self.address
+        try:
+            if at is None:
+                with deaf_children():
+                    cluster = LocalCluster(
+                        n_workers=self.count,
+                        threads_per_worker=1,
+                        dashboard_address=None,
+                        silence_logs=logging.CRITICAL,
+                    )
+                at = self.stack.enter_context(cluster)
+            self.client = self.stack.enter_context(Client(at, timeout=ANSWER, set_as_default=False))
+        except (OSError, ValueError, TimeoutError) as error:
+            self.stack.close()
+            raise InputError(
+                f"no scheduler answers at {self.address}: start one with dask scheduler, or correct the address."
+            ) from error
+        self.client.subscribe_topic("all", self.hear)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        with suppress(Exception):
+            self.client.unsubscribe_topic("all")
+        with suppress(Exception):
+            self.stack.close()
+
+    def hear(self, event: tuple[float, Any]) -> None:
+        """Take note of what the scheduler tells of its workers; runs in a thread of the client's."""
+        told = event[1]
+        if isinstance(told, dict) and told.get("action") == "remove-worker":
+            busy = told.get("processing-tasks") or {}
+            again = f" {len(busy)} tasks it had in hand are given to others." if busy else ""
+            self.watcher.told(f"The worker at {told.get('worker')} is lost.{again}")
+
+    def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
+        """See :class:`workhold.batch.queues.Queue`."""
+        finished: SimpleQueue[Any] = SimpleQueue()
+        pending: dict[str, tuple[Any, Task]] = {}
+        exhausted = False
+        self.idle_since = monotonic()
+        while not stop.is_set():
+            room = max(AHEAD * self.count_threads(), 1)
+            while not exhausted and not self.gone and len(pending) < room:
+                task = next(tasks, None)
+                if task is None:
+                    exhausted = True
+                else:
+                    pending[task.name] = (self.submit(task, finished), task)
+            if not pending and not self.gone:
+                return
+            with suppress(Empty):
+                future = finished.get(timeout=LOOK)
+                taken = pending.pop(future.key, None)
+                outcome = None if taken is None else self.outcome(future, taken[1])
+                if outcome is not None:
+                    yield outcome
+            if self.gone or self.client.status != "running":
+                self.give_up(stop)
+        with suppress(Exception):
+            self.client.cancel([future for future, _ in pending.values()])
+
+    def submit(self, task: Task, finished: SimpleQueue[Any]) -> Any:
+        """Hand a task to the scheduler."""
+        future = self.client.submit(done_there, task, self.store, key=task.name, pure=False)
+        future.add_done_callback(finished.put)
+        return future
+
+    def count_threads(self) -> int:
+        """How many threads the workers have, as counted lately; that there are none is told after a while."""
+        now = monotonic()
+        if now < self.counted_at + COUNT or self.gone:
+            return self.threads
+        self.counted_at = now
+        try:
+            self.threads = sum(self.client.nthreads().values())
+        except Exception:
+            # Whatever a client whose scheduler is going may raise.
+            self.threads = 0
+        if self.threads:
+            self.idle_since = now
+        elif now > self.idle_since + PATIENCE:
+            self.idle_since = now
+            self.watcher.told("The cluster has no worker: the run waits for one.")
+        return self.threads
+
+    def outcome(self, future: Any, task: Task) -> Outcome | None:
+        """What came of a task; None where the scheduler has lost it."""
+        if future.status == "finished":
+            outcome: Outcome = future.result()
+            return outcome
+        if future.status == "error":
+            error = future.exception()
+            if type(error).__name__ == "KilledWorker":
+                times = error.allowed_failures + 1
+                self.watcher.told(f"{times} workers ended while they had {task.title} in hand; it is given up.")
+                words = f"{times} workers ended while they had this in hand: it may need more memory than they have."
+                return Outcome(task.name, None, words)
+            words = " ".join(str(error).split())
+            return Outcome(task.name, None, f"The cluster refused this ({type(error).__name__}: {words}).")
+        self.gone = self.gone or "lost"
+        return None
+
+    def give_up(self, stop: Event) -> None:
+        """End the run: there is no scheduler any more."""
+        self.gone = (
+            f"the scheduler at {self.address or 'this machine'} is lost; what is done is kept: start it, and then the same "
+            "command again to go on."
+        )
+        self.watcher.told(f"T{self.gone[1:]}")
+        stop.set()
+
+
+def done_there(task: Task, store: Store | None) -> Outcome:
+    """Do a task in a worker of a cluster, and put its record where it belongs."""
+    from distributed import get_worker
+
+    outcome = done(task, str(get_worker().address))
+    if store is None or outcome.record is None:
+        return outcome
+    try:
+        store.write(task.name, outcome.record)
+    except InputError as error:
+        return evolve(outcome, record=None, failure=str(error))
+    return evolve(outcome, record=None)

@@ -1,0 +1,193 @@
+"""Work on a cluster of Dask: the same records as from one process, and what is lost on the way loses nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from threading import Event
+from time import sleep
+
+import pytest
+from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
+from test_command import run, started, wait_for_records
+from test_run import square
+
+from workhold.batch.records import plain_record, refusal_record
+from workhold.batch.store import FolderStore
+from workhold.batch.tables import table_names
+from workhold.batch.url_store import UrlStore, store_at
+from workhold.errors import InputError
+
+pytest.importorskip("distributed", reason="needs distributed")
+pytest.importorskip("fsspec", reason="needs fsspec")
+
+TOOLS = ("--pitch", "12,16", "--columns", "1", "--peg-radius", "3", "--toolkit", "vise")
+MANY_TOOLS = ("--pitch", "12,16", "--columns", "1,2", "--peg-radius", "3", "--toolkit", "vise")
+# What depends on the machine and the moment.
+OF_THE_MOMENT = ("seconds", "worker", "record")
+
+
+@pytest.fixture(scope="module")
+def shop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A dozen parts, one of which cannot be read."""
+    folder = tmp_path_factory.mktemp("shop")
+    for side in range(30, 41):
+        square(folder / f"p{side}.json", side)
+    (folder / "broken.dxf").write_text("0\nSECTION\n")
+    return folder
+
+
+def rows_of(folder: Path, name: str) -> list[dict[str, object]]:
+    """A table without what depends on the moment."""
+    parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
+    rows = parquet.read_table(folder / name).to_pylist()
+    return [{key: value for key, value in row.items() if key not in OF_THE_MOMENT} for row in rows]
+
+
+def test_a_cluster_makes_what_one_process_makes(shop: Path, tmp_path: Path) -> None:
+    """Also where its workers put the records themselves."""
+    for words in (("--workers", 1), ("--local-cluster", 2, "--records", tmp_path / "records")):
+        code, told, warned = run(shop, *TOOLS, "--out", tmp_path / str(words[0]), *words)
+        assert code == 0, warned
+        assert told.startswith("24 jobs: 22 held, 2 not readable.")
+    alone, cluster = tmp_path / "--workers", tmp_path / "--local-cluster"
+    kept = {
+        f"work/{path.relative_to(tmp_path / 'records')}": path.read_bytes() for path in tmp_path.glob("records/*/*")
+    }
+    assert records_in(alone) == kept and not (cluster / "work").exists()
+    for name in table_names():
+        assert rows_of(alone, name) == rows_of(cluster, name)
+
+
+def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: Path) -> None:
+    store = store_at("memory://workhold-test/batch/")
+    assert isinstance(store, UrlStore)
+    batch = run_in(tmp_path, shop / "p30.json", queue=InlineQueue(), store=store)
+    run_in(tmp_path / "folder", shop / "p30.json", queue=InlineQueue())
+    name = batch.jobs[0].name
+    assert store.place(name) == f"memory://workhold-test/batch/{name[:2]}/{name}.json"
+    assert store.read(name) == records_in(tmp_path / "folder")[f"work/{name[:2]}/{name}.json"]
+    with store.file(name) as path:
+        assert path.read_bytes() == store.read(name)
+    store.write("abcd", refusal_record("no")[:-1])
+    assert not store.has("abcd") and store.read("abcd") is None
+    assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
+
+
+def test_stores_are_told_by_their_urls(tmp_path: Path) -> None:
+    for url in (str(tmp_path), f"file://{tmp_path}"):
+        assert store_at(url) == FolderStore(tmp_path)
+    with pytest.raises(InputError, match="odd://bucket cannot be used"):
+        store_at("odd://bucket")
+
+
+@pytest.mark.prove
+def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(tmp_path: Path) -> None:
+    from workhold.batch.cluster import ClusterWorkers
+
+    tasks = [Fatal(f"task{n}", f"title {n}", tmp_path, times) for n, times in enumerate((0, 1, 99, 0))]
+    onlooker = Onlooker()
+    with ClusterWorkers(onlooker, count=2) as queue:
+        outcomes = {outcome.name: outcome for outcome in queue.run(iter(tasks), Event())}
+    assert set(outcomes) == {task.name for task in tasks}
+    assert "workers ended while they had this in hand" in outcomes["task2"].failure
+    done = [outcome.record for name, outcome in outcomes.items() if name != "task2"]
+    assert all(record is not None and "was done" in plain_record(record)["refusal"] for record in done)
+    assert sum("is lost" in sentence for sentence in onlooker.sentences) >= 3
+
+
+@contextmanager
+def scheduler(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes], subprocess.Popen[bytes]]]:
+    """A scheduler's address, its process, and that of a worker, as they are started on two machines."""
+    file = folder / "scheduler.json"
+    file.unlink(missing_ok=True)
+    commands = (
+        ("dask_scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)),
+        ("dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard"),
+    )
+    with ExitStack() as stack:
+        processes = []
+        for module, *words in commands:
+            command = [sys.executable, "-m", f"distributed.cli.{module}", *words]
+            processes.append(
+                subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder)
+            )
+            stack.callback(processes[-1].wait)
+            stack.callback(processes[-1].terminate)
+            while not file.exists() or not file.read_text().rstrip().endswith("}"):
+                assert processes[0].poll() is None
+                sleep(0.05)
+        yield json.loads(file.read_text())["address"], *processes
+
+
+@pytest.mark.prove
+def test_a_lost_scheduler_is_told_and_the_next_one_goes_on(shop: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with (
+        scheduler(tmp_path) as (address, process, _),
+        started(shop, *MANY_TOOLS, "--out", out, "--cluster", address) as command,
+    ):
+        wait_for_records(command, out)
+        os.kill(process.pid, signal.SIGKILL)
+        _, error = command.communicate(timeout=300)
+    assert command.returncode in (0, 2) and "Traceback" not in error, error
+    if command.returncode == 2:
+        assert f"the scheduler at {address} is lost; what is done is kept: start it, and then the same command" in error
+        assert f"The scheduler at {address} is lost" in (out / "report.html").read_text()
+    with scheduler(tmp_path) as (address, _, _):
+        code, _, warned = run(shop, *MANY_TOOLS, "--out", out, "--cluster", address)
+    assert code == 0, warned
+    run(shop, *MANY_TOOLS, "--out", tmp_path / "alone", "--workers", 1)
+    assert records_in(out) == records_in(tmp_path / "alone")
+
+
+@pytest.mark.prove
+def test_nobody_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from workhold.batch import cluster
+
+    monkeypatch.setattr(cluster, "ANSWER", 1)
+    code, _, warned = run("widget", *TOOLS, "--out", tmp_path / "out", "--cluster", "tcp://127.0.0.1:1")
+    assert code == 2 and "no scheduler answers at tcp://127.0.0.1:1: start one" in warned
+
+
+@pytest.mark.prove
+def test_two_hundred_parts_in_four_toolkits(tmp_path: Path) -> None:
+    """On two workers, one of which is killed in the middle, and then the whole run: the same files as from one process."""
+    import psutil
+
+    shop = tmp_path / "shop"
+    shop.mkdir()
+    for number in range(199):
+        square(shop / f"p{number}.json", 25 + number * 0.15)
+    (shop / "broken.svg").write_text("<svg")
+    out, alone = tmp_path / "out", tmp_path / "alone"
+    with started(shop, *MANY_TOOLS, "--out", out, "--local-cluster", 2) as command:
+        wait_for_records(command, out)
+        workers = [
+            process
+            for process in psutil.Process(command.pid).children(recursive=True)
+            if "spawn_main" in " ".join(process.cmdline())
+        ]
+        assert workers or command.poll() is not None
+        workers[0].kill()
+        wait_for_records(command, out)
+        command.kill()
+        command.communicate(timeout=300)
+    assert 0 < len(records_in(out)) < 199 * 5
+    code, _, warned = run(shop, *MANY_TOOLS, "--out", out, "--local-cluster", 2)
+    assert code == 0, warned
+    assert run(shop, *MANY_TOOLS, "--out", alone, "--workers", 1)[0] == 0
+    assert records_in(out) == records_in(alone) and len(records_in(out)) == 200 + 199 * 4
+    for name in table_names():
+        assert rows_of(out, name) == rows_of(alone, name)
+
+
+def test_a_place_to_work_is_one(tmp_path: Path) -> None:
+    code, _, warned = run("widget", *TOOLS, "--out", tmp_path / "out", "--workers", 1, "--local-cluster", 1)
+    assert code == 2 and "are three places to work: give one of them" in warned
