@@ -11,10 +11,12 @@ import tomllib
 from contextlib import redirect_stdout
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
 from workhold.errors import InputError
+from workhold.model.columns import COLUMNS, PAIR_COLUMNS
 from workhold.model.kinds import KINDS
 from workhold.model.vise import OpeningVise
 from workhold.version import __version__
@@ -92,6 +94,16 @@ def test_what_is_to_be_cited_is_this_version() -> None:
     assert cited["version"] == __version__
     assert {"type", "title", "authors"} <= set.intersection(*(set(one) for one in cited["references"]))
     assert cited["references"][0]["title"] == "Modular Fixture Design for Generalized Polyhedra"
+
+
+def test_the_columns_told_are_those_written() -> None:
+    """Each has a row with its kind of number and its shape; what a fixture takes is the sum."""
+    page = (ROOT / "docs" / "columns.md").read_text()
+    for name, column in COLUMNS.items():
+        number, shape = np.dtype(column.kind).name, ", ".join(map(str, ("N", *column.shape)))
+        assert re.search(rf"^\| .*`{name}.npy`.* \| {number} \| {shape} \|", page, flags=re.M), name
+    one, two = (sum(column.row_bytes for column in columns.values()) for columns in (COLUMNS, PAIR_COLUMNS))
+    assert f"{one} bytes a fixture, {two} with two clamps" in page
 
 
 def test_the_smallest_toolkit_is_as_small_as_told() -> None:

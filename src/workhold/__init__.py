@@ -1,8 +1,8 @@
-"""workhold finds every way to hold a part in a fixture vise with four pegs.
+"""workhold finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.
 
-The public face is small: :func:`load` reads a part, :class:`Vise` describes the vise, :func:`design` finds all fixtures
-and returns a :class:`Result`, which :func:`save` writes and :func:`open` reads. Names are imported on first use, so that
-``import workhold`` costs next to nothing.
+The public face is small: :func:`load` reads a part, :class:`Vise`, :class:`Plate` and :class:`Fence` describe what holds
+it, :func:`design` finds all fixtures and returns a :class:`Result`, which :func:`save` writes and :func:`open` reads.
+Names are imported on first use, so that ``import workhold`` costs next to nothing.
 """
 
 from __future__ import annotations

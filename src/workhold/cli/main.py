@@ -151,7 +151,7 @@ class Workhold(PlainGroup):
 app = typer.Typer(
     name="workhold",
     cls=Workhold,
-    help="Finds every way to hold a part in a fixture vise with four pegs.",
+    help="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.",
     epilog=EXAMPLES,
     add_completion=False,
     rich_markup_mode=None,

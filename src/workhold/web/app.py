@@ -73,7 +73,7 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: 
     app = FastAPI(
         title="workhold",
         version=__version__,
-        summary="Finds every way to hold a part in a fixture vise with four pegs.",
+        summary="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.",
         description="Lengths are in mm, angles in degrees, forces in N.",
         lifespan=lifespan,
         openapi_url="/api/openapi.json",
