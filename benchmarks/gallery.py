@@ -1,7 +1,7 @@
 """The gallery: the first choice for each of the twenty parts of ``shop_parts`` in its vise, on a plate, and against a fence.
 
-    python benchmarks/gallery.py                 docs/gallery.md, its pictures, and the picture at the head of the README
-    python benchmarks/gallery.py --only hinge    one part again
+    python benchmarks/gallery.py                 docs/gallery.md with its pictures, and the fixtures shown in README and manual
+    python benchmarks/gallery.py --only hinge    one part again; bracket makes those of README and manual too
 
 The pictures are those of ``workhold.drawing`` without lettering, small enough to stand side by side.
 """
@@ -9,9 +9,12 @@ The pictures are those of ``workhold.drawing`` without lettering, small enough t
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Iterator
+from datetime import date
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -24,7 +27,7 @@ from workhold.model.toolkit import Toolkit
 
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs" / "gallery.md", ROOT / "docs" / "figures" / "gallery"
-HEAD = ROOT / "docs" / "images" / "held-in-three-ways.png"
+IMAGES = ROOT / "docs" / "images"
 MARK = "<!-- gallery: what follows is written by benchmarks/gallery.py -->\n"
 CARD = (360.0, 300.0)
 EDGE = 10.0
@@ -92,6 +95,25 @@ def side_by_side(benches: dict[str, Bench]) -> str:
     return scene.svg()
 
 
+def write_images(benches: dict[str, Bench]) -> None:
+    """The pictures of the bracket in README and manual: in three ways, the sheet's first page, and with two clamps."""
+    (IMAGES / "held-in-three-ways.png").write_bytes(svg_to_png(side_by_side(benches), WIDTH))
+    bracket = PARTS[0].make()
+    plate = workhold.Plate.preset("two-clamp-plate-20mm")
+    clamped = workhold.design(bracket, plate, best=1)[0].draw(title="Fixture 1")
+    (IMAGES / "two-clamps.png").write_bytes(svg_to_png(clamped, 1100))
+    with TemporaryDirectory() as folder:
+        sheet = Path(folder) / "sheet.svg"
+        first = workhold.design(bracket, PARTS[0].vise)[0]
+        first.save_sheet(sheet, jaw_force=3000, thickness=12.0, dowel="6 mm m6 in H7", day=date(2026, 11, 22))
+        # The second page lies below the first, which is an A4 page of its own.
+        pages = sheet.read_text(encoding="utf-8")
+    first_page = re.sub(
+        r'height="420mm" viewBox="0 0 1188 1680"', 'height="210mm" viewBox="0 0 1188 840"', pages, count=1
+    )
+    (IMAGES / "sheet.png").write_bytes(svg_to_png(first_page, 1200))
+
+
 def told(part: ShopPart, benches: dict[str, Bench]) -> str:
     """What the page shows of a part."""
     cells = [f"[{part.name}](first-choice.md#{part.name}): {part.words}"]
@@ -116,7 +138,7 @@ def main() -> None:
             picture = card(bench, f"{part.name}: first choice by {name}")
             (PICTURES / f"{part.name}-{name}.svg").write_text(picture, encoding="utf-8")
         if part is PARTS[0]:
-            HEAD.write_bytes(svg_to_png(side_by_side(benches), WIDTH))
+            write_images(benches)
         rows.append(told(part, benches))
         sys.stdout.write(rows[-1])
         sys.stdout.flush()
