@@ -67,6 +67,7 @@ COMMANDS = {
         "Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each "
         "with its figures."
     ),
+    "copies": "Tell how many copies of fixture N a plate holds at once, and where each stands.",
     "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
     "batch": (
         "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files."

@@ -1,0 +1,289 @@
+"""Several copies of one part on one plate: a fixture repeated by whole columns and rows, as often as there is room.
+
+Two copies are clear of each other when their outlines are at least a gap apart, no peg or clamp of one comes nearer to the
+part of the other than that, and pegs and clamps do not overlap. That depends on the columns and rows between them alone. So
+the most copies are the largest set of places no two of which are at such a distance: a largest independent set,
+solved by HiGHS over sets of places that are pairwise too near, each of which holds one copy at most.
+
+Glossary
+--------
+shift : whole columns and rows by which a copy is moved beside the fixture that is repeated.
+too near : of a shift: two copies so far apart are not clear of each other.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations, pairwise
+from math import acos, ceil, floor, pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK
+from workhold.errors import InputError
+from workhold.family.covering import ROUNDING, load_solver
+from workhold.geometry.segment import Line
+from workhold.model.clamp import shown_clamps
+from workhold.model.fixture import Fixture
+from workhold.model.plate import Plate
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["Packing", "packing_of", "too_near_shifts"]
+
+Array = NDArray[np.float64]
+Shift = tuple[int, int]
+
+# Outlines are looked at as chords no farther than this from them, in mm; that much is added to the gap on either side.
+SAGITTA = 1e-3
+# More places than this are packed without a proof.
+MOST_PLACES = 4000
+
+
+@frozen
+class Packing:
+    """Copies of a fixture.
+
+    Parameters
+    ----------
+    shifts : columns and rows of each copy, from the lowest row on, from left to right.
+    at_most : it is proven that there is room for no more copies.
+    """
+
+    shifts: tuple[Shift, ...]
+    at_most: int
+
+
+@frozen(eq=False)
+class Bodies:
+    """What one copy takes up, in mm in the plate's frame.
+
+    Parameters
+    ----------
+    outline : (S, 2, 2) chords of the part's outline.
+    cores : (B, 2, 2) of the bodies: from a clamp's hole to its tip; the ends are one of a locator.
+    radius : (B,) of the bodies.
+    """
+
+    outline: Array
+    cores: Array
+    radius: Array
+
+
+def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodies:
+    """What a fixture takes up."""
+    chords = []
+    for loop in workpiece.loop_segments:
+        for segment in loop:
+            placed = fixture.pose.carry(segment)
+            count = 1
+            if not isinstance(placed, Line):
+                turn = 2 * acos(max(1.0 - SAGITTA / placed.radius, -1.0))
+                count = max(1, ceil(2 * placed.half_sweep / max(turn, pi / 720)))
+            ends = [placed.at(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
+            chords += list(pairwise(ends))
+    locators = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).on is None and not peg.is_on_wall]
+    clamps = list(shown_clamps(fixture, toolkit))
+    cores = [((peg.x, peg.y), (peg.x, peg.y)) for peg in locators]
+    cores += [(clamp.back, (clamp.tip.x, clamp.tip.y)) for clamp in clamps]
+    radius = [toolkit.carrier(peg.carrier).body_radius for peg in locators]
+    radius += [clamp.carrier.peg_radius for clamp in clamps]
+    return Bodies(np.array(chords), np.array(cores), np.array(radius))
+
+
+def distances(one: Array, other: Array) -> Array:
+    """The distance (N, M) of every piece (N, 2, 2) from every other one (M, 2, 2), 0 where they cross."""
+
+    def from_ends(ends: Array, pieces: Array) -> Array:
+        start, way = pieces[None, :, 0], (pieces[:, 1] - pieces[:, 0])[None]
+        off = ends[:, None] - start
+        length = (way**2).sum(axis=2)
+        share = np.clip((off * way).sum(axis=2) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+        return np.asarray(np.hypot(*np.moveaxis(off - share[:, :, None] * way, 2, 0)))
+
+    def side(pieces: Array, points: Array) -> Array:
+        way, off = (pieces[:, 1] - pieces[:, 0])[:, None], points[None] - pieces[:, 0][:, None]
+        return np.asarray(np.sign(way[:, :, 0] * off[:, :, 1] - way[:, :, 1] * off[:, :, 0]))
+
+    near = np.minimum(from_ends(one[:, 0], other), from_ends(one[:, 1], other))
+    near = np.minimum(near, np.minimum(from_ends(other[:, 0], one), from_ends(other[:, 1], one)).T)
+    crossing = side(one, other[:, 0]) * side(one, other[:, 1]) < 0
+    crossing &= (side(other, one[:, 0]) * side(other, one[:, 1]) < 0).T
+    return np.where(crossing, 0.0, near)
+
+
+def is_inside(points: Array, outline: Array) -> NDArray[np.bool_]:
+    """Which points (N, 2) lie in the material within chords (S, 2, 2) of an outline, by the even-odd rule."""
+    (x, y), (x0, y0), (x1, y1) = points.T[:, :, None], outline[:, 0].T[:, None], outline[:, 1].T[:, None]
+    upward = (y0 > y) != (y1 > y)
+    at = x0 + (y - y0) * (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
+    return np.asarray((upward & (x < at)).sum(axis=1) % 2 == 1)
+
+
+def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
+    """Whether two copies, one of them moved (2,) in mm, are clear of each other."""
+    outline, cores = bodies.outline + move, bodies.cores + move
+    slack = GAP_SLACK
+    both = bodies.radius[:, None] + bodies.radius
+    if (distances(bodies.cores, cores) < both - slack).any():
+        return False
+    reach = bodies.radius[:, None] + gap + SAGITTA - slack
+    for some, around in ((bodies.cores, outline), (cores, bodies.outline)):
+        if (distances(some, around) < reach).any() or is_inside(some[:, 0], around).any():
+            return False
+    if (distances(bodies.outline, outline) < gap + 2 * SAGITTA - slack).any():
+        return False
+    return not is_inside(outline[:1, 0], bodies.outline).any()
+
+
+def too_near_shifts(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift) -> set[Shift]:
+    """The shifts between two copies, up to so many columns and rows either way, at which they are not clear."""
+    bodies, pitch = bodies_of(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
+    points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
+    reach = np.ptp(points, axis=0) + 2 * bodies.radius.max() + gap + 2 * SAGITTA
+    out = {(0, 0)}
+    across, along = (min(most, floor(far / step)) for most, far, step in zip(spread, reach, pitch, strict=True))
+    for columns in range(across + 1):
+        for rows in range(-along if columns else 1, along + 1):
+            if not is_clear(bodies, np.array([columns, rows]) * pitch, gap):
+                out |= {(columns, rows), (-columns, -rows)}
+    return out
+
+
+def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
+    """The shifts at which a fixture stands on a plate of so many columns and rows, row by row.
+
+    Raises
+    ------
+    InputError
+        Where one alone does not.
+    """
+    used_columns, used_rows = [], []
+    for peg in fixture.pegs:
+        carrier = toolkit.carrier(peg.carrier)
+        if carrier.is_wall:
+            continue
+        if carrier.on is None or carrier.has_a_hole or not carrier.is_along_x:
+            used_columns.append(peg.column)
+        if carrier.on is None or carrier.has_a_hole or carrier.is_along_x:
+            used_rows.append(peg.row)
+    if max(used_columns) - min(used_columns) >= columns or max(used_rows) - min(used_rows) >= rows:
+        raise InputError(
+            f"a plate of {columns} × {rows} holes does not hold this fixture once: it takes "
+            f"{max(used_columns) - min(used_columns) + 1} columns and {max(used_rows) - min(used_rows) + 1} rows."
+        )
+    upward = range(-min(used_rows), rows - max(used_rows)) if toolkit.wall is None else range(1)
+    return [(i, j) for j in upward for i in range(-min(used_columns), columns - max(used_columns))]
+
+
+def packing_of(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    columns: int,
+    rows: int,
+    gap: float = 1.0,
+    seconds: float | None = None,
+) -> Packing:
+    """The most copies of a fixture that a plate holds.
+
+    Parameters
+    ----------
+    columns, rows : of holes of the plate.
+    gap : smallest distance in mm between a part and anything of another copy.
+    seconds : after which the best packing known then is told; None proves it.
+
+    Raises
+    ------
+    InputError
+        For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without SciPy.
+    """
+    if not isinstance(toolkit, Plate):
+        raise InputError("a vise holds one part: its jaw presses several copies unlike; take a plate or a fence.")
+    places = places_on(fixture, toolkit, columns, rows)
+    spread = (
+        max(i for i, _ in places) - min(i for i, _ in places),
+        max(j for _, j in places) - min(j for _, j in places),
+    )
+    near = too_near_shifts(fixture, workpiece, toolkit, gap, spread)
+    known = max((first_fit(order, near) for order in (places, sorted(places))), key=len)
+    if len(places) > MOST_PLACES:
+        return Packing(in_rows(known), len(places))
+    load_solver()
+    return solved(places, near, known, seconds)
+
+
+def first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
+    """Places taken one after the other where there is room."""
+    taken: list[Shift] = []
+    for i, j in places:
+        if all((i - a, j - b) not in near for a, b in taken):
+            taken.append((i, j))
+    return taken
+
+
+def in_rows(places: list[Shift]) -> tuple[Shift, ...]:
+    """Places from the lowest row on, from left to right."""
+    return tuple(sorted(places, key=lambda place: (place[1], place[0])))
+
+
+def crowds(near: set[Shift]) -> list[list[Shift]]:
+    """Sets of shifts that are pairwise too near, so many that every shift that is too near is between two of one."""
+    left, out = near - {(0, 0)}, []
+    ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
+    for one in ordered:
+        if one not in left:
+            continue
+        crowd = [(0, 0), one]
+        for i, j in ordered:
+            if all((i - a, j - b) in near for a, b in crowd) and (i, j) not in crowd:
+                crowd.append((i, j))
+        for (a, b), (c, d) in combinations(crowd, 2):
+            left -= {(a - c, b - d), (c - a, d - b)}
+        out.append(crowd)
+    return out
+
+
+def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None) -> Packing:
+    """The most places no two of which are too near."""
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import csr_array
+
+    number = {place: k for k, place in enumerate(places)}
+    rows = set()
+    for crowd in crowds(near):
+        for i, j in places:
+            for a, b in crowd:
+                # Every crowd in which this place is any of the members.
+                members = tuple(sorted(number[m] for m in ((i - a + c, j - b + d) for c, d in crowd) if m in number))
+                if len(members) > 1:
+                    rows.add(members)
+    if not rows:
+        return Packing(in_rows(places), len(places))
+    ordered = sorted(rows)
+    index = np.concatenate([[0], np.cumsum([len(members) for members in ordered])])
+    inside = np.concatenate([np.array(members) for members in ordered])
+    matrix = csr_array((np.ones(len(inside)), inside, index), shape=(len(ordered), len(places)))
+    options: dict[str, float] = {"mip_rel_gap": 0.0}
+    if seconds is not None:
+        options["time_limit"] = max(seconds, 0.0)
+    count = len(places)
+    found = milp(
+        -np.ones(count),
+        integrality=np.ones(count),
+        bounds=Bounds(0, 1),
+        constraints=LinearConstraint(matrix, ub=1.0),
+        options=options,
+    )
+    chosen = known if found.x is None else [places[k] for k in np.flatnonzero(found.x > 0.5)]
+    if len(chosen) < len(known) or not is_packing(chosen, near):
+        chosen = known
+    bound = found.mip_dual_bound
+    at_most = count if bound is None or not np.isfinite(bound) else floor(-bound + ROUNDING)
+    return Packing(in_rows(chosen), max(at_most, len(chosen)))
+
+
+def is_packing(places: list[Shift], near: set[Shift]) -> bool:
+    """Whether no two places are too near."""
+    return all((a - c, b - d) not in near for (a, b), (c, d) in combinations(places, 2))
