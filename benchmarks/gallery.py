@@ -1,7 +1,7 @@
 """The gallery: the first choice for each of the twenty parts of ``shop_parts`` in its vise, on a plate, and against a fence.
 
-    python benchmarks/gallery.py                 docs/gallery.md with its pictures, and the fixtures shown in README and manual
-    python benchmarks/gallery.py --only hinge    one part again; bracket makes those of README and manual too
+    python benchmarks/gallery.py                 docs/gallery.md, its pictures, and those of README and manual
+    python benchmarks/gallery.py --only hinge    one part again; with bracket also those of README and manual
 
 The pictures are those of ``workhold.drawing`` without lettering, small enough to stand side by side.
 """
