@@ -48,7 +48,7 @@ wheel-test: $(INSTALLED_DEV)
 
 # The manual as a site, in site/: open site/index.html. Whatever is doubtful in it, such as a link that leads nowhere, is an error.
 docs: $(VENV)/.installed-docs,numba
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 	@echo 'Open site/index.html.'
 
 # Every target of speed and memory with pass or short, and docs/benchmarks.md from the figures; BENCH=--quick tries a little.

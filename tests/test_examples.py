@@ -36,7 +36,8 @@ def test_the_notebook_shows_what_is_stored_in_it(path: Path) -> None:
 def test_what_a_cell_shows_is_kept() -> None:
     """What it prints, and what its last line is worth; a statement, and None, are worth nothing."""
     outputs = runpy.run_path(str(EXAMPLES / "run_notebook.py"))["outputs"]
-    assert outputs("x = 3", {}, 1) == []
+    assert outputs("x = 3", {}, 1) == outputs("None", {}, 1) == []
+    assert outputs("0", {}, 1)[0]["data"] == {"text/plain": ["0"]}
     assert outputs("print(2)", {}, 1) == [{"name": "stdout", "output_type": "stream", "text": ["2\n"]}]
     (worth,) = outputs("x = 3\nx + 1", {}, 7)
     assert (worth["data"], worth["execution_count"]) == ({"text/plain": ["4"]}, 7)
