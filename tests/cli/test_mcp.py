@@ -98,6 +98,27 @@ def test_a_search_that_is_ended_says_so(folder: Path) -> None:
     assert not failed and isinstance(data, dict) and not data["complete"] and "ended before" in data["sentence"]
 
 
+def test_the_time_for_a_search_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock is set to the seconds asked for, ends the search and is taken back."""
+    clocks: list[Any] = []
+
+    class Clock:
+        def __init__(self, seconds: float, ring: Any) -> None:
+            self.seconds, self.ring, self.is_cancelled = seconds, ring, False
+            clocks.append(self)
+
+        def start(self) -> None:
+            self.ring()
+
+        def cancel(self) -> None:
+            self.is_cancelled = True
+
+    monkeypatch.setattr("workhold.cli.agent_tools.Timer", Clock)
+    content = told("design", folder, part="wedge.json", **VISE, seconds=7.5, contact_margin=0.25, out="late.json")
+    assert not content["complete"] and [(one.seconds, one.is_cancelled) for one in clocks] == [(7.5, True)]
+    assert workhold.open("late.json").query.contact_margin == 0.25
+
+
 def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
     for name, asked in (("load", {"part": "wedge.json"}), ("design", {"part": "wedge.json", **VISE, "out": "w.json"})):
         assert outcome(name, asked, folder, Event())[1] is None

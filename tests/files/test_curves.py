@@ -11,13 +11,15 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
-from ezdxf.math import ConstructionEllipse, closed_uniform_bspline, rational_bspline_from_ellipse
+from ezdxf.math import ConstructionEllipse, closed_uniform_bspline, fit_points_to_cad_cv, rational_bspline_from_ellipse
 from reading_helpers import area, read_dxf, read_svg, rectangle
 
 import workhold
+from workhold.drawing.features_picture import first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Arc
+from workhold.model.notes import fitted_note
 from workhold.model.tolerance import Tolerance
 from workhold.model.workpiece import Workpiece
 
@@ -130,14 +132,70 @@ def test_a_closed_spline_is_fitted(tmp_path: Path) -> None:
     assert area(coarse) == pytest.approx(area(fine), abs=(coarse.departure + fine.departure) * 220)
 
 
-def test_a_spline_of_fit_points_is_refused(tmp_path: Path) -> None:
-    """Programs draw different curves through the same points."""
+@pytest.mark.parametrize("tangents", [None, [(1, 2, 0), (0, -1, 0)]])
+def test_a_spline_of_fit_points_is_the_cubic_that_cad_programs_draw(tangents: Any, tmp_path: Path) -> None:
+    """Through the points, with the tangents given or straight at its ends; that it is a guess is told."""
+    points = [(60, 0), (58, 14), (44, 22), (30, 40), (0, 40)]
 
     def draw(space: Any) -> None:
-        rectangle(space)
-        space.add_spline([(5, 5), (20, 30), (40, 10)])
+        space.add_lwpolyline([(0, 40), (0, 0), (60, 0)])
+        spline = space.add_spline(points)
+        if tangents:
+            spline.dxf.start_tangent, spline.dxf.end_tangent = tangents
 
-    with pytest.raises(InputError, match=r"SPLINE \w+ is a spline of fit points alone"):
+    with pytest.raises(InputError, match=r"SPLINE \w+ at \(60, 0\) is a true curve.*give fit 0.01"):
+        read_dxf(tmp_path, draw)
+    loaded = read_dxf(tmp_path, draw, fit=0.001)
+    fitted = fit_points_to_cad_cv(points, tangents)
+    segments = np.array([(*s.start, *s.end) for s in loaded.workpiece.segments])
+    for place in [*fitted.approximate(40)]:
+        # Ends of arcs are that near together; what is between them is bounded elsewhere.
+        assert np.hypot(segments[:, 0] - place.x, segments[:, 1] - place.y).min() < 3.0
+    ends = {(round(float(x), 6), round(float(y), 6)) for x, y in segments[:, :2]}
+    assert {(60.0, 0.0), (0.0, 40.0)} <= ends
+    exact = area(loaded.workpiece)
+    outline = [(0.0, 40.0), (0.0, 0.0), *((p.x, p.y) for p in fitted.approximate(4000))]
+    assert exact == pytest.approx(polygon_area(outline), abs=0.001 * 120)
+    assert any("of fit points alone as the cubic through them" in remark for remark in loaded.remarks)
+
+
+def polygon_area(points: list[tuple[float, float]]) -> float:
+    """The area within corners."""
+    x, y = np.array(points).T
+    return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
+
+
+def test_a_closed_spline_of_fit_points_has_no_corner(tmp_path: Path) -> None:
+    """Points on a circle make a curve near it, the same wherever it begins."""
+    areas = []
+    for first in (0, 3):
+        points = [(30 * cos(pi / 6 * k), 30 * sin(pi / 6 * k)) for k in range(first, first + 12)]
+
+        def draw(space: Any, points: Any = points) -> None:
+            space.add_spline(points).closed = True
+
+        part = read_dxf(tmp_path, draw, fit=0.005).workpiece
+        assert all(abs(turn) < 0.02 for turn in joint_turns(part)) and part.bounds[2] == pytest.approx(30, abs=0.01)
+        areas.append(area(part))
+    assert areas[0] == pytest.approx(areas[1], abs=0.005 * 200) == pytest.approx(pi * 900, rel=1e-3)
+
+
+def joint_turns(part: Workpiece) -> list[float]:
+    """By how much, in radians, the outline turns at each joint."""
+    turns = []
+    for one, other in zip(part.segments, part.segments[1:] + part.segments[:1], strict=True):
+        (ax, ay), (bx, by) = (s.normal(first_parameter(s) * sign) for s, sign in ((one, -1.0), (other, 1.0)))
+        turns.append(float(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)))
+    return turns
+
+
+@pytest.mark.parametrize("points", [[(5, 5)], [(5, 5), (5, 5)], [(1e9, 0), (0, 1e9)]])
+def test_fit_points_that_make_no_curve_are_refused(points: Any, tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        rectangle(space)
+        space.add_spline(points)
+
+    with pytest.raises(InputError, match=r"SPLINE \w+ has"):
         read_dxf(tmp_path, draw, fit=0.01)
 
 
@@ -230,6 +288,25 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
         "departure": part.departure,
     }
     assert read_workpiece(tmp_path / "result.json").workpiece == part
+    note = fitted_note(part.departure)
+    assert result.notes[-1] == again.notes[-1] == note and note not in added.notes
+    assert f"up to {part.departure:.2g} mm off the drawn one" in note
+    assert workhold.verify(tmp_path / "result.json").holds
+    silent = written | {"notes": [one for one in written["notes"] if one != note]}
+    (tmp_path / "result.json").write_text(json.dumps(silent))
+    assert workhold.verify(tmp_path / "result.json").faults == (f'the note is missing that says "{note}"',)
+
+
+def test_why_there_is_no_fixture_is_said_of_a_fitted_outline_too() -> None:
+    """Before the note on what the claim is for."""
+    corners = [[0, 0, 0], [41, 0, 0], [13, 37, 0]]
+    for vise in (workhold.Vise(pitch=99, columns=1, peg_radius=2), workhold.Plate(pitch=99, peg_radius=2, clamps=2)):
+        plain, fitted = (
+            workhold.design(Workpiece.from_loops("wedge", [corners], departure=departure), vise)
+            for departure in (0.0, 0.01)
+        )
+        assert len(plain) == 0 and len(plain.notes) == 1
+        assert fitted.notes == (*plain.notes, fitted_note(0.01)) and fitted.reasons == plain.notes
 
 
 def test_a_circle_of_720_chords_is_a_circle(tmp_path: Path) -> None:

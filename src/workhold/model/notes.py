@@ -9,6 +9,7 @@ from workhold.model.toolkit import Wording
 
 __all__ = [
     "best_note",
+    "fitted_note",
     "kept_note",
     "no_fixture_notes",
     "no_pair_note",
@@ -55,6 +56,14 @@ def undecided_note(count: int) -> str:
     """Of a search that left so many candidates undecided."""
     some = "1 candidate is undecided" if count == 1 else f"{count} candidates are undecided"
     return f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+
+
+def fitted_note(departure: float) -> str:
+    """Of a part whose outline as read is so far, in mm, from the drawn one at most."""
+    return (
+        f"All that is claimed, completeness too, holds for the outline of lines and arcs, which is up to {departure:.2g} mm "
+        "off the drawn one."
+    )
 
 
 def kept_note(found: int, kept: int) -> str:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from workhold.model.beyond import beyond
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
+from workhold.model.notes import fitted_note
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
@@ -156,7 +157,7 @@ class Result:
     distinct : how many sets they form when fixtures that a rotation of the part onto itself carries into each other
         count once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
-    notes : remarks a user should read, one sentence each.
+    notes : remarks a user should read, one sentence each; of an outline that departs from the drawn one there is one more.
     statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
@@ -174,6 +175,15 @@ class Result:
     proof: Proof | None = None
     pairs: int | None = None
     seats: int | None = None
+
+    def __attrs_post_init__(self) -> None:
+        if self.workpiece.departure > 0:
+            object.__setattr__(self, "notes", (*self.reasons, fitted_note(self.workpiece.departure)))
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """The notes but the one that there is of every part whose outline departs from the drawn one."""
+        return tuple(note for note in self.notes if note != fitted_note(self.workpiece.departure))
 
     @property
     def workpiece(self) -> Workpiece:

@@ -72,6 +72,6 @@ def fixture_picture(
 def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:
     """The best fixtures at a glance, see :meth:`workhold.Result.draw`."""
     if not len(result):
-        why = f" {result.notes[0]}" if result.notes else ""
+        why = f" {result.reasons[0]}" if result.reasons else ""
         raise InputError(f"there is no fixture to draw.{why}")
     return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path)

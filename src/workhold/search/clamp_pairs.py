@@ -78,7 +78,7 @@ def answer_of_pairs(
     examined = int(sum(search.totals[CANDIDATES] for search in searches))
     work = Work(complete and account.left == 0, summed(search.statistics for search in searches), cells, examined)
     result = kept.result(account, work)
-    if not result.complete or len(result) or result.notes:
+    if not result.complete or len(result) or result.reasons:
         return result
     return evolve(result, notes=(no_pair_note(kept.seats_looked_at, account.verified),))
 

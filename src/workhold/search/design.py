@@ -223,7 +223,7 @@ def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block
 
 def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
     """A result, with the reason where it has no fixture and nobody is in a hurry."""
-    if not result.complete or any(result.found.values()) or result.notes:
+    if not result.complete or any(result.found.values()) or result.reasons:
         return result
     proven = 0 if result.proof is None else result.proof.verified
     reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)

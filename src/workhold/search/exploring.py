@@ -63,7 +63,7 @@ def explore(queries: Iterable[tuple[str, Query | InputError]], cancel: Event | N
             continue
         if not result.complete:
             return
-        reason = "" if len(result) else " ".join(result.notes)
+        reason = "" if len(result) else " ".join(result.reasons)
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         yield Explored(name, dict(result.found), figures, reason, fit)

@@ -53,7 +53,7 @@ def answer_of_pairs_on_fence(query: Query, progress: Progress | None, cancel: Ev
     }
     account = Account(examined, verified, escalated, 0, undecided)
     result = kept.result(account, Work(done == len(edges), statistics, cells=done))
-    if not result.complete or len(result) or result.notes:
+    if not result.complete or len(result) or result.reasons:
         return result
     never, no_locator, _, _ = no_fixture_notes(query.toolkit.wording)
     note = no_pair_note(kept.seats_looked_at, verified)

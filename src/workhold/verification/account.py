@@ -25,7 +25,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from workhold.geometry.symmetry import rotations_onto_itself
-from workhold.model.notes import best_note, kept_note, no_fixture_notes, no_place_note, stopped_note, undecided_note
+from workhold.model.notes import (
+    best_note,
+    fitted_note,
+    kept_note,
+    no_fixture_notes,
+    no_place_note,
+    stopped_note,
+    undecided_note,
+)
 from workhold.model.proof import Proof
 from workhold.verification.listing import Listing
 from workhold.verification.pair_account import no_pair_notes, pair_count_faults, too_few_contacts
@@ -145,6 +153,8 @@ def note_faults(listing: Listing) -> Iterator[str]:
 def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
     """The notes that there must be, each as the sentences of which it is one."""
     proof, found = listing.proof, sum(listing.found.values())
+    if listing.query.workpiece.departure > 0:
+        yield (fitted_note(listing.query.workpiece.departure),)
     undecided = 0 if proof is None else len(proof.undecided)
     if undecided:
         yield (undecided_note(undecided),)

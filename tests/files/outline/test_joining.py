@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from math import dist, hypot, pi, tan
 from typing import Any
 
@@ -241,6 +242,49 @@ def test_a_hole_is_never_taken_for_a_part_whose_outline_is_open(tmp_path: Any) -
     with pytest.raises(InputError, match=r"the outline around part 1 .*is not closed: LWPOLYLINE .*0\.05 mm"):
         read_dxf(tmp_path, draw)
     assert area(read_dxf(tmp_path, draw, part_number=1).workpiece) == pytest.approx(25 * pi)
+
+
+@pytest.mark.parametrize(("gap", "rest"), [(0.05, 0.0), (0.4, 0.02)])
+def test_a_hole_is_never_taken_for_a_part_whose_outline_has_several_gaps(
+    gap: float, rest: float, tmp_path: Any
+) -> None:
+    """Lines that each stop short, and an arc around the hole: the gap that the sentence tells closes them all."""
+
+    def draw(space: Any) -> None:
+        space.add_line((0, 0), (60 - gap, 0))
+        space.add_arc((60, 20), 20, -90, 90)
+        space.add_line((60, 40), (rest, 40))
+        space.add_line((0, 40), (0, rest))
+        space.add_circle((65, 20), 12)
+        space.add_line((-30, 20), (120, 20))
+
+    with pytest.raises(InputError, match=r"the outline around part 1 .*is not closed: .*part_number 1\.") as told:
+        read_dxf(tmp_path, draw)
+    enough = float(re.findall(r"above ([\d.]+) mm", str(told.value))[0])
+    assert gap <= enough < 1.1 * gap
+    assert area(read_dxf(tmp_path, draw, join_tolerance=enough).workpiece) == pytest.approx(
+        2400 + 200 * pi - 144 * pi, abs=60 * gap
+    )
+    assert area(read_dxf(tmp_path, draw, part_number=1).workpiece) == pytest.approx(144 * pi)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [((-9, -9), (39, -9)), ((39, 34), (-9, 34)), ((-9, 30), (-9, -5)), ((39, -5), (39, 30))],
+        [((40, 0), (60, 0)), ((60, 0.5), (50, 20)), ((50, 20.5), (40, 0.5))],
+    ],
+    ids=["too far apart", "around nothing"],
+)
+def test_loose_lines_are_no_outline_around_a_part(lines: Any, tmp_path: Any) -> None:
+    """A frame whose lines are far from each other, and lines that nearly close beside the part."""
+
+    def draw(space: Any) -> None:
+        rectangle(space, w=30, h=25)
+        for line in lines:
+            space.add_line(*line)
+
+    assert area(read_dxf(tmp_path, draw).workpiece) == pytest.approx(750)
 
 
 def test_a_crowd_of_ends_asks_for_a_smaller_tolerance(tmp_path: Any) -> None:

@@ -11,15 +11,18 @@ raw chain : points (x, y, z) and bulges before units and block placements.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import cos, pi, radians, sin, tau
+from itertools import pairwise
+from math import cos, dist, isfinite, pi, radians, sin, tau
 from typing import Any
 
 from attrs import field, frozen
+from ezdxf.math import fit_points_to_cad_cv
 
-from workhold.conventions import TILT
+from workhold.conventions import SAME_POINT, TILT
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.geometry.rational import Pieces, ellipse_pieces, point_at, spline_pieces
+from workhold.limits import MOST_LENGTH
 
 __all__ = ["REFUSED", "SHAPES", "RawChain"]
 
@@ -169,22 +172,49 @@ def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple
 
 
 def spline(entity: Any) -> RawChain:
-    """A SPLINE by its control points; its numbers are never in OCS.
+    """A SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
 
     Raises
     ------
     InputError
-        For one of fit points alone, through which each program draws another curve, and one whose numbers do not agree.
+        For one whose numbers do not agree.
     """
     control = [tuple(map(float, point)) for point in entity.control_points]
     if not control:
-        raise InputError(
-            "is a spline of fit points alone, through which each program draws another curve: let the CAD program write "
-            "its control points, or convert it to lines and arcs."
-        )
+        return through_fit_points(entity)
     weights = list(entity.weights) or None
     pieces = spline_pieces([point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree))
     return curve(pieces, [z for _, _, z in control])
+
+
+def through_fit_points(entity: Any) -> RawChain:
+    """A SPLINE of fit points alone, as CAD programs draw it: the cubic of continuous curvature through them whose parameter
+    grows as the chords are long, with the tangents given at its ends, or else without curvature there; periodic where it is
+    closed.
+
+    Raises
+    ------
+    InputError
+        For fewer than two different points, and numbers that are none.
+    """
+    every = [(float(x), float(y), float(z)) for x, y, z in entity.fit_points]
+    if not all(isfinite(value) and abs(value) <= MOST_LENGTH for point in every for value in point):
+        raise InputError("has a fit point that is no place: repair the drawing.")
+    points = every[:1] + [q for p, q in pairwise(every) if dist(p, q) > SAME_POINT]
+    closed = bool(entity.closed)
+    if closed and len(points) > 1 and dist(points[0], points[-1]) > SAME_POINT:
+        points.append(points[0])
+    count = len(points) - 1
+    if count < (2 if closed else 1):
+        raise InputError("has neither control points nor enough fit points: delete it.")
+    ends = [entity.dxf.get(name) for name in ("start_tangent", "end_tangent")]
+    tangents = ends if not closed and all(one is not None and abs(one) > 0 for one in ends) else None
+    # Once around before and once after, a closed one has forgotten that it has ends.
+    fitted = fit_points_to_cad_cv(2 * points[:-1] + points if closed else points, tangents)
+    # Its ends are those drawn, without the rounding of the equations.
+    control = [every[0], *((p.x, p.y) for p in fitted.control_points[1:-1]), points[-1]]
+    pieces = spline_pieces([point[:2] for point in control], None, list(fitted.knots()), 3)
+    return curve(pieces[count : 2 * count] if closed else pieces, [z for _, _, z in points])
 
 
 def ellipse(entity: Any) -> RawChain:

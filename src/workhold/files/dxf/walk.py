@@ -61,6 +61,8 @@ class Walk:
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
         self.layers: dict[str, str] = {}
+        # Splines of fit points alone.
+        self.interpolated = 0
         self.hidden: Counter[str] = Counter()
         self.ignored: Counter[str] = Counter()
         self.missing_blocks: Counter[str] = Counter()
@@ -140,6 +142,7 @@ class Walk:
                 f"lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
             )
         raw = said_of(label, SHAPES[kind], entity)
+        self.interpolated += kind == "SPLINE" and not len(entity.control_points)
         if not raw.bulges:
             raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
         self.check_level(raw, placement, label)
@@ -226,6 +229,12 @@ class Walk:
         if self.ignored:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.ignored.items()))
             remarks.append(f"Ignored entities that are no outline: {kinds}.")
+        if self.interpolated:
+            splines = counted(self.interpolated, "spline", "splines")
+            remarks.append(
+                f"Read {splines} of fit points alone as the cubic through them that CAD programs draw; some draw another "
+                "one, so check the outline."
+            )
         if self.hidden:
             total = sum(self.hidden.values())
             places = ", ".join(f"{count} {where}" for where, count in sorted(self.hidden.items()))

@@ -10,7 +10,7 @@ import numpy as np
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import at, counted, listed
-from workhold.files.outline.joining import Stray
+from workhold.files.outline.joining import Stray, join
 from workhold.files.outline.nesting import Part
 from workhold.files.questions import JOIN_TOLERANCE, PART_NUMBER
 from workhold.geometry.intersect import bounding_box
@@ -20,6 +20,8 @@ __all__ = ["refuse_nothing_closed", "refuse_open_outline", "stray_remarks"]
 
 # A stray whose ends are nearer than this share of its size was meant to close.
 NEARLY_CLOSED = 0.2
+# Pieces that do not close are looked at together where they are so few, with gaps up to a share of their size.
+MOST_JOINED, MOST_GAP, MOST_GAPS = 500, 0.02, 20
 # How many open ends an error names, and how many ends are searched for the nearest one.
 ENDS_NAMED = 4
 
@@ -48,7 +50,8 @@ def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
     """
     x0, y0, x1, y1 = part.bounds
     for stray in strays:
-        low_x, low_y, high_x, high_y = bounds(stray)
+        chain = stray.chain
+        low_x, low_y, high_x, high_y = bounds([*chain.points], chain.bulges)
         gap = dist(stray.chain.points[0], stray.chain.points[-1])
         size = dist((low_x, low_y), (high_x, high_y))
         if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1 and gap < NEARLY_CLOSED * size:
@@ -56,19 +59,47 @@ def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
                 f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all the same, "
                 f"give {PART_NUMBER} {part.number}."
             )
+    enough = gap_around(part, strays)
+    if enough is not None:
+        raise InputError(
+            f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part all the same, give "
+            f"{PART_NUMBER} {part.number}."
+        )
 
 
-def bounds(stray: Stray) -> tuple[float, float, float, float]:
-    """Bounding box of a stray in mm."""
-    chain = stray.chain
-    steps = zip(chain.points, chain.points[1:], chain.bulges, strict=False)
+def gap_around(part: Part, strays: Sequence[Stray]) -> float | None:
+    """The smallest gap between ends with which pieces that do not close make an outline around a part; None without one."""
+    chains = [stray.chain for stray in strays]
+    if not 1 < len(chains) <= MOST_JOINED:
+        return None
+    x0, y0, x1, y1 = part.bounds
+    ends = np.array([end for chain in chains for end in (chain.points[0], chain.points[-1])])
+    away = np.hypot(*(ends[:, None] - ends[None]).T)
+    np.fill_diagonal(away, np.inf)
+    widest = MOST_GAP * float(np.hypot(*np.ptp(ends, axis=0)))
+    for gap in sorted({float(gap) for gap in away.min(axis=1) if 0.0 < gap <= widest})[-MOST_GAPS:]:
+        try:
+            loops = join(chains, gap * (1 + 1e-9)).loops
+        except InputError:
+            continue
+        for loop in loops:
+            points = [(float(x), float(y)) for x, y, _ in loop.vertices]
+            low_x, low_y, high_x, high_y = bounds([*points, points[0]], loop.vertices[:, 2].tolist())
+            if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1:
+                return gap
+    return None
+
+
+def bounds(points: Sequence[Point], bulges: Sequence[float]) -> tuple[float, float, float, float]:
+    """Bounding box in mm of the segments from point to point."""
+    steps = zip(points, points[1:], bulges, strict=False)
     boxes = np.array([bounding_box(segment_from_bulge(p, q, b)) for p, q, b in steps if p != q]).reshape(-1, 4)
     low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def open_ends(strays: Sequence[Stray]) -> str:
-    """The open ends nearest to another one, how far apart they are, and the remedy."""
+def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
+    """The open ends nearest to another one, how far apart they are, and the remedy; a gap that is enough, if known."""
     ends: list[tuple[Point, str]] = []
     for stray in strays:
         ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
@@ -86,8 +117,8 @@ def open_ends(strays: Sequence[Stray]) -> str:
         for gap, point, name, other, _ in found[:ENDS_NAMED]
     ]
     more = f", and {len(ends) - len(words)} more ends are open" if len(ends) > len(words) else ""
-    smallest = found[0][0]
-    larger = f"give a larger {JOIN_TOLERANCE}, above {rounded_up(smallest)} mm"
+    needed = found[0][0] if enough is None else enough
+    larger = f"give a larger {JOIN_TOLERANCE}, above {rounded_up(needed)} mm"
     return f"{'; '.join(words)}{more}; close the drawing, or {larger}."
 
 
