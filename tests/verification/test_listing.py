@@ -125,4 +125,4 @@ def test_every_number_is_kept_as_written(widget_data: Data, tmp_path: Path) -> N
         for peg_read, peg_written in zip(fixture.pegs, written["pegs"], strict=True):
             names = {"segment": "face", "jaw": "carrier"}
             expected = {names.get(key, key): value for key, value in peg_written.items()}
-            assert attrs.asdict(peg_read) == expected | {"place": None, "beside": None}
+            assert attrs.asdict(peg_read) == expected | {"place": None, "beside": None, "flat_deg": None}

@@ -54,6 +54,11 @@ class ViseWords:
         "LENGTH",
         "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
     )
+    flat: str | None = option(
+        VISE,
+        "DISTANCE[,WIDTH/2]",
+        "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its width.",
+    )
     rows: str | None = option(VISE, "N", "Rows of holes; as many as needed if not given.")
     blocked: list[str] | None = option(
         VISE, "HOLES", "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated."
@@ -129,6 +134,8 @@ class ViseWords:
                     f"--travel {self.travel!r} is not two lengths: give the least and the most, such as 10,35."
                 )
             out["travel"] = tuple(length("--travel", word, unit) for word in words)
+        if self.flat is not None:
+            out["flat"] = tuple(length("--flat", word, unit) for word in self.flat.split(","))
         if self.direction is not None:
             out["directions"] = directions(self.direction)
         if self.clamps is not None:

@@ -17,6 +17,7 @@ from workhold.errors import InputError
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.model.flat import Flat
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
@@ -45,10 +46,10 @@ class ContactFeature:
     segment: Segment
 
 
-def contact_features(workpiece: Workpiece, peg_radius: float) -> list[ContactFeature]:
-    """The contact features of a workpiece for pegs of a radius in mm, ordered by face."""
+def contact_features(workpiece: Workpiece, peg_radius: float, flat: Flat | None = None) -> list[ContactFeature]:
+    """The contact features of a workpiece for pegs of a radius in mm, round or with a flat, ordered by face."""
     faces = workpiece.faces
-    pieces = trimmed_offsets([face.segment for face in faces], peg_radius)
+    pieces = trimmed_offsets([face.segment for face in faces], peg_radius, None if flat is None else flat.distance)
     return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
 
 

@@ -73,9 +73,9 @@ class Problem:
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
         diameter = outline_diameter(workpiece) + 2 * radius
-        standing, moving = carriers = Frame.of(query.toolkit, diameter).carriers
-        alike = (standing.peg_radius, standing.body_radius) == (moving.peg_radius, moving.body_radius)
-        loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if alike else 2]]
+        carriers = Frame.of(query.toolkit, diameter).carriers
+        one, other = ((each.peg_radius, each.body_radius, each.flat) for each in carriers)
+        loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
         allowed = loci
         if restrictions:
             allowed = [
@@ -154,7 +154,7 @@ class Problem:
     def setting(self) -> Setting:
         """What a proof must know of the problem, as kernels take it."""
         frame = self.frame
-        standing, moving = (carrier.peg_radius for carrier in frame.carriers)
+        standing, moving = (carrier.least_standoff for carrier in frame.carriers)
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
 
 
@@ -166,7 +166,7 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     InputError
         When such a peg fits nowhere along the part.
     """
-    features = contact_features(workpiece, carrier.peg_radius)
+    features = contact_features(workpiece, carrier.peg_radius, carrier.flat)
     if not features:
         raise InputError(
             f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "

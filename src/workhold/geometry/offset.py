@@ -13,6 +13,7 @@ joint circle : the circle around a joint on which a disc rolls around a corner.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -50,13 +51,14 @@ def cut_points(piece: Segment, others: Sequence[Segment], joints: Sequence[Point
     return points
 
 
-def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[int, Segment]]:
+def trimmed_offsets(segments: Sequence[Segment], radius: float, flat: float | None = None) -> list[tuple[int, Segment]]:
     """The boundary pieces of (part + disc of ``radius`` mm) that face the segments, without the rolled corners.
 
     Parameters
     ----------
     segments : the whole outline with its holes, material on the left.
     radius : in mm, zero or more.
+    flat : lines are moved outward by this in mm instead, ``radius`` or less: where the disc keeps clear of all but the line.
 
     Returns
     -------
@@ -69,18 +71,23 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float) -> list[tuple[in
     joint_boxes = np.array([(*joint, *joint) for joint in joints]).reshape(-1, 4)
     pieces: list[tuple[int, Segment]] = []
 
-    def is_clear(points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
+    def is_clear(beside: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return np.asarray(outline_distances(points, beside) >= radius - CLEARANCE)
 
-    for index, piece in enumerate(raw):
+    # Beside a flat the disc reaches over the line, and behind an acute corner into what lies on the other side of the part.
+    behind = [None if flat is None else raw_offset(segment, -radius) for segment in segments]
+    for index, segment in enumerate(segments):
+        piece, beside, sides = raw[index], rows, [raw]
+        if flat is not None and isinstance(segment, Line):
+            piece, beside, sides = raw_offset(segment, flat), np.delete(rows, index, 0), [raw, behind]
         if piece is None:
             continue
         # Only what comes within a diameter of the segment can touch the disc beside it.
         near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
-        others = [r for k in near if k != index and (r := raw[k]) is not None]
+        others = [r for side in sides for k in near if k != index and (r := side[k]) is not None]
         close = np.flatnonzero(boxes_apart(joint_boxes, bounding_box(piece)) <= radius + CLEARANCE)
         points = cut_points(piece, others, [joints[k] for k in close], radius)
-        pieces += [(index, kept) for kept in kept_parts(piece, points, is_clear)]
+        pieces += [(index, kept) for kept in kept_parts(piece, points, partial(is_clear, beside))]
     return pieces
 
 

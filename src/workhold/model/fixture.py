@@ -34,6 +34,7 @@ class Peg:
     force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the working ratio.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
+    flat_deg : which way its flat looks, in degrees from the x axis; None of a peg that touches with its round side.
     """
 
     carrier: str
@@ -45,6 +46,7 @@ class Peg:
     force: float
     place: str | None = None
     beside: int | None = None
+    flat_deg: float | None = None
 
     @property
     def is_on_wall(self) -> bool:

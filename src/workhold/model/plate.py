@@ -15,6 +15,7 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long
+from workhold.model.flat import Flat, flat_of, resolved_flat
 from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
 from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
@@ -93,6 +94,8 @@ class Plate(Toolkit):
         more than a turn of the plate. Of two clamps pairs, such as [("-x", "-y")]; directions that are no pairs stand for
         all pairs of them.
     clamps : 1, or 2 that are needed together.
+    flat : of the locators, which lies on straight faces: its distance from a locator's centre, and half its width, in mm;
+        None for round ones. A clamp's tip is round.
 
     Raises
     ------
@@ -131,6 +134,7 @@ class Plate(Toolkit):
     travel: tuple[float, float] | None = field(default=None, converter=travel_pair)
     directions: tuple[Any, ...] = field(default=None, converter=direction_names)
     clamps: int = field(default=1, converter=whole)
+    flat: Flat | None = field(default=None, converter=flat_of, kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         if self.clamps not in (1, 2):
@@ -146,6 +150,7 @@ class Plate(Toolkit):
                 "from its hole to its tip, in mm."
             )
         object.__setattr__(self, "directions", self.resolved_directions())
+        object.__setattr__(self, "flat", resolved_flat(self.flat, self.peg_radius))
         lengths = {"pitch": max(self.pitch), "peg radius": self.peg_radius, "clamp radius": self.clamp_radius}
         for name, value in (lengths | {"travel": self.travel[1] if self.travel else 0.0}).items():
             refuse_long(name, value)
@@ -214,7 +219,7 @@ class Plate(Toolkit):
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, and for each direction the clamp, whose travel grows as it opens."""
         size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
-        plate = Carrier("plate", *size, noun="plate", peg="locator")
+        plate = Carrier("plate", *size, noun="plate", peg="locator", flat=self.flat)
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
         size = self.pitch, self.columns, self.rows, self.clamp_radius, self.clamp_radius
         clamp = Carrier("clamp", *size, noun="clamp", peg="clamp", on="plate")

@@ -10,6 +10,7 @@ import numpy as np
 from attrs import define, field, fields
 from numpy.typing import NDArray
 
+from workhold.geometry.segment import Line
 from workhold.model.beyond import beyond
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
@@ -21,7 +22,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.wall import ENDS, ON_WALL
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "peg_places", "unknown_quality"]
+__all__ = ["FixtureTable", "Result", "fixture_at", "flat_angles", "peg_places", "unknown_quality"]
 
 # Fixtures looked at together when all are gone through.
 BLOCK = 4096
@@ -293,6 +294,25 @@ def peg_places(
     return x, y
 
 
+def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
+    """Which way the flats of all pegs of a table look, in degrees; None of pegs that touch with their round side."""
+    straight = {
+        face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
+        for face in workpiece.faces
+        if isinstance(face.segment, Line)
+    }
+    flatted = [[toolkit.carriers[k].flat is not None for k in one.carriers] for one in toolkit.arrangements]
+    return [
+        [
+            round((straight[face] + turn) % 360.0, 9) % 360.0 if has_flat and face in straight else None
+            for has_flat, face in zip(flatted[kind], faces, strict=True)
+        ]
+        for kind, faces, turn in zip(
+            table.arrangement.tolist(), table.face.tolist(), np.degrees(table.theta).tolist(), strict=True
+        )
+    ]
+
+
 def fixture_at(
     table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
 ) -> Fixture:
@@ -302,6 +322,7 @@ def fixture_at(
     across, along = peg_places(one, toolkit, workpiece)
     pairs = one.force.ndim == 3
     forces = (working_forces(one.force) if pairs else one.force)[0].tolist()
+    flats = flat_angles(one, toolkit, workpiece)[0]
     pegs = []
     for k, number in enumerate(arrangement.carriers):
         carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
@@ -311,7 +332,7 @@ def fixture_at(
             end, flush = k - ON_WALL.start, workpiece.flush
             place, beside = f"{carrier.noun} {ENDS[end]}", flush.touching[flush.number(one.theta)[0]][end].beside
         at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
-        pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside))
+        pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside, flats[k]))
     x, y = (float(v) for v in table.position[index])
     return Fixture(
         type=arrangement.name,

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.model.beyond import beyond
+from workhold.model.flat import Flat
 from workhold.model.holes import Holes, column_letters, hole_name, letter_of
 from workhold.model.units import Unit
 
@@ -72,6 +73,7 @@ class Carrier:
     peg : what each of its pegs is called, such as "locator".
     on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
     is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
+    flat : of its pegs, which lies on straight faces; None where they are round.
     """
 
     name: str
@@ -87,6 +89,12 @@ class Carrier:
     peg: str = "peg"
     on: str | None = None
     is_wall: bool = False
+    flat: Flat | None = None
+
+    @property
+    def least_standoff(self) -> float:
+        """Distance in mm from a face to the centre of a peg that touches it, at least."""
+        return self.peg_radius if self.flat is None else self.flat.distance
 
     @property
     def title(self) -> str:
@@ -309,6 +317,11 @@ class Toolkit:
     def ways(self) -> tuple[Toolkit, ...]:
         """The same toolkit with one carrier that moves each time; their arrangements, one after the other, are its own."""
         return (self,)
+
+    @property
+    def has_flats(self) -> bool:
+        """Whether some of its pegs have a flat."""
+        return any(carrier.flat is not None for carrier in self.carriers)
 
     @property
     def needs_pairs(self) -> bool:

@@ -11,6 +11,7 @@ from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.limits import MOST_BLOCKED, refuse_long
+from workhold.model.flat import Flat, flat_of, resolved_flat
 from workhold.model.holes import Holes, holes_named
 from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
 from workhold.model.real import real
@@ -55,6 +56,8 @@ class Vise(Toolkit):
     body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
         peg radius. Bodies may neither overlap nor stand over a keep-out zone.
     blocked : holes and columns that no peg can stand in, or their names, such as "L-B3" and "R-A".
+    flat : of the pegs, which lies on straight faces: its distance from a peg's centre, and half its width, in mm; None for
+        round ones.
 
     Raises
     ------
@@ -85,6 +88,7 @@ class Vise(Toolkit):
     row_offset: float = field(default=0.0, converter=real)
     body_radius: float = field(default=None, converter=optional_length)
     blocked: tuple[Holes, ...] = field(default=(), converter=all_holes)
+    flat: Flat | None = field(default=None, converter=flat_of, kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         if isnan(self.min_gap):
@@ -108,6 +112,7 @@ class Vise(Toolkit):
                 f"body radius {self.body_radius:g} is not one of a peg of radius {self.peg_radius:g}: give that or more, "
                 "in mm."
             )
+        object.__setattr__(self, "flat", resolved_flat(self.flat, self.peg_radius))
         refuse_boundless(self)
         refuse_blocked(self)
 
@@ -123,6 +128,7 @@ class Vise(Toolkit):
             self.body_radius,
             blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[0]),
             noun=NOUN,
+            flat=self.flat,
         )
         right = evolve(
             left,

@@ -105,7 +105,7 @@ class Touched:
         """
         carriers, segments = toolkit.carriers, len(workpiece.segments)
         if loci is None:
-            loci = [contact_features(workpiece, one.peg_radius) for one in carriers if not one.is_wall]
+            loci = [contact_features(workpiece, one.peg_radius, one.flat) for one in carriers if not one.is_wall]
         wall = next((number for number, one in enumerate(carriers) if one.is_wall), -1)
         flush = Flush.of((), ()) if wall < 0 else workpiece.flush
         loci = loci if wall < 0 else [*loci[:wall], (), *loci[wall:]]

@@ -20,6 +20,7 @@ from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
 from workhold.limits import MOST_FRICTION, refuse_strong
 from workhold.model.fixture import Fixture
+from workhold.model.flat import standoff
 from workhold.model.load import Load
 from workhold.model.real import real
 from workhold.model.toolkit import Toolkit
@@ -123,7 +124,9 @@ def load_cases(
     motions = None
     if friction is not None:
         carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
-        radii = np.array([toolkit.carriers[number].peg_radius for number in carriers])
+        faces = {face.number: face.segment for face in workpiece.faces}
+        pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
+        radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
         contacts = contact_matrices.points[0] - radii[:, None] * contact_matrices.normals[0]
         against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
         moving = touched.moving[carriers]

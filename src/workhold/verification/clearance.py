@@ -58,7 +58,7 @@ def clear_within(contact: Contact, center: Point, sides: Sequence[Side], reach: 
         around = along_feature(contact, center, middle + arb(0, half))
         doubtful = False
         for side in sides:
-            clearance = side.distance(point) - contact.radius
+            clearance = side.distance(point) - contact.clear_radius
             loss = half * steepness(contact, side, around)
             if clearance > loss:
                 continue

@@ -13,13 +13,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import ClassVar
 
-from attrs import frozen
+from attrs import field, frozen
 from flint import arb, arb_mat
 
+from workhold.model.flat import Flat
 from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
 
-__all__ = ["Contact", "Pose", "contact_system"]
+__all__ = ["Contact", "Pose", "contact_system", "standing_contact", "standoff"]
 
 
 @frozen(eq=False)
@@ -48,15 +49,22 @@ class Contact:
     hole : where it is in mm without any travel.
     way : unit vector along which it moves as the travel grows; (0, 0) where it stands still.
     side : the face touched.
-    radius : of the peg, in mm.
+    radius : in mm, how far the peg's centre is from the side: its radius, or of a flat on a line the flat's distance.
+    body : radius of the peg in mm where it has a flat, which its body keeps of all else; None where that is ``radius``.
     """
 
     hole: Point
     way: Point
     side: Side
     radius: arb
+    body: arb | None = field(default=None, kw_only=True)
 
     is_flush: ClassVar[bool] = False
+
+    @property
+    def clear_radius(self) -> arb:
+        """Radius in mm of what must be clear of all else."""
+        return self.radius if self.body is None else self.body
 
     @property
     def size(self) -> arb:
@@ -91,6 +99,16 @@ class Contact:
         w = u[0] - c[0], u[1] - c[1]
         value = (dot(w, w) - side.reach(self.radius) ** 2) / 2
         return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
+
+
+def standing_contact(hole: Point, way: Point, side: Side, peg_radius: float, flat: Flat | None) -> Contact:
+    """The contact of a peg, round or with a flat, which lies on lines."""
+    return Contact(hole, way, side, standoff(side, peg_radius, flat), body=None if flat is None else arb(peg_radius))
+
+
+def standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
+    """Distance in mm from a side to the centre of a peg that touches it, round or with a flat."""
+    return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
 def contact_system(contacts: Sequence[Contact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:

@@ -55,19 +55,22 @@ def edge_distances(
     return ways + [slack for slack, joined in zip(slacks, smooth, strict=True) if not joined]
 
 
-def barriers(side: Side, radius: arb, others: Iterable[Side]) -> list[Barrier]:
-    """The barriers on the way of a peg of a radius in mm along a side; none on a whole circle."""
-    if (isinstance(side, ArcSide) and side.whole) or not radius > HAIR:
+def barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) -> list[Barrier]:
+    """The barriers on the way along a side of a peg whose centre is ``radius`` mm from it; none on a whole circle.
+
+    ``body`` is the peg's own radius in mm, more than that where its flat lies on the side.
+    """
+    if (isinstance(side, ArcSide) and side.whole) or not body > HAIR:
         return []
     extent = length_of(side, radius)
     middle = way_point(side, radius, extent / 2)
     found = []
     for other in others:
         # The distance from a side changes no faster than the place.
-        if other.distance(middle) > extent / 2 + radius + HAIR:
+        if other.distance(middle) > extent / 2 + body + HAIR:
             continue
-        wide = entered(side, radius, other, radius + HAIR)
-        for low, high in entered(side, radius, other, radius - HAIR):
+        wide = entered(side, radius, other, body + HAIR)
+        for low, high in entered(side, radius, other, body - HAIR):
             around = [pair for pair in wide if pair[0].mid() <= low.mid() and high.mid() <= pair[1].mid()]
             before, behind = around[0] if around else (low, high)
             found.append((before.union(low), high.union(behind)))

@@ -115,7 +115,7 @@ class Measure:
     loads: tuple[DirectedLoad, ...]
     direction: arb
     jaw_force: float | None
-    beside: dict[tuple[int, float], list[Barrier]] = field(factory=dict, init=False)
+    beside: dict[tuple[int, float, float], list[Barrier]] = field(factory=dict, init=False)
 
     @classmethod
     def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
@@ -176,9 +176,10 @@ class Measure:
 
     def barriers(self, contact: Contact, face: int) -> list[Barrier]:
         """The barriers on the contact feature of a face that a peg touches."""
-        key, others = (face, float(contact.radius)), (other for _, other in self.outline.others[face])
+        key = face, float(contact.radius), float(contact.clear_radius)
         if key not in self.beside:
-            self.beside[key] = barriers(contact.side, contact.radius, others)
+            others = (other for _, other in self.outline.others[face])
+            self.beside[key] = barriers(contact.side, contact.radius, contact.clear_radius, others)
         return self.beside[key]
 
     def end_distance(self, contact: Contact, face: int, center: Point) -> arb:
@@ -193,7 +194,8 @@ class Measure:
         """
         beside, outline, radius = self.barriers(contact, face), self.outline, contact.radius
         readings: list[tuple[bool, bool]] = []
-        for side, smooth, turn in zip(outline.neighbours[face], outline.smooth[face], outline.turns[face], strict=True):
+        joined = outline.smooth_ends(face, contact.body is not None)
+        for side, smooth, turn in zip(outline.neighbours[face], joined, outline.turns[face], strict=True):
             length, sure = length_of(side, radius), bool(turn > 2 * TANGENT or turn * radius < SAME_END)
             open_way = smooth and bool(length > HAIR)
             sure &= not (smooth and bool(HAIR / 10 < length < 10 * HAIR))

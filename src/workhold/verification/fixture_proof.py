@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
+from math import isnan
 from typing import Literal
 
 from attrs import field, frozen
-from flint import ctx
+from flint import arb, ctx
 
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.verification.balls import PRECISIONS
+from workhold.verification.balls import PRECISIONS, norm
 from workhold.verification.closure import Balance, closure_findings
 from workhold.verification.contacts import Contact, Pose, contact_system
 from workhold.verification.figures import Measure, written_numbers
-from workhold.verification.findings import Finding
+from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware
 from workhold.verification.kinds import hardware_of
 from workhold.verification.pair_proof import pair_findings
 from workhold.verification.placing import gap_findings, proven_places, written_pose
-from workhold.verification.sides import ArcSide
+from workhold.verification.rules import AGREEMENT
+from workhold.verification.sides import ArcSide, LineSide
 from workhold.verification.touching import touching_findings
 
 __all__ = ["Judge", "Ruling", "Verdict", "verify_fixture"]
@@ -119,6 +121,7 @@ class Judge:
         for name, contact, face in touching:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
+        yield from flat_findings(fixture, hardware.names, contacts)
         if fixture.pair is not None:
             yield from pair_findings(fixture, fixture.pair, contacts, self.query, hardware, measure)
             return
@@ -137,6 +140,20 @@ class Judge:
         if not loose or proven is None:
             figures = measure.figures(contacts, faces, solution, balance)
             yield from written_numbers(fixture, hardware.names, balance, figures)
+
+
+def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[Contact]) -> Iterator[Finding]:
+    """Whether flats look at the faces that they lie on, where it is told which way they look, and no others are told of."""
+    for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
+        lies = contact.body is not None and isinstance(contact.side, LineSide)
+        if peg.flat_deg is None or not lies:
+            if lies or not (peg.flat_deg is None or isnan(peg.flat_deg)):
+                yield Finding(True, f"{name} has {'a' if lies else 'no'} flat on its face, and the file says otherwise")
+        elif not isnan(peg.flat_deg) and isinstance(contact.side, LineSide):
+            sine, cosine = ((arb(peg.flat_deg) - arb(fixture.pose.theta_deg)) / 180).sin_cos_pi()
+            off = norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
+            words = f"the flat of {name} looks {number(off * 180 / arb.pi())} degrees past its face"
+            yield from rule(AGREEMENT - off, words, words)
 
 
 def proven_pose(fixture: Fixture, contacts: list[Contact], travel_words: str) -> tuple[Pose | None, list[Finding]]:

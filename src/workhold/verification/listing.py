@@ -152,7 +152,7 @@ def keys_missing(head: Head) -> list[str]:
     # Of a vise and a toolkit one is enough, an account that is missing is told in any case, and a fit decides nothing; a
     # departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
-    spared |= {"workpiece.departure", "tolerance.departure"}
+    spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat"}
     if getattr(head.toolkit, "clamps", 1) == 1:
         spared |= {"listing", "pairs", "seats", "toolkit.clamps"}
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]

@@ -10,7 +10,7 @@ from flint import arb
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import Point
 from workhold.verification.rules import TANGENT
-from workhold.verification.sides import Side, vertex_side, whole_face
+from workhold.verification.sides import ArcSide, Side, vertex_side, whole_face
 
 __all__ = ["Outline"]
 
@@ -64,6 +64,19 @@ class Outline:
         }
         smooth = {number: (bool(one < TANGENT), bool(two < TANGENT)) for number, (one, two) in turns.items()}
         return cls(tuple(segments), faces, others, smooth, turns, neighbours)
+
+    def smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
+        """Whether a face meets its neighbours tangentially at its start and end, as pegs that touch it feel it.
+
+        One with a flat changes over from flat to round between a line and an arc.
+        """
+        one, other = self.smooth[face]
+        if not has_flat:
+            return one, other
+        first, last = (
+            isinstance(side, ArcSide) and isinstance(self.faces[face], ArcSide) for side in self.neighbours[face]
+        )
+        return one and first, other and last
 
 
 def turn_at(one: Side, two: Side, joint: Point) -> arb:

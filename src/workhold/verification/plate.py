@@ -21,7 +21,7 @@ from workhold.model.plate import Plate
 from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, norm
 from workhold.verification.capsule import clearance
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import Contact, Pose, standing_contact
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware, Key, Place, Rank, from_anchor
 from workhold.verification.outline import Outline
@@ -117,7 +117,8 @@ class PlateRules(Hardware):
         (pitch_x, pitch_y), (x, y) = self.toolkit.pitch, self.origin
         hole = x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
         if peg.carrier == PLATE:
-            return Contact(hole, exact_point(0.0, 0.0), side, arb(self.toolkit.peg_radius))
+            still = exact_point(0.0, 0.0)
+            return standing_contact(hole, still, side, self.toolkit.peg_radius, self.toolkit.flat)
         way = WAYS[direction_of(peg)]
         return Contact(hole, exact_point(*map(float, way)), side, arb(self.toolkit.clamp_radius))
 
@@ -200,7 +201,7 @@ class PlateRules(Hardware):
         bolted = evolve(clamp, way=exact_point(0.0, 0.0)) if self.is_bolted else clamp
         hole, stroke = bolted.place(pose), -pose.travel
         for other, locator in zip(self.names_in_holes, locators, strict=False):
-            apart = distance_from_piece(locator.hole, tip, hole) - locator.radius - clamp.radius
+            apart = distance_from_piece(locator.hole, tip, hole) - locator.clear_radius - clamp.radius
             yield from rule(
                 apart + HAIR,
                 f"{name} meets {other}: they overlap by {number(-apart)} mm",

@@ -50,8 +50,36 @@ def fixture_from(item: Any) -> Fixture:
     """
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
-    if "directions" in item:
-        return pair_fixture_from(item)
+    fixture = pair_fixture_from(item) if "directions" in item else single_fixture_from(item)
+    return with_flats(fixture, item["flats"]) if "flats" in item else fixture
+
+
+def with_flats(fixture: Fixture, flats: Any) -> Fixture:
+    """A fixture with which way the flats of its pegs in holes look, in degrees, null for none.
+
+    Raises
+    ------
+    UnusableError
+        When they are others.
+    """
+    standing = [place for place, peg in enumerate(fixture.pegs) if peg.carrier != WALL]
+    if not isinstance(flats, list) or len(flats) != len(standing):
+        raise UnusableError("flats is not one number or null for each peg")
+    pegs = list(fixture.pegs)
+    for place, angle in zip(standing, flats, strict=True):
+        told = None if angle is None else real({"number in flats": angle}, "number in flats")
+        pegs[place] = evolve(pegs[place], flat_deg=told)
+    return evolve(fixture, pegs=tuple(pegs))
+
+
+def single_fixture_from(item: Mapping[str, Any]) -> Fixture:
+    """A fixture with one thing that moves from its JSON object.
+
+    Raises
+    ------
+    UnusableError
+        Saying what is missing.
+    """
     direction = word(item, "direction") if item.get("direction") is not None else None
     if direction not in (None, *WAYS):
         raise UnusableError(f"its direction is not {' or '.join(WAYS)}")

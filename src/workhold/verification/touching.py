@@ -3,14 +3,14 @@
 Rules, with the hair of ``findings``:
 
 - ends: a contact lies more than margin + hair inside the ends of the face, at a tangent joint more than margin - hair;
-- elsewhere: as far as margin + hair along its feature to both sides the peg keeps clear of every other segment
-  (``clearance`` says what clear is). So where the feature is trimmed, because the peg comes to touch a second face across
-  its own, the contact lies more than margin + hair inside too.
+- elsewhere: as far as margin + hair along its feature to both sides the peg, as if it had no flat, keeps clear of every
+  other segment (``clearance`` says what clear is). So where the feature is trimmed, because the peg comes to touch a second
+  face across its own, the contact lies more than margin + hair inside too.
 
 Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, its foot inside the
-face, and every other segment farther than rho. Then p lies on the trimmed contact feature, off its ends, and outside the
-workpiece: the open segment from the foot to p starts on the outer side and meets no part of the outline, so it never
-enters the material.
+face, and every other segment farther than rho (of a flat: than the peg radius, which is no less). Then p lies on the
+trimmed contact feature, off its ends, and outside the workpiece: the open segment from the foot to p starts on the outer
+side and meets no part of the outline, so it never enters the material.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ def touching_findings(
     center = contact.in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
-    for slack, smooth in zip(contact.side.slacks(center, contact.radius), outline.smooth[face], strict=False):
+    joined = outline.smooth_ends(face, contact.body is not None)
+    for slack, smooth in zip(contact.side.slacks(center, contact.radius), joined, strict=False):
         inside = slack - margin + (HAIR if smooth else -HAIR)
         if inside > 0:
             continue
@@ -44,7 +45,7 @@ def touching_findings(
     reach = margin + HAIR
     near = []
     for index, side in outline.others[face]:
-        clearance = side.distance(center) - contact.radius
+        clearance = side.distance(center) - contact.clear_radius
         if clearance > reach:
             continue
         near.append(side)

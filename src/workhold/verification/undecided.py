@@ -23,6 +23,7 @@ from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED,
 from workhold.model.query import Query
 from workhold.model.toolkit import Arrangement, Carrier
 from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
+from workhold.verification.contacts import standoff
 from workhold.verification.ends import on_circle, on_line
 from workhold.verification.outline import Outline
 from workhold.verification.plate import LOCATORS, quarter_turns, seen_along_x
@@ -42,10 +43,11 @@ REASONS = (AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED)
 
 @frozen(eq=False)
 class Touching:
-    """A peg that touches a side: the side, the step to it from the first peg in the workpiece's frame in mm, its column, and
-    how far in mm it may be off."""
+    """A peg that touches a side: the side, how far in mm its centre is from that, the step to it from the first peg in the
+    workpiece's frame in mm, its column, and how far in mm it may be off."""
 
     side: Side
+    radius: arb
     step: Point
     column: int
     loose: float
@@ -173,7 +175,6 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
     sine, cosine = (theta / 180).sin_cos_pi()
     loose = LOOSE + radians(entry.reach_deg or 0.0) * outline_size(query)
     groups = groups_of(entry, query)
-    radii = [arb(carriers[group[0]].peg_radius) for group in groups]
     pegs = []
     for group in groups:
         pitch_x, pitch_y = carriers[group[0]].pitch
@@ -182,8 +183,10 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
         ]
         sides = [outline.faces[entry.faces[k]] for k in group]
         turns = [turned(step, cosine, -sine) for step in steps]
-        pegs.append([Touching(s, t, entry.columns[k], loose) for s, t, k in zip(sides, turns, group, strict=True)])
-    held = [first_pegs(group, radius) if len(group) > 1 else None for group, radius in zip(pegs, radii, strict=True)]
+        radii = [standoff(side, carriers[group[0]].peg_radius, carriers[group[0]].flat) for side in sides]
+        columns = [entry.columns[k] for k in group]
+        pegs.append([Touching(*one, loose) for one in zip(sides, radii, turns, columns, strict=True)])
+    held = [first_pegs(group) if len(group) > 1 else None for group in pegs]
     if any(places is not None and not places for places in held):
         return "is no place where its pegs touch their faces"
     standing, moving = held
@@ -195,7 +198,7 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
     gap = query.toolkit.gap
     ahead = None if gap is None else reach * first.pitch[0] + gap
     if len(pegs[1]) == 1:
-        rows = [on_row(pegs[1][0], radii[1], tail, up, (cosine, sine)) for tail in standing]
+        rows = [on_row(pegs[1][0], tail, up, (cosine, sine)) for tail in standing]
         moving = None if None in rows else [place for row in rows for place in row or ()]
     if moving is None:
         return ""
@@ -214,18 +217,21 @@ def outline_size(query: Query) -> float:
     return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
-def first_pegs(group: Sequence[Touching], radius: arb) -> list[Point] | None:
+def first_pegs(group: Sequence[Touching]) -> list[Point] | None:
     """Where the first peg of a jaw may be when all its pegs touch; None when that may be anywhere along a way."""
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
     if other is None:
-        return None if all(may_slide_with(one, peg, radius) for peg in group[1:]) else []
+        return None if all(may_slide_with(one, peg) for peg in group[1:]) else []
     side, (x, y), spare = other.side, other.step, arb(0, other.loose)
     if isinstance(side, LineSide):
-        points = on_line(one.side, radius, side.normal, side.level + radius + spare - dot(side.normal, (x, y)))
+        points = on_line(
+            one.side, one.radius, side.normal, side.level + other.radius + spare - dot(side.normal, (x, y))
+        )
     else:
-        points = on_circle(one.side, radius, (side.center[0] - x, side.center[1] - y), side.reach(radius) + spare)
-    return [point for point in points if all(may_touch(peg, point, radius) for peg in group)]
+        center = side.center[0] - x, side.center[1] - y
+        points = on_circle(one.side, one.radius, center, side.reach(other.radius) + spare)
+    return [point for point in points if all(may_touch(peg, point) for peg in group)]
 
 
 def are_across(one: Touching, other: Touching) -> bool:
@@ -239,26 +245,27 @@ def are_across(one: Touching, other: Touching) -> bool:
     return True
 
 
-def may_slide_with(one: Touching, other: Touching, radius: arb) -> bool:
+def may_slide_with(one: Touching, other: Touching) -> bool:
     """Whether two pegs whose ways run parallel may touch both at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
-        return not abs(a.reach(radius) - b.reach(radius)) > one.loose if isinstance(b, ArcSide) else True
-    point = a.start[0] + radius * a.normal[0] + other.step[0], a.start[1] + radius * a.normal[1] + other.step[1]
-    return not abs(b.gap(point) - radius) > one.loose + PARALLEL * (a.length + norm(other.step))
+        return not abs(a.reach(one.radius) - b.reach(other.radius)) > one.loose if isinstance(b, ArcSide) else True
+    off = one.radius
+    point = a.start[0] + off * a.normal[0] + other.step[0], a.start[1] + off * a.normal[1] + other.step[1]
+    return not abs(b.gap(point) - other.radius) > one.loose + PARALLEL * (a.length + norm(other.step))
 
 
-def may_touch(peg: Touching, first: Point, radius: arb) -> bool:
+def may_touch(peg: Touching, first: Point) -> bool:
     """Whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
     side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
-    if isinstance(side, ArcSide) and not side.reach(radius) > 0:
+    if isinstance(side, ArcSide) and not side.reach(peg.radius) > 0:
         return False
-    if abs(side.gap(point) - radius) > peg.loose:
+    if abs(side.gap(point) - peg.radius) > peg.loose:
         return False
-    return not any(slack < -peg.loose for slack in side.slacks(point, radius))
+    return not any(slack < -peg.loose for slack in side.slacks(point, peg.radius))
 
 
-def on_row(moved: Touching, radius: arb, tail: Point, up: arb, turn: Point) -> list[Point] | None:
+def on_row(moved: Touching, tail: Point, up: arb, turn: Point) -> list[Point] | None:
     """Where a peg may be that stands ``up`` mm above another in the toolkit; None where its side runs along."""
     side, across = moved.side, turned((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):
@@ -266,5 +273,5 @@ def on_row(moved: Touching, radius: arb, tail: Point, up: arb, turn: Point) -> l
         if not (slope > 0 or slope < 0):
             return None
     peg = evolve(moved, step=(arb(0), arb(0)))
-    points = on_line(side, radius, across, dot(across, tail) + up + arb(0, moved.loose))
-    return [point for point in points if may_touch(peg, point, radius)]
+    points = on_line(side, moved.radius, across, dot(across, tail) + up + arb(0, moved.loose))
+    return [point for point in points if may_touch(peg, point)]

@@ -15,7 +15,7 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.vise import Vise
 from workhold.verification.balls import Point, exact_point
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import Contact, Pose, standing_contact
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware, Key, Place, Rank, from_anchor
 from workhold.verification.outline import Outline
@@ -77,7 +77,7 @@ class ViseRules(Hardware):
     def contact(self, peg: Peg, side: Side) -> Contact:
         """The contact of a peg with a side; right pegs move along x with the jaw separation."""
         way = exact_point(float(peg.carrier == "right"), 0.0)
-        return Contact(self.place(peg), way, side, arb(self.toolkit.peg_radius))
+        return standing_contact(self.place(peg), way, side, self.toolkit.peg_radius, self.toolkit.flat)
 
     def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """What is wrong with jaws, columns, rows and the places x, y written for them."""

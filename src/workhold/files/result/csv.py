@@ -43,7 +43,10 @@ def column_names(result: Result) -> list[str]:
     """The names of the columns."""
     pegs = [f"peg{peg}_{name}" for peg in range(1, result.toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[2 if result.toolkit.needs_pairs else 1]
-    return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs]
+    kinds, standing = result.toolkit.carriers, result.toolkit.arrangements[0].carriers
+    count = sum(not kinds[k].is_wall for k in standing) if result.toolkit.has_flats else 0
+    flats = [f"flat{number}_deg" for number in range(1, 1 + count)]
+    return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs, *flats]
 
 
 def result_csv_text(result: Result) -> Iterator[str]:
@@ -51,6 +54,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
     toolkit, carriers = result.toolkit, result.toolkit.carriers
     yield ",".join(column_names(result)) + "\n"
     moved = 3 + (2 if toolkit.needs_pairs else 1)
+    flats = toolkit.has_flats
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number = 0
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
@@ -58,6 +62,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
             name, jaws = arrangements[kind]
+            row, looks = (row[:-1], row[-1]) if flats else (row, [])
             pose, quality = row[6 * len(jaws) :][:moved], row[6 * len(jaws) + moved :]
             fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
@@ -73,5 +78,6 @@ def result_csv_text(result: Result) -> Iterator[str]:
                     str(face),
                     f"{force:.12g}",
                 ]
+            fields += ["" if angle is None else repr(angle) for angle in looks]
             lines.append(",".join(fields) + "\n")
         yield "".join(lines)

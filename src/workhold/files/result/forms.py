@@ -54,6 +54,13 @@ class WorkpiecePart(Part):
     departure: float = 0.0
 
 
+class FlatPart(Part):
+    """The keys of a flat."""
+
+    distance: float
+    half_width: float
+
+
 class VisePart(Part):
     """The vise's keys."""
 
@@ -66,6 +73,7 @@ class VisePart(Part):
     row_offset: float = 0.0
     body_radius: float | None = None
     blocked: list[str] = []
+    flat: FlatPart | None = None
 
 
 class OtherVisePart(VisePart):
@@ -86,6 +94,7 @@ class PlatePart(Part):
     travel: Pair | None = None
     directions: list[str | list[str]] | None = None
     clamps: int = 1
+    flat: FlatPart | None = None
 
 
 class FencePart(PlatePart):

@@ -15,7 +15,7 @@ import numpy as np
 from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, significant
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable, peg_places
+from workhold.model.result import FixtureTable, flat_angles, peg_places
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -40,7 +40,18 @@ def pair_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> I
         forces, quality = force.tolist(), (significant(block.quality) + 0.0).tolist()
         kinds, pairs = block.arrangement.tolist(), block.pairs.tolist()
         each = zip(kinds, places, poses, ends, holes, faces, forces, quality, pairs, strict=True)
-        yield [json.dumps(fixture_entry(toolkit, figures, *numbers)) for numbers in each]
+        entries = [fixture_entry(toolkit, figures, *numbers) for numbers in each]
+        if toolkit.has_flats:
+            flats = flats_told(block, toolkit, workpiece)
+            entries = [entry | {"flats": told} for entry, told in zip(entries, flats, strict=True)]
+        yield [json.dumps(entry) for entry in entries]
+
+
+def flats_told(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
+    """Which way the flats of a table's pegs look, in degrees, of all but the ends of a wall; None for no flat."""
+    on_wall = {k for one in toolkit.arrangements for k, n in enumerate(one.carriers) if toolkit.carriers[n].is_wall}
+    angles = flat_angles(table, toolkit, workpiece)
+    return [[angle for k, angle in enumerate(row) if k not in on_wall] for row in angles]
 
 
 def fixture_entry(

@@ -20,8 +20,9 @@ import numpy as np
 from attrs import asdict
 
 from workhold.files.atomic import text_file
-from workhold.files.result.pairs import pair_lines
+from workhold.files.result.pairs import flats_told, pair_lines
 from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, rounded_degrees
+from workhold.model.flat import Flat
 from workhold.model.force_ratio import working_forces
 from workhold.model.holes import Holes
 from workhold.model.kinds import USUAL
@@ -67,8 +68,10 @@ def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequen
     direction = "" if arrangement.direction is None else f'"direction": "{arrangement.direction}", '
     travel = f"{LEFT_OUT}" if toolkit.moving.on else '"jaw_separation": %r, '
     wall = "" if toolkit.wall is None else WALL
+    flats = ', "flats": %s' if toolkit.has_flats else ""
     return (
-        f'{{"type": "{arrangement.name}", {direction}{wall}"pegs": [{pegs}], {POSE}{travel}"quality": {{{quality}}}}}'
+        f'{{"type": "{arrangement.name}", {direction}{wall}"pegs": [{pegs}], {POSE}{travel}"quality": {{{quality}}}'
+        f"{flats}}}"
     )
 
 
@@ -132,6 +135,8 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -
             numbers = map(with_place_again, numbers)
         if toolkit.wall is not None:
             numbers = map(with_wall, numbers)
+        if toolkit.has_flats:
+            numbers = ((*row[:-1], json.dumps(row[-1])) for row in numbers)
         yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
         separator = ",\n"
 
@@ -203,6 +208,8 @@ def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
 def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name; how many holes there are comes first."""
     fields = {name: written(value) for name, value in asdict(toolkit, recurse=False).items()}  # type: ignore[arg-type]
+    if fields["flat"] is None:
+        del fields["flat"]
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows")} | fields
 
 
@@ -210,6 +217,8 @@ def written(value: Any) -> Any:
     """A value of a field as it is written."""
     if isinstance(value, tuple):
         return [written(one) for one in value]
+    if isinstance(value, Flat):
+        return asdict(value)
     return value.name if isinstance(value, Holes) else value
 
 
@@ -256,7 +265,8 @@ def fixture_rows(
     ------
     The indices of the arrangements, and for every fixture a tuple of numbers: for each peg column, row, x, y, face, force
     (of two clamps at their working ratio); then theta in degrees, x and y of the pose, jaw separation or the travel of each
-    clamp; and after them the figures of :func:`known_figures`.
+    clamp; and after them the figures of :func:`known_figures`. Where pegs have flats, last a list: which way the flat of
+    each looks that stands in a hole.
     """
     known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
@@ -272,4 +282,6 @@ def fixture_rows(
         columns += [
             array.tolist() for array in (theta, *told.position.T, *np.atleast_2d(told.jaw_separation.T), *figures)
         ]
+        if toolkit.has_flats:
+            columns.append(flats_told(block, toolkit, workpiece))
         yield block.arrangement.tolist(), zip(*columns, strict=True)

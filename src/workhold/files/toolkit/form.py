@@ -38,6 +38,7 @@ class ToolkitForm(BaseModel):
     hole_position: FiniteFloat | None = None
     peg_tolerance: FiniteFloat | None = None
     face_tolerance: FiniteFloat | None = None
+    flat: FiniteFloat | Pair | None = None
 
 
 class ViseForm(ToolkitForm):
@@ -81,6 +82,7 @@ WANTED = {
     "directions": 'write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
     "clamps": "write 1 or 2",
     "assumed": 'write a list of the entries that no source gives, such as ["travel"]',
+    "flat": "write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
     "blocked": 'write a list of holes and columns by name, such as ["L-B3", "R-A"]',
     "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",
     "hole_diameter": "write the smallest and the largest diameter, such as [6.0, 6.012]",

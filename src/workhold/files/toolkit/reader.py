@@ -106,6 +106,9 @@ def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
         fields["travel"] = (unit.length(least), unit.length(most))
     if "blocked" in entries:
         fields["blocked"] = tuple(entries["blocked"])
+    if "flat" in entries:
+        flat = entries["flat"]
+        fields["flat"] = tuple(unit.length(number) for number in (flat if isinstance(flat, list) else [flat]))
     toolkit_of(kind, fields)
     fit = fit_of(entries, unit, fields["peg_radius"])
     return LoadedVise(
