@@ -45,7 +45,7 @@ def key(fixture: Fixture) -> tuple[Any, ...]:
 
 
 def body_is_clear(fixture: Fixture, loop: list[list[float]]) -> bool:
-    """Whether discs of the peg radius about the pegs in holes keep clear of all faces that they do not touch, by sampling."""
+    """Whether discs of the peg radius about the pegs in holes keep clear of all faces that they do not touch."""
     inverse, corners = fixture.pose.inverse, [np.array(corner[:2]) for corner in loop]
     for peg in fixture.pegs:
         if peg.carrier == "wall" or peg.carrier.startswith("clamp"):

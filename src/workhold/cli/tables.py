@@ -308,11 +308,13 @@ def fixture_tables(
     noun, clamped = toolkit.moving.noun, fixture.direction is not None
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
     per = f">force per {noun} force" if fixture.pair is None else f">force per {noun} force of both"
-    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", per))
+    flats = toolkit.has_flats
+    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", *[">flat at"] * flats, per))
     for peg in fixture.pegs:
         stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
         where = unit.number(peg.x), unit.number(peg.y)
-        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, f"{peg.force:.3f}")
+        looks = ["" if peg.flat_deg is None else f"{rounded(peg.flat_deg, 2)}°"] * flats
+        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:.3f}")
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",

@@ -88,6 +88,8 @@ def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
     for words, count in (("columns", first.columns), ("rows", first.rows)):
         table.add_row(f"{words} {each}", "as many as needed" if count is None else str(count))
     table.add_row("peg radius", f"{unit.figure(first.peg_radius, finest)} {of}")
+    if first.flat is not None:
+        table.add_row("from a peg's centre to its flat", f"{unit.figure(first.flat.distance, finest)} {of}")
     for words, value in own_figures(loaded, unit):
         table.add_row(words, value)
     if loaded.fit is not None:

@@ -14,6 +14,7 @@ from workhold.drawing.plates import draw_holes, draw_plate, draw_wall, most_hole
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
+from workhold.model.flat import peg_outline
 from workhold.model.shown import Shown, shown
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
@@ -157,7 +158,12 @@ def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
         cross = min(0.55 * radius, 6.0 * weight)
         if bench.toolkit.carrier(peg.carrier).peg_radius == 0 and hole > radius:
             pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
-        pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+        flat = bench.toolkit.carrier(peg.carrier).flat
+        if flat is None or peg.flat_deg is None:
+            pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+        else:
+            outline = peg_outline((peg.x, peg.y), radius / view.scale, flat, peg.flat_deg)
+            pegs.path(outline_path([outline], view), BLACK, 1.2 * weight, PEG_FILL, **{"class": "peg"})
         if cross > 2.0 * weight:
             pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
             pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)

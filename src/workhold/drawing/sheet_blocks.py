@@ -22,6 +22,7 @@ from workhold.drawing.sheet_writing import (
     listed,
     peg_rows,
     write_dowel,
+    write_flats,
     write_table,
 )
 from workhold.model.holes import column_letters, hole_name
@@ -82,6 +83,7 @@ def write_pegs(column: Column, sheet: Sheet) -> None:
         NOTE,
     )
     column.paragraph(f"{per} of {first.noun} force, without friction.", NOTE)
+    write_flats(column, sheet)
     write_dowel(column, sheet)
 
 

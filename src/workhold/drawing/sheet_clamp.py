@@ -18,6 +18,7 @@ from workhold.drawing.sheet_writing import (
     listed,
     peg_rows,
     write_dowel,
+    write_flats,
     write_table,
 )
 from workhold.model.fixture import Pair
@@ -60,6 +61,7 @@ def write_locators(column: Column, sheet: Sheet) -> None:
         )
     of = f"{noun} force" if not several else f"{noun} force, both {noun}s added up, in the ratio told below"
     column.paragraph(f"{per} of {of}, without friction.", NOTE)
+    write_flats(column, sheet)
     write_dowel(column, sheet)
 
 

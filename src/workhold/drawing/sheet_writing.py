@@ -15,7 +15,7 @@ from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution
 from workhold.geometry.segment import Point
 from workhold.model.dowel import fit_words
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.holes import hole_name
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.toolkit import Toolkit
@@ -34,6 +34,7 @@ __all__ = [
     "listed",
     "peg_rows",
     "write_dowel",
+    "write_flats",
     "write_table",
 ]
 
@@ -158,15 +159,33 @@ def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[s
     """The table of the pegs under some names: its header, its rows, and what the forces in it are, up to "of"."""
     force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.number
     per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
-    header = ["Hole", "face", f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
+    flats = sheet.toolkit.has_flats
+    header = ["Hole", "face", *["flat"] * flats, f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
     if force is not None:
         header.append(f"at {unit.force_words(force)}")
     rows = []
     for name, peg in zip(names, sheet.fixture.pegs, strict=True):
-        row = [name, peg.touched, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
+        looks = [looks_words(peg)] * flats
+        row = [name, peg.touched, *looks, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])
     each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
     return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"
+
+
+def looks_words(peg: Peg) -> str:
+    """Which way a peg's flat looks."""
+    return "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
+
+
+def write_flats(column: Column, sheet: Sheet) -> None:
+    """Write what the flats of the pegs are and how they are turned, where they have some."""
+    flat = sheet.toolkit.carriers[0].flat
+    if flat is not None:
+        column.paragraph(
+            f"flat: which way it looks, counter-clockwise from +x; it is {sheet.lengths.short(flat.distance)} from the centre. "
+            "Turn the peg until its flat lies on the part.",
+            NOTE,
+        )
 
 
 def lies_words(sheet: Sheet) -> str:

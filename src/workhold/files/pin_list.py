@@ -27,7 +27,7 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
     """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(HEADER)
+    writer.writerow((*HEADER, *["flat_deg"] * toolkit.has_flats))
     carriers = {carrier.name: carrier for carrier in toolkit.carriers}
     for peg in fixture.pegs:
         carrier = carriers[peg.carrier]
@@ -36,5 +36,6 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
         sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
         long = "" if length is None else unit.figure(length)
         place = (peg.hole, plain(carrier.title), column_letters(peg.column), peg.row + 1)
-        writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face))
+        looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * toolkit.has_flats
+        writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face, *looks))
     return stream.getvalue()

@@ -7,16 +7,16 @@ radius. On arcs it touches with its round side. Where its body may be turned any
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import isfinite, nan, sqrt
+from math import acos, cos, isfinite, nan, pi, radians, sin, sqrt
 from typing import Any
 
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
-from workhold.geometry.segment import Line, Segment
+from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.real import real
 
-__all__ = ["Flat", "flat_of", "resolved_flat", "standoff"]
+__all__ = ["Flat", "flat_of", "peg_outline", "resolved_flat", "standoff"]
 
 # Parts of the peg radius; a width that was rounded when it was written down is one still.
 ROUNDED = 1e-6
@@ -87,3 +87,15 @@ def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
 def standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
     """Distance in mm from a face to the centre of a peg that touches it."""
     return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
+
+
+def peg_outline(center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None) -> list[Segment]:
+    """The outline of a peg in mm, counter-clockwise: a circle, or one cut off by a flat that looks some way, in degrees."""
+    if flat is None or flat_deg is None or flat.distance >= radius:
+        return [Arc(center, radius, 0.0, pi, 1.0)]
+    looks, half = radians(flat_deg), acos(flat.distance / radius)
+    arc = Arc(center, radius, looks + pi, pi - half, 1.0)
+    end, start = (
+        (center[0] + radius * cos(looks + turn), center[1] + radius * sin(looks + turn)) for turn in (-half, half)
+    )
+    return [arc, Line(end, start)]

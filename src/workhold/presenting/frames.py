@@ -55,6 +55,10 @@ def columns_of(result: Result) -> dict[str, Any]:
     carriers = [[toolkit.carriers[k] for k in one.carriers] for one in toolkit.arrangements]
     blocks: list[list[Any]] = []
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
+        looks: list[Any] = []
+        if toolkit.has_flats:
+            *before, flats = zip(*rows, strict=True)
+            rows, looks = zip(*before, strict=True), list(np.array(flats, np.float64).T)
         numbers = [np.array(column) for column in zip(*rows, strict=True)]
         block: list[Any] = [titles[kinds], *numbers[count:]]
         for peg in range(toolkit.peg_count):
@@ -62,6 +66,7 @@ def columns_of(result: Result) -> dict[str, Any]:
             jaws = [carriers[kind][peg] for kind in kinds]
             holes = [jaw.place_name(a, b) for jaw, a, b in zip(jaws, column.tolist(), row.tolist(), strict=True)]
             block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
+        block += looks
         blocks.append(block)
     joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (len(names) - 1)
     columns = [np.arange(1, len(result) + 1), *joined]

@@ -14,6 +14,7 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamp import ShownClamp
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
+from workhold.model.flat import standoff
 from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
@@ -203,6 +204,8 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "names_at": each.names_at,
             "pegs": [next(numbers) for _ in each.pegs],
             "peg_radius": each.carrier.peg_radius,
+            "flat": None if each.carrier.flat is None else each.carrier.flat.distance,
+            "flats": [peg.flat_deg for peg in each.pegs],
             "used_columns": sorted(each.used_columns),
             "used_rows": sorted(each.used_rows),
             "clamping": each.clamping,
@@ -349,8 +352,9 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         nx, ny = segment.normal(segment.parameter(fixture.pose.inverse.apply(peg.x, peg.y)))
         x, y = (float(v) / hypot(nx, ny) for v in fixture.pose.turn(nx, ny))
         normals.append([x, y])
-        radius = toolkit.carrier(peg.carrier).peg_radius
-        contacts.append([peg.x - radius * x, peg.y - radius * y])
+        carrier = toolkit.carrier(peg.carrier)
+        off = standoff(carrier.peg_radius, carrier.flat, segment)
+        contacts.append([peg.x - off * x, peg.y - off * y])
     return {"normals": normals, "contacts": contacts}
 
 

@@ -95,6 +95,7 @@ class ViseForm(Form):
     row_offset: Number = 0.0
     body_radius: Number | None = None
     blocked: list[Name] = Field(default=[], max_length=MOST_NAMES)
+    flat: Number | Point | None = None
 
     def toolkit(self) -> Toolkit:
         """The toolkit.
@@ -119,6 +120,7 @@ class PlateForm(Form):
     travel: Point | None = None
     directions: list[Name] | list[DirectionPair] | None = Field(default=None, max_length=len(DIRECTIONS) ** 2)
     clamps: int = Field(default=1, ge=1, le=2)
+    flat: Number | Point | None = None
 
     def toolkit(self) -> Toolkit:
         """The toolkit.

@@ -118,6 +118,7 @@ def pair_words(one: str, other: str) -> str:
 PITCH = Field("pitch", "Pitch", "pitch", is_usual=True)
 PEG = Field("peg_radius", "Peg radius", "length", is_usual=True, least="0")
 ROWS = Field("rows", "Rows a jaw", "count", "as needed")
+FLAT = Field("flat", "Centre to flat", "length", "round, no flat", least="0")
 VISE = (
     PITCH,
     Field("columns", "Columns a jaw", "count", is_usual=True),
@@ -128,6 +129,7 @@ VISE = (
     Field("max_opening", "Largest opening", "length", "no limit"),
     Field("body_radius", "Shoulder radius", "length", "peg radius", least="0"),
     Field("blocked", "Blocked holes", "holes", "L-B3, R-A"),
+    FLAT,
 )
 GRIPPER = tuple(field for field in VISE if field.name != "columns")
 TRAVEL = Field("travel", "Stroke", "span", "any", least="0")
@@ -151,6 +153,7 @@ PLATE = (
     CLAMPS,
     Field("directions", "The clamp pushes", "several", "all that differ", choices=WAYS, when={"clamps": 1}),
     Field("directions", "The clamps push", "several", "across each other", choices=PAIRS, when={"clamps": 2}),
+    FLAT,
 )
 FENCE = (
     *PLATE[:4],
@@ -160,6 +163,7 @@ FENCE = (
     CLAMPS,
     Field("directions", "The clamp pushes", "several", "any way", choices=WAYS, when={"clamps": 1}),
     Field("directions", "The clamps push", "several", "down and aside", choices=ALL_PAIRS, when={"clamps": 2}),
+    FLAT,
 )
 IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from cmath import exp
 from io import BytesIO
-from math import atan, pi, radians, sin, tan
+from math import acos, atan, pi, radians, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from plate_examples import WAYS, on_plate
 
+from workhold import design
 from workhold.errors import InputError
 from workhold.files.step.setup import setup_step, write_setup_step
 from workhold.files.step.solids import Solid, read_solids
@@ -198,3 +199,21 @@ def test_a_plate_has_its_locators_and_its_clamp(way: str, bolted: bool) -> None:
         axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, 0), gp_Pnt(peg.x, peg.y, 12)).Edge()
         assert distance(axis, part.shape) == pytest.approx(5, abs=1e-6)
         assert distance(axis, body.shape) > 5
+
+
+def test_pegs_with_flats_are_round_in_their_holes_and_flat_on_the_part() -> None:
+    """Their volumes are those of cylinders, less a segment of a circle above the plate; each touches the part."""
+    vise = Vise((9, 8), 2, 2.5, flat=1.5)
+    block = Workpiece.from_loops("block", [[[0, 0, 0], [40, 6, 0], [34, 36, 0], [-4, 30, 0]]])
+    held = design(block, vise, best=1)[0]
+    assert all(peg.flat_deg is not None for peg in held.pegs)
+    solids = read_solids(setup_step(held, block, vise, thickness=10, plate_thickness=7))
+    pegs = [solid for solid in solids if (round(solid.low[2], 6), round(solid.high[2], 6)) == (-7, 10)]
+    (lying,) = [solid for solid in solids if (round(solid.low[2], 6), round(solid.high[2], 6)) == (0, 10)]
+    cut = 2.5**2 * acos(1.5 / 2.5) - 1.5 * sqrt(2.5**2 - 1.5**2)
+    assert [peg.volume for peg in pegs] == pytest.approx([17 * pi * 2.5**2 - 10 * cut] * 4, rel=1e-7)
+    for peg in pegs:
+        assert distance(peg.shape, lying.shape) == pytest.approx(0, abs=1e-6)
+    for peg in held.pegs:
+        axis = BRepBuilderAPI_MakeEdge(gp_Pnt(peg.x, peg.y, 0), gp_Pnt(peg.x, peg.y, 10)).Edge()
+        assert distance(axis, lying.shape) == pytest.approx(1.5, abs=1e-6)

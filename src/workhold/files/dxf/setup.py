@@ -20,6 +20,7 @@ from ezdxf.filemanagement import new
 from workhold.files.atomic import write_bytes
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.flat import peg_outline
 from workhold.model.holes import column_letters
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, Shown, shown
@@ -170,7 +171,8 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
-                space.add_circle((peg.x, peg.y), each.carrier.peg_radius, {"layer": peg_layer(each.carrier)})
+                outline = peg_outline((peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg)
+                add_outline(space, outline, peg_layer(each.carrier))
             else:
                 space.add_point((peg.x, peg.y), {"layer": peg_layer(each.carrier)})
             out = each.carrier.body_radius + clearance

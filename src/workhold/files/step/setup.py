@@ -19,6 +19,7 @@ from workhold.files.step.library import load_step_library
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.flat import peg_outline
 from workhold.model.holes import hole_name
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
@@ -114,7 +115,11 @@ def setup_step(
     seen = shown(fixture, toolkit, workpiece)
     for each in seen.carriers:
         for peg in each.pegs:
+            outline = peg_outline((peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg)
             body = peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, top)
+            if len(outline) > 1:
+                # Round in its hole, and above the plate as its flat leaves it.
+                body = fused(peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, 0.0), outline, top)
             named.append((f"{each.carrier.peg} {peg.hole}", body))
     for clamp in seen.clamps:
         named.append((clamp.tip.hole, extruded(wire(clamp.outline()), [], 0.0, thickness)))
@@ -156,6 +161,13 @@ def peg_body(center: Point, radius: float, low: float, high: float) -> Any:
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 
     return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(*center, low), gp_Dir(0.0, 0.0, 1.0)), radius, high - low).Solid()
+
+
+def fused(foot: Any, outline: Sequence[Segment], height: float) -> Any:
+    """A peg of its round foot and what stands on it, from z = 0 up."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+
+    return BRepAlgoAPI_Fuse(foot, extruded(wire(outline), [], 0.0, height)).Shape()
 
 
 def plate_body(shown: ShownCarrier, thickness: float) -> Any:

@@ -103,7 +103,7 @@ export class FixtureDrawing {
     this.underPegs = draw("g.under-pegs");
     const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
     this.plates = groups((each) => (each.clamp ? this.clamp(each) : this.plate(each)));
-    this.pegs = groups((each) => each.pegs.map((k) => this.peg(row.pegs[k], k, each.peg_radius)));
+    this.pegs = groups((each) => each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)));
     this.view.world.replaceChildren(...this.plates, shape, ...this.pegs);
     this.slide(this.open);
   }
@@ -148,13 +148,14 @@ export class FixtureDrawing {
   }
 
   /** A peg that can be pointed at and focused. */
-  peg([x, y], k, size) {
+  peg([x, y], k, { peg_radius: size, flat }, looks) {
     const radius = Math.max(size, Math.min(...this.vise.pitch) / 12);
     const { row, clearance } = this;
     const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${row.mover} force`;
     const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
     if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.vise.body_radius ?? size) + clearance }));
-    group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
+    if (looks === null || flat >= size) group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
+    else group.append(draw("path.peg-body", { d: flattedPath([x, y], radius, (looks * Math.PI) / 180, Math.acos(flat / size)) }));
     const cross = radius / 2;
     group.append(draw("path.peg-cross", { d: `M${x - cross} ${y}H${x + cross}M${x} ${y - cross}V${y + cross}` }));
     const point = () => {
@@ -236,4 +237,17 @@ export class FixtureDrawing {
     this.slide(far);
     this.frame = requestAnimationFrame(step);
   }
+}
+
+/**
+ * The outline of a peg that a flat cuts off.
+ *
+ * @param {number[]} center
+ * @param {number} radius
+ * @param {number} looks which way the flat looks, in radians
+ * @param {number} half half of the angle that the flat takes of the circle
+ */
+function flattedPath([x, y], radius, looks, half) {
+  const at = (angle) => `${x + radius * Math.cos(angle)} ${y + radius * Math.sin(angle)}`;
+  return `M${at(looks + half)}A${radius} ${radius} 0 ${half < Math.PI / 2 ? 1 : 0} 1 ${at(looks - half)}Z`;
 }
