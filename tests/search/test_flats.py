@@ -217,3 +217,16 @@ def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
         told = [row[f"flat{number}_deg"] for number in range(1, 6)]
         assert told == ["" if peg.flat_deg is None else repr(peg.flat_deg) for peg in fixture.pegs]
         assert told[3:] == ["", ""]
+
+
+def test_a_frame_has_the_angles() -> None:
+    """As the table for a spreadsheet has them; NaN where there is none."""
+    pytest.importorskip("pandas", reason="the extra 'tables' is not installed")
+    result = design(part(NOTCHED), TOOLKITS[4], best=3)
+    frame = result.to_pandas()
+    for number in range(1, 4):
+        assert f"flat{number}_deg" in frame.columns
+    for row, fixture in zip(frame.to_dict("records"), result, strict=True):
+        told = [row[f"flat{number}_deg"] for number in range(1, 4)]
+        wanted = [peg.flat_deg for peg in fixture.pegs if peg.carrier != "wall"]
+        assert [None if np.isnan(angle) else angle for angle in told] == wanted

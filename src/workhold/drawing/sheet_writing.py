@@ -182,8 +182,8 @@ def write_flats(column: Column, sheet: Sheet) -> None:
     flat = sheet.toolkit.carriers[0].flat
     if flat is not None:
         column.paragraph(
-            f"flat: which way it looks, counter-clockwise from +x; it is {sheet.lengths.short(flat.distance)} from the centre. "
-            "Turn the peg until its flat lies on the part.",
+            "flat: which way it looks, counter-clockwise from +x; it is "
+            f"{sheet.lengths.short(flat.distance)} from the centre. Turn the peg until its flat lies on the part.",
             NOTE,
         )
 

@@ -67,10 +67,11 @@ def test_the_fields_are_those_of_the_kind(walk: Walk) -> None:
 
 
 def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
-    """Directions of one clamp are left behind, pairs are offered, and a rectangle is held square."""
+    """Directions of one clamp are left behind, pairs are offered, and a rectangle is held square; every pair on request."""
     page = walk.page
     page.set_input_files("#file", EXAMPLES / "plate.json")
     walk.seen("#faces button")
+    assert page.locator("#every-pair").is_hidden()
     page.select_option("#preset", "clamp-plate-20mm")
     page.click("#more-title")
     page.get_by_label("downward").check()
@@ -84,6 +85,30 @@ def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
     assert len(walk.holes()) == 5 and walk.shown()["theta_deg"] % 90 == 0
     page.click("#push")
     walk.seen("#bars .bar:nth-child(5)")
+    seats = walk.count()
+    page.check("#every-pair")
+    walk.search()
+    assert walk.count() > seats
+    page.select_option("#clamps", label="one")
+    page.wait_for_selector("#pairs-box", state="hidden")
+
+
+def test_pegs_with_a_flat_lie_on_the_part(walk: Walk) -> None:
+    """A field of every toolkit; the drawing shows each flat, and round clamps."""
+    page = walk.page
+    page.set_input_files("#file", EXAMPLES / "bracket.dxf")
+    walk.seen("#faces button")
+    page.select_option("#preset", "clamp-plate-20mm")
+    page.click("#more-title")
+    fill(walk, flat="2")
+    assert held_in(walk)["flat"] == 2
+    walk.search()
+    flats = page.locator("#drawing-fixture path.peg-body").count()
+    assert 0 < flats <= 3 and page.locator("#drawing-fixture .peg-body").count() == 4
+    fill(walk, flat="9")
+    page.click("#search")
+    walk.seen("text=is none of a peg of radius")
+    walk.troubles.clear()
 
 
 def test_another_kind_keeps_what_both_have(walk: Walk) -> None:

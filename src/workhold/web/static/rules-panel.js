@@ -33,6 +33,8 @@ export function rulesPanel(drawing, showPart) {
   on(["zones", "unit"], writeZones);
   on(["angles", "contactMargin", "unit"], write);
   on(["vise", "types"], writeTypes);
+  field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
+  on(["vise", "listing"], writeListing);
   on(["loads"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
@@ -129,6 +131,12 @@ function write() {
     "contact-margin": state.contactMargin ? fieldLength(state.contactMargin) : "",
   };
   for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
+}
+
+/** Whether every pair of clamps is listed, where there are two. */
+function writeListing() {
+  show(byId("pairs-box"), state.vise.clamps === 2);
+  field("every-pair").checked = state.listing === "all";
 }
 
 /** A box for each type of fixture where there are several; ticked means sought. */

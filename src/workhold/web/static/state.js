@@ -6,7 +6,7 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "vise", "types", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
+  "part", "vise", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
 ];
 
 /**
@@ -16,6 +16,7 @@ export const SETTINGS = [
  * @property {any} vise kind and fields of the toolkit in mm
  * @property {string} unit "mm" or "inch", for reading and typing only
  * @property {string[]|null} types names of the arrangements sought; null is all
+ * @property {"all"|null} listing of two clamps every pair of each seat; null is the best of each
  * @property {number} contactMargin in mm
  * @property {number[]} avoid faces not to touch
  * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
@@ -41,6 +42,7 @@ export const state = {
   vise: { pitch: [10, 10], columns: 2, peg_radius: 3 },
   unit: "mm",
   types: null,
+  listing: null,
   contactMargin: 0,
   avoid: [],
   zones: [],
@@ -88,6 +90,7 @@ export function request() {
     workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0 },
     vise: state.vise,
     types: state.types,
+    listing: state.listing,
     contact_margin: state.contactMargin,
     restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles },
     ranking: state.ranking,
