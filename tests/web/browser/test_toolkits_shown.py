@@ -83,6 +83,13 @@ def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
     assert held_in(walk)["directions"] == [["-x", "-y"]]
     walk.search()
     assert len(walk.holes()) == 5 and walk.shown()["theta_deg"] % 90 == 0
+    # Each clamp's length has its name, and room in the drawing.
+    assert page.inner_text("#pose-words").startswith("Clamp ")
+    frame = page.locator("#drawing-fixture").bounding_box()
+    words = [word.bounding_box() for word in page.locator("#drawing-fixture .dimension-text").all()]
+    assert frame and len(words) == 2
+    for box in words:
+        assert box and frame["x"] <= box["x"] and box["x"] + box["width"] <= frame["x"] + frame["width"]
     page.click("#push")
     walk.seen("#bars .bar:nth-child(5)")
     seats = walk.count()

@@ -45,9 +45,18 @@ function writePegs(row) {
     ),
   );
   byId("pose-words").textContent =
-    `${row.settings.map((one) => `${one.name[0].toUpperCase()}${one.name.slice(1)} ${length(one.length)}`).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
+    `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
     `${bareLength(row.x)}, ${length(row.y)} from hole ${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${row.mover} force.`);
 }
+
+/** What there is to set, with its length; of several clamps with the name of each. */
+function settingWords({ settings, holes }) {
+  const named = (k) => (settings.length > 1 ? `${holes[holes.length - settings.length + k]} ` : "");
+  return settings.map((one, k) => `${named(k)}${one.name} ${length(one.length)}`);
+}
+
+/** A word that begins a sentence. */
+const capital = (words, k) => (k ? words : `${words[0].toUpperCase()}${words.slice(1)}`);
 
 /** The figures of quality; beside those of the pinned fixture, the better one of each marked. */
 function writeQuality(row, pinned) {

@@ -115,12 +115,15 @@ function travels(drawing) {
     const text = `${setting.sign} = ${length(drawing.open ? (b - a) / view.k : setting.length)}`;
     const wide = 8.2 * text.length + 10;
     const above = upright || b - a < wide + 24;
-    const [x, y] = upright ? [rim + 8, (a + b) / 2] : [(a + b) / 2, rim - (above ? 13 : 0)];
+    const [x, y] = upright ? [rim + 15, (a + b) / 2] : [(a + b) / 2, rim - (above ? 13 : 0)];
     const heads = [[a, 1], [b, -1]].map(([at, way]) =>
       draw("path.dimension-head", { d: upright ? `M${rim} ${at}l-3.2 ${way * 9}h6.4Z` : `M${at} ${rim}l${way * 9} -3.2v6.4Z` }),
     );
+    const words = word(text, [x, y], "dimension-text");
+    // Along its line, as on a drawing: beside it there may be no room.
+    if (upright) words.setAttribute("transform", `rotate(-90 ${x} ${y})`);
     const back = above ? [] : [draw("rect.label-back", { x: x - wide / 2, y: y - 9, width: wide, height: 18 })];
-    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, word(text, [x, y], "dimension-text", upright ? "start" : "middle")];
+    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, words];
   });
 }
 
