@@ -97,7 +97,8 @@ class FixturesInColumns(Sequence[Fixture]):
                 x = nan
             called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
             # Nor which way a flat looks.
-            pegs.append(Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called, flat_deg=nan))
+            looks = None if one.flat is None else nan
+            pegs.append(Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called, flat_deg=looks))
         pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
         figures = zip(FIGURES, numbers["quality"], strict=True)
         known = {figure.key: value for figure, value in figures if value == value}
