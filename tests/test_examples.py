@@ -29,8 +29,9 @@ def test_the_notebook_shows_what_is_stored_in_it(path: Path) -> None:
     stored = json.loads(path.read_text())
     again = runpy.run_path(str(EXAMPLES / "run_notebook.py"))["executed"](path)
     assert shown(again) == shown(stored)
-    assert shown(stored).count("a picture") == 3
-    assert [cell["execution_count"] for cell in stored["cells"] if cell["cell_type"] == "code"] == list(range(1, 10))
+    assert "a picture" in shown(stored)
+    counts = [cell["execution_count"] for cell in stored["cells"] if cell["cell_type"] == "code"]
+    assert counts == list(range(1, len(counts) + 1))
 
 
 def test_what_a_cell_shows_is_kept() -> None:
