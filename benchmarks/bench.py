@@ -10,6 +10,10 @@ import argparse
 import sys
 
 import algebra
+import batch
+import batch_estimate
+import batch_queue
+import batch_simulation
 import floor
 import growth
 import many
@@ -43,6 +47,10 @@ def main() -> None:
         many.run,
         toolkits.run,
         pruning.run,
+        batch.run,
+        batch_queue.run,
+        batch_estimate.run,
+        batch_simulation.run,
     ):
         sections.append(run(options.quick))
         if not options.quick:

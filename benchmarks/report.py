@@ -50,7 +50,7 @@ class Target:
 
     Parameters
     ----------
-    number : the target's number, from 1 to 9.
+    number : the target's number, from 1.
     words : what is asked for.
     value : what was measured, in words.
     met : whether it is met.

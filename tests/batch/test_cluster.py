@@ -12,6 +12,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Event
 from time import sleep
+from types import SimpleNamespace
 
 import pytest
 from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
@@ -78,6 +79,22 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     store.write("abcd", refusal_record("no")[:-1])
     assert not store.has("abcd") and store.read("abcd") is None
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
+
+
+def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import distributed
+
+    from workhold.batch.cluster import done_there
+
+    monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(address="tcp://worker"))
+    task, store = Fatal("abcd", "title", tmp_path, 0), FolderStore(tmp_path / "records")
+    back = done_there(task, None)
+    assert back.record is not None and back.worker == "tcp://worker"
+    put = done_there(task, store)
+    assert (put.record, put.failure) == (None, "") and store.read("abcd") == back.record
+    (tmp_path / "file").touch()
+    lost = done_there(task, FolderStore(tmp_path / "file"))
+    assert lost.record is None and "cannot be written" in lost.failure
 
 
 def test_stores_are_told_by_their_urls(tmp_path: Path) -> None:

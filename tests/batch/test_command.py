@@ -125,6 +125,14 @@ def test_slips_are_told_before_any_work(tmp_path: Path, words: tuple[str, ...], 
     assert not out.exists()
 
 
+def test_what_lies_in_the_folder_of_results_is_no_part(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    square(tmp_path / "a.json", 30)
+    square(tmp_path / "out" / "b.json", 31)
+    code, told, warned = run(tmp_path, "--toolkit", "plate-20mm", "--out", tmp_path / "out", "--workers", 1)
+    assert code == 0 and told.startswith("1 job: "), warned
+
+
 def test_foreign_files_are_not_written_over(shop: Path, tmp_path: Path) -> None:
     (tmp_path / "report.html").write_text("mine")
     code, _, warned = run(shop, *TOOLS, "--out", tmp_path)

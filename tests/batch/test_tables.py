@@ -21,6 +21,7 @@ from workhold.files.result.reader import read_result
 from workhold.model.fence import Fence
 from workhold.model.plate import Plate
 from workhold.model.query import Query
+from workhold.statics.judging import unfit
 
 PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
 FENCE = HeldIn("fence", Query(ANY_PART, Fence(pitch=20, peg_radius=3, wall_offset=20)))
@@ -48,7 +49,7 @@ def rows(batch: Batch, folder: Path) -> Iterator[JobRow]:
 
 
 def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
-    held_in = set()
+    held_in, fit = set(), set()
     for one in rows:
         assert list(one.row) == list(RESULTS)
         if one.row["state"] != "held":
@@ -56,7 +57,9 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
             continue
         result = read_result(Path(one.row["record"]))
         held_in.add(one.row["toolkit"])
-        assert one.row["fixtures"] == sum(result.found.values()) and one.row["fit"] in (True, False)
+        assert one.row["fixtures"] == sum(result.found.values())
+        assert one.row["fit"] is not bool(unfit(result.table.quality[:1], result.query.tolerance)[0])
+        fit.add(one.row["fit"])
         assert 1 <= len(one.best) == len(result) <= 3
         for rank, (row, fixture) in enumerate(zip(one.best, result, strict=True), 1):
             assert list(row) == list(BEST) and row["rank"] == rank
@@ -67,7 +70,7 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
             for key, value in fixture.quality.items():
                 assert row[key] == pytest.approx(value)
         assert one.row["location_error"] == one.best[0]["location_error"]
-    assert held_in == {"coarse", "plate", "fence", "pair"}
+    assert held_in == {"coarse", "plate", "fence", "pair"} and True in fit
 
 
 def test_both_forms_have_the_same_rows(

@@ -50,8 +50,7 @@ def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: py
     """The tables of a fixture and of the vises."""
     write_result(fake_result(12), tmp_path / "r.json")
     monkeypatch.setenv("COLUMNS", "80")
-    bracket = Path(__file__).parents[2] / "examples" / "bracket.dxf"
-    for words in (("show", tmp_path / "r.json", 1), ("vises",), ("features", "widget"), ("features", bracket)):
+    for words in (("show", tmp_path / "r.json", 1), ("vises",), ("features", "widget")):
         outcome = run(*words)
         assert outcome.exit_code == 0, outcome.stderr
         lines = outcome.stdout.splitlines()

@@ -1,8 +1,9 @@
 """How long a task will take: what puts the longest first, so that no worker is left alone with one at the end.
 
 The estimate is a power law: a search grows with the number of faces and with the number of steps that the lattice offers
-between two pegs on a part of that size. Constants and exponents come from a fit to measured runs (``benchmarks/batch.py``);
-docs/batch.md says how near it comes. Only the order and the shares count: how fast a machine is shows while it runs.
+between two pegs on a part of that size. Constants and exponents come from a fit to measured runs
+(``benchmarks/batch_estimate.py``); docs/benchmarks.md says how near it comes. Only the order and the shares count: how fast
+a machine is shows while it runs.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ __all__ = ["answering_seconds", "measures", "reading_seconds"]
 
 # Seconds are exp(constant) * faces ** first * steps ** second.
 LAWS: Mapping[str, tuple[float, float, float]] = {
-    "vise": (-11.0, 2.0, 1.0),
-    "plate": (-11.0, 2.0, 1.0),
-    "two clamps": (-10.0, 2.0, 1.5),
-    "fence": (-8.0, 1.5, 0.5),
+    "vise": (-9.35, 0.83, 1.33),
+    "plate": (-10.94, 0.93, 1.32),
+    "two clamps": (-19.51, 0.07, 3.86),
+    "fence": (-3.9, 0.39, -0.02),
 }
 # Of a drawing: seconds for the first byte, and for a million of them.
 READING: Mapping[str, tuple[float, float]] = {".step": (2.0, 10.0), ".stp": (2.0, 10.0), ".dxf": (0.02, 4.0)}

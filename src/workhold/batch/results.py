@@ -58,7 +58,7 @@ def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
     """
     if row.row["state"] != "held":
         return None
-    name = re.sub(r"[^\w.-]+", "_", row.job.title)[:LONGEST_NAME]
+    name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]
     path = folder / f"{name}_{row.job.name[:LETTERS]}.pdf"
     if not path.exists():
         from workhold.drawing.pdf import svg_to_pdf

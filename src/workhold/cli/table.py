@@ -11,7 +11,7 @@ __all__ = ["Fitted", "Table"]
 # Between two columns where there is room, and where there is little.
 GAP, NARROW_GAP = 3, 2
 # The last column is wrapped down to this many letters.
-LEAST_WRAPPED = 16
+LEAST_WRAPPED = 24
 
 
 @frozen
