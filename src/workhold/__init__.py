@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
     from workhold.search.contacts import count_contacts
     from workhold.search.design import answer, design
+    from workhold.seating.seating import seatings
 
 __all__ = [
     "Fence",
@@ -57,6 +58,7 @@ __all__ = [
     "open",
     "polygon_zone",
     "save",
+    "seatings",
     "verify",
 ]
 
@@ -85,6 +87,7 @@ HOMES = {
     "open": "workhold.files.result.reader:read_result",
     "polygon_zone": "workhold.model.restrictions",
     "save": "workhold.files.result.save",
+    "seatings": "workhold.seating.seating",
     "verify": "workhold.completeness",
 }
 

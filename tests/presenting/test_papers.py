@@ -60,7 +60,6 @@ def test_a_sheet_names_a_file_only_where_there_is_one(result_file: Path, tmp_pat
 @pytest.mark.parametrize(
     ("path", "asked", "words"),
     [
-        ("setup.pdf", {"day": "2026-11-22"}, "day '2026-11-22' is no date: give a datetime.date"),
         ("sheet.txt", {}, "names no kind of setup sheet"),
         ("sheet.svg", {"paper": "a3"}, "the paper 'a3' is not known: choose a4 or letter"),
         ("sheet.svg", {"unit": "ell"}, "Unit 'ell' is not known"),

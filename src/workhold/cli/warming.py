@@ -40,7 +40,7 @@ def compile_kernels(cancel: Event) -> None:
     ----------
     cancel : when set, the rest is left to the search.
     """
-    from workhold.kernels.preparing import KERNEL_COUNT, PARTS, prepared
+    from workhold.kernels.preparing import KERNEL_COUNT, LATER, PARTS, prepared
 
     done, counting = 0, Lock()
     with progress_bar(WORDS, f"of {KERNEL_COUNT} kernels", WORDS) as progress:
@@ -55,7 +55,7 @@ def compile_kernels(cancel: Event) -> None:
         process, listener = second_process(one_more) if helped else (None, None)
         try:
             for part in PARTS:
-                for _ in () if helped and part == LONGEST else prepared(part):
+                for _ in () if part in LATER or (helped and part == LONGEST) else prepared(part):
                     one_more()
                     if cancel.is_set():
                         return

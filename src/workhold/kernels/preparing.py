@@ -37,11 +37,31 @@ from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS, SLIDING
 from workhold.kernels.curves.table import tail_curves
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import certified
+from workhold.kernels.seating.candidates import complete_third, complete_three, complete_two, fourths, settle
+from workhold.kernels.seating.closing import close_jaws
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CELL_LENGTH,
+    DEPTH,
+    HOLDING_LENGTH,
+    Given,
+    Obstacles,
+    WorkSpace,
+)
+from workhold.kernels.seating.fibres import free_poses
+from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
+from workhold.kernels.seating.holdings import held_at, make_cells
+from workhold.kernels.seating.leaving import leaves
+from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.kernels.statics.quality import figures
 from workhold.kernels.statics.reactions import LOAD_LENGTH
 
-__all__ = ["KERNEL_COUNT", "PARTS", "prepared"]
+# Numbers of a configuration.
+CONFIGURATION = 4
+
+__all__ = ["KERNEL_COUNT", "LATER", "PARTS", "prepared"]
 
 LATTICE, LIMITS = Lattice(1.0, 1.0, 0.0), Limits(1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0)
 # A kernel and what it is called with.
@@ -96,9 +116,42 @@ def distances() -> Calls:
     yield are_concentric, (row, row)
 
 
-# Two parts of about the same length and a short one, and how many kernels there are in all.
-PARTS = {"crossings": crossings_and_pairs, "others": table_and_listing, "distances": distances}
-KERNEL_COUNT = sum(1 for calls in PARTS.values() for _ in calls())
+def seats_and_passes() -> Calls:
+    """The kernels of seating, which no search needs."""
+    one, points, many = np.zeros(CONFIGURATION), np.zeros((0, 2)), np.zeros((0, CANDIDATE_LENGTH))
+    rows, pegs, sides = np.zeros((0, SEGMENT_LENGTH)), np.zeros((4, 2)), np.zeros(4, np.int64)
+    curves = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+    given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides)
+    obstacles = Obstacles(rows, points, pegs, sides, 1.0, 0.0)
+    cells, stack, roots = np.zeros((0, CELL_LENGTH)), np.zeros((DEPTH, 2)), np.zeros((0, ROOT_LENGTH))
+    none, pockets = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
+    yield clearances, (points, rows, one)
+    yield make_cells, (given, np.zeros((0, STRETCH_LENGTH)), cells)
+    yield held_at, (none, np.zeros(0), given, np.zeros((0, 4)))
+    yield three_contacts, (cells, given, stack, roots)
+    yield two_holdings, (cells, cells, given, stack, roots)
+    yield third_of_jaw, (cells, given, stack, roots)
+    for complete in (complete_three, complete_two):
+        yield complete, (roots, given, pockets, many)
+    yield complete_third, (roots, given, pockets, np.zeros(CANDIDATE_LENGTH), many)
+    yield fourths, (np.zeros(CANDIDATE_LENGTH), 0, given, many)
+    yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
+    work = WorkSpace(np.zeros((1, 5)), np.zeros((5, 4)), np.zeros((5, 6)), one, one, one, np.zeros(8, np.int64))
+    yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, work, np.zeros(0, np.int8))
+    crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
+    yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
+    yield leaves, (np.zeros((0, 2)), rows, 1)
+
+
+# Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.
+PARTS = {
+    "crossings": crossings_and_pairs,
+    "others": table_and_listing,
+    "distances": distances,
+    "seating": seats_and_passes,
+}
+LATER = ("seating",)
+KERNEL_COUNT = sum(1 for part, calls in PARTS.items() if part not in LATER for _ in calls())
 
 
 @contextmanager

@@ -243,6 +243,12 @@ class Workpiece:
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
+    @cached_property
+    def turned_over(self) -> Workpiece:
+        """The workpiece turned over: x to -x in its own frame, its faces numbered anew."""
+        loops = (reversed_vertices(loop * np.array([-1.0, 1.0, -1.0])) for loop in self.loops)
+        return Workpiece(self.name, tuple(loops), departure=self.departure)
+
     def placed(self, pose: Pose) -> Workpiece:
         """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)

@@ -50,9 +50,7 @@ def save_sheet(
     if paper not in PAPERS:
         raise InputError(f"the paper {str(paper)[:40]!r} is not known: choose {' or '.join(PAPERS)}.")
     settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
-    day = settings.setdefault("day", date.today())
-    if not isinstance(day, date):
-        raise InputError(f"the day {str(day)[:40]!r} is no date: give a datetime.date, or leave it out for today.")
+    settings.setdefault("day", date.today())
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
 

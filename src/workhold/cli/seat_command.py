@@ -1,0 +1,173 @@
+"""``workhold seat``: whether the part ends up in the pose of a fixture, and where else it can come to rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from workhold.cli.commands import option
+from workhold.cli.json_output import JsonOption, print_json
+from workhold.cli.options import SHOWN_UNIT
+from workhold.cli.outputs import ForceOption, refuse_output
+from workhold.cli.ranked import RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.saying import tell
+from workhold.cli.values import choice, length_unit, optional_positive_length, picture_ending
+
+if TYPE_CHECKING:
+    from workhold.cli.table import Table
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+    from workhold.model.units import Unit
+    from workhold.seating.figures import Seat, Seating
+
+__all__ = ["seat"]
+
+SIDES = ("both", "drawn", "turned-over")
+# What the friction of dry steel reaches.
+DRY_STEEL = 0.2
+KINDS = {
+    "fixture": "all four pegs on faces",
+    "corner": "four pegs, one on a corner",
+    "pocket": "a peg in a corner of the part",
+    "curved": "held by curvature",
+    "loose": "not located",
+    "unsettled": "not settled",
+}
+
+
+def seat(
+    result_file: ResultArgument,
+    number: RankArgument,
+    side: str = option(None, "WORD", "Which side of the part may lie up: drawn, turned-over, or both.", default="both"),
+    opening: str | None = option(
+        None, "LENGTH", "Open the jaws by this much to put the part in; as far as they go if not given."
+    ),
+    draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
+    force: ForceOption = False,
+    unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
+) -> None:
+    """Tell whether the part ends up in the pose of fixture N when the vise is closed: how wide open the jaws may be when it
+    is let go and how far off it may lie, where else it can come to rest, and what the jaws read then.
+
+    Example: workhold seat part.json 1 --draw seats.svg
+    """
+    rank = asked_rank(number)
+    shown_unit = length_unit(unit)
+    shown_side = choice("--side", side, SIDES)
+    opened = optional_positive_length("--opening", opening, shown_unit)
+    picture = None if draw is None else Path(draw)
+    ending = None
+    if picture is not None:
+        ending = picture_ending(picture)
+        refuse_output(picture, (result_file,), force)
+    result = result_with(result_file, rank)
+    fixture = result[rank - 1]
+
+    from workhold.cli.tables import print_tables
+    from workhold.seating.seating import Solver
+
+    told = Solver(result.workpiece, result.toolkit).of(fixture)
+    seats = shown_seats(told, shown_side, opened, result)
+    if not json_:
+        print_tables(
+            f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
+            "",
+            *setting_words(told, fixture, shown_unit),
+            "",
+            *wrong_words(told, seats, opened, shown_unit),
+            seat_table(seats, fixture, shown_unit),
+        )
+    for words in told.unsettled:
+        tell(words)
+    if picture is not None and ending is not None:
+        from workhold.drawing.render import render
+        from workhold.drawing.seats_picture import draw_seats
+        from workhold.files.atomic import write_bytes
+
+        svg = draw_seats(seats, fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit)
+        write_bytes(picture, render(svg, ending))
+        if not json_:
+            print_tables(f"Drawn in {picture}.")
+    if json_:
+        print_json(rank=rank, seating=told.as_fields(), written=[] if picture is None else [str(picture)])
+
+
+def shown_seats(told: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
+    """The seats that can be reached, that of the fixture first."""
+    own = [one for one in told.seats if one.is_own]
+    rest = [one for one in told.seats if not one.is_own and (side == "both" or one.mirrored == (side == "turned-over"))]
+    if opened is not None:
+        rest = [one for one in rest if one.difference < opened]
+    most = result.toolkit.moving.travel.most if result.toolkit.moving.travel else None
+    return own + [one for one in rest if most is None or one.jaw_separation <= most]
+
+
+def setting_words(told: Seating, fixture: Fixture, unit: Unit) -> list[str]:
+    """What to do, and what to read when it went right."""
+    right = unit.text(fixture.jaw_separation)
+    if told.capture_opening is None:
+        words = [f"However wide the jaws open, the part cannot get to another place. Close them: they read {right}."]
+    else:
+        wide, more = unit.text(fixture.jaw_separation + told.capture_opening), unit.text(told.capture_opening)
+        words = [
+            f"Open the jaws to less than {wide}, which is {more} more than they close to. Put the part in its place and "
+            "close them: on the way it cannot leave for another place.",
+            f"When it has come home the jaws read {right}. While they read more it is stuck short of its pose.",
+        ]
+        if told.drop_room is not None:
+            words.append(f"Opened so far, there is about {unit.text(told.drop_room)} of room at every peg at once.")
+    if told.cage is not None and told.placing is not None:
+        low, high = told.cage.theta_deg
+        x, y = (" to ".join(unit.number(end) for end in ends) for ends in (told.cage.x, told.cage.y))
+        words += [
+            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {x} {unit.abbreviation} along the jaws' way, {y} "
+            f"{unit.abbreviation} across it, as far as the pegs let it. Told to a grid's step.",
+            f"Put so that every point is nearer than {unit.text(told.placing)} to its place, it comes home.",
+        ]
+    tap = "." if told.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."
+    words.append(f"With a friction below {told.sticking_friction:.3f} it cannot stick near its pose{tap}")
+    return words
+
+
+def wrong_words(told: Seating, seats: list[Seat], opened: float | None, unit: Unit) -> list[str]:
+    """How many wrong seats there are, and whether a reading tells them."""
+    wrong = [one for one in seats if one.is_wrong]
+    alike = sum(one.same_place and not one.is_own for one in seats)
+    words = []
+    if told.capture_opening is not None and opened is not None and opened < told.capture_opening:
+        words.append("Let go in its cage at this opening, the part reaches no other place; let go elsewhere it may.")
+    if not wrong:
+        words.append("There is no wrong place where it can come to rest.")
+    else:
+        near = min(wrong, key=lambda one: abs(one.difference))
+        places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
+        words.append(
+            f"It can come to rest in {places}; the reading nearest to the right one is "
+            f"{unit.text(abs(near.difference))} {'more' if near.difference > 0 else 'less'}."
+        )
+    if alike:
+        words.append(f"In {alike} more it covers its place all the same, which no reading tells: mark the part.")
+    return words
+
+
+def seat_table(seats: list[Seat], fixture: Fixture, unit: Unit) -> Table:
+    """The seats: what the jaws read, how the part lies, what touches, and how far it is held."""
+    from workhold.cli.table import Table
+
+    of = unit.abbreviation
+    table = Table(("seat", f">reads {of}", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"))
+    for k, one in enumerate(seats):
+        turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
+        pegs = ", ".join(f"{fixture.pegs[c.peg].hole} {c.words}" for c in one.contacts)
+        words = "right" if one.is_own else "same place" if one.same_place else KINDS[one.kind]
+        table.add_row(
+            str(k + 1),
+            unit.number(one.jaw_separation),
+            unit.number(one.difference),
+            f"{one.pose.theta_deg:.1f}" if one.mirrored else f"{turned:.1f}",
+            "over" if one.mirrored else "up",
+            "-" if one.depth is None else unit.number(one.depth),
+            f"{words}{': ' if pegs else ''}{pegs}",
+        )
+    return table

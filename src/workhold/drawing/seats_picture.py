@@ -1,0 +1,119 @@
+"""How a part can come to rest on a fixture's pegs: its own seat and the wrong ones, side by side, to know them by sight."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL
+from workhold.drawing.fonts import shortened, text_width
+from workhold.drawing.part import outline_path
+from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View
+from workhold.drawing.thumbnails import CAPTION, EDGE, MOST_THUMBNAILS, grid
+from workhold.geometry.segment import Segment
+from workhold.model.fixture import Fixture
+from workhold.model.toolkit import Toolkit
+from workhold.model.units import MILLIMETRE, Unit
+from workhold.model.workpiece import Workpiece
+from workhold.seating.figures import Seat
+
+__all__ = ["draw_seats"]
+
+# The right seat, and one that no reading tells from it.
+RIGHT, ALIKE = "#2e7d32", "#8a6d00"
+# The far side of a part that is turned over.
+OVER_FILL = "#dfe6ee"
+
+
+def draw_seats(
+    seats: Sequence[Seat],
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    *,
+    title: str = "Fixture",
+    unit: Unit = MILLIMETRE,
+) -> str:
+    """Draw up to twelve seats of a fixture's pegs on one A4 sheet, all to the same scale, with what the jaws read.
+
+    Parameters
+    ----------
+    seats : in the order in which they are numbered.
+    title : what to call the fixture.
+    unit : of the lengths written.
+
+    Returns
+    -------
+    str
+        SVG text.
+    """
+    shown = seats[:MOST_THUMBNAILS]
+    scene = Scene.page(LANDSCAPE, f"{workpiece.name}: seats")
+    width = LANDSCAPE[0]
+    more = len(seats) - len(shown)
+    words = "all to the same scale" if not more else f"{more} more not drawn; all to the same scale"
+    room = width - 2 * EDGE - text_width(words, 14) - 20
+    scene.text(
+        (EDGE, EDGE + 10), shortened(f"{workpiece.name}: {title} and its seats", 24, room, bold=True), 24, bold=True
+    )
+    scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
+    cells = grid(len(shown))
+    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
+    placed = [Placed.of(seat, fixture, workpiece, toolkit) for seat in shown]
+    scale = min(View.fitting(one.extent, box).scale for one, box in zip(placed, rooms, strict=True))
+    for k, (one, cell, box) in enumerate(zip(placed, cells, rooms, strict=True)):
+        draw_seat(scene.group("seat"), one, k + 1, cell, View.fitting(one.extent, box, scale), unit)
+    return scene.svg()
+
+
+class Placed:
+    """A seat with its part and pegs where they are, in mm in the vise frame.
+
+    Parameters
+    ----------
+    seat : which.
+    loops : of the part.
+    pegs : places, radii, and whether each touches.
+    """
+
+    def __init__(
+        self, seat: Seat, loops: list[list[Segment]], pegs: list[tuple[tuple[float, float], float, bool]], extent: Box
+    ) -> None:
+        self.seat, self.loops, self.pegs, self.extent = seat, loops, pegs, extent
+
+    @classmethod
+    def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
+        """A seat of a fixture's pegs."""
+        part = workpiece.turned_over if seat.mirrored else workpiece
+        lying = part.placed(seat.pose)
+        touching = {contact.peg for contact in seat.contacts}
+        pegs = []
+        for k, peg in enumerate(fixture.pegs):
+            x = peg.x + (seat.difference if peg.carrier == toolkit.moving.name else 0.0)
+            pegs.append(((x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching))
+        x0, y0, x1, y1 = lying.bounds
+        boxes = [(x0, y0, x1, y1), *((x - r, y - r, x + r, y + r) for (x, y), r, _ in pegs)]
+        lows, highs = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
+        extent = Box(
+            *(min(ends) for ends in zip(*lows, strict=True)), *(max(ends) for ends in zip(*highs, strict=True))
+        )
+        return cls(seat, [list(loop) for loop in lying.loop_segments], pegs, extent)
+
+
+def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
+    """Draw one seat with its number, what the jaws read, and how that differs."""
+    seat = placed.seat
+    colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
+    scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
+    fill = OVER_FILL if seat.mirrored else PART_FILL
+    scene.path(outline_path(placed.loops, view), BLACK, 1.2, fill, fill_rule="evenodd")
+    for place, radius, touches in placed.pegs:
+        scene.circle(view(place), max(radius * view.scale, 2.0), PEG_FILL if touches else "#ffffff", PEG_FILL, 1.2)
+    side = ", turned over" if seat.mirrored else ""
+    words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
+    scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
+    scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(seat.jaw_separation)}", 13, "end", fill=ARROW)
+    kind = seat.kind if seat.kind != "fixture" else "four pegs"
+    scene.text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
+    if not seat.is_own:
+        more = "more" if seat.difference >= 0.0 else "less"
+        scene.text((cell.x1 - 10, cell.y1 - 12), f"{unit.text(abs(seat.difference))} {more}", 12, "end", fill=GREY)

@@ -1,0 +1,303 @@
+"""From roots to configurations with contacts, and whether forces balance there."""
+
+from __future__ import annotations
+
+from math import cos, inf, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CLEAR,
+    CONTACTS,
+    DOUBT,
+    FIRST_PEG,
+    FORCE,
+    KIND,
+    MOTION,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    RESIDUAL,
+    SECOND,
+    SECOND_PEG,
+    SEPARATION,
+    SOURCE,
+    THETA,
+    Given,
+)
+from workhold.kernels.seating.holdings import END, held, is_on_its_pieces
+from workhold.kernels.seating.pieces import clearance, distance_to, foot, normal_at, on_piece
+from workhold.kernels.seating.roots import MISS, value
+from workhold.kernels.seating.three_contacts import (
+    ROOT_DOUBT,
+    ROOT_HOLDING,
+    ROOT_PEG,
+    ROOT_PIECE,
+    ROOT_PSI,
+    ROOT_SIDE,
+)
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Radians to either side by which a derivative is told from two values.
+STEP = 1e-5
+# Pivots of the balance below this are none.
+SINGULAR = 1e-14
+# mm. Pegs farther than this from what they are said to touch do not touch it.
+MISFIT = 1e-6
+
+
+@inner
+def write_holding(row: Array, at: int, holding: Array, given: Given, pocket_pieces: IntArray) -> None:
+    """Write the two contacts of a holding to a candidate as its contacts ``at`` and the next."""
+    k = int(holding[SOURCE])
+    row[PEG + at], row[PEG + at + 1] = holding[FIRST_PEG], holding[SECOND_PEG]
+    if holding[KIND] == 1.0:
+        row[PEG + at + 1] = holding[FIRST_PEG]
+        row[PIECE + at], row[PIECE + at + 1] = pocket_pieces[k, 0], pocket_pieces[k, 1]
+    else:
+        row[PIECE + at], row[PIECE + at + 1] = given.curves[k, TAIL], given.curves[k, HEAD]
+
+
+@inner
+def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> None:
+    """Begin a candidate anew with a place of the part and no contacts."""
+    for k in range(CANDIDATE_LENGTH):
+        row[k] = 0.0
+    for k in range(4):
+        row[PEG + k], row[PIECE + k] = -1.0, -1.0
+    row[THETA], row[PLACE_X], row[PLACE_Y], row[CONTACTS] = theta, x, y, contacts
+
+
+@compiled
+def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+    """Write the candidates of three contacts at roots of MISS (R, 6) to ``out``; return their number.
+
+    With beta how far the third contact is from the foot of P, along the face, S' = beta / (n . x) and so, at the foot,
+    S'' = beta' / (n . x); beta is the height missed over -(n . x), times 1 + kappa (P - foot) . n on an arc of curvature
+    kappa. Of a left third peg the sign is the other.
+    """
+    count = 0
+    for r in range(roots.shape[0]):
+        root = roots[r]
+        holding, piece = given.holdings[int(root[ROOT_HOLDING])], given.rows[int(root[ROOT_PIECE])]
+        third, psi, tail = int(root[ROOT_PEG]), root[ROOT_PSI], int(holding[FIRST_PEG])
+        s = held(holding, given, psi)
+        f = foot(piece, s[6], s[7], root[ROOT_SIDE])
+        if not (on_piece(piece, f[0], f[1], END) and is_on_its_pieces(holding, given, psi, s[0], s[1])):
+            continue
+        cosine, sine = cos(psi), sin(psi)
+        x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
+        y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
+        row = out[count]
+        write_pose(row, -psi, x, y, 3)
+        write_holding(row, 0, holding, given, pocket_pieces)
+        row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
+        place_third(row, cosine * f[0] + sine * f[1], third, given)
+        above = given.pegs[third, 1] - given.pegs[tail, 1]
+        after = value(MISS, holding, holding, piece, above, root[ROOT_SIDE], given, psi + STEP)
+        before = value(MISS, holding, holding, piece, above, root[ROOT_SIDE], given, psi - STEP)
+        bend = 0.0 if piece[IS_ARC] == 0.0 else piece[SIGN] / piece[RADIUS]
+        level = max(abs(f[2] * cosine + f[3] * sine), 1e-9)
+        second = (before - after) / (2.0 * STEP) * (1.0 + bend * ((s[6] - f[0]) * f[2] + (s[7] - f[1]) * f[3]))
+        row[SECOND] = (second if given.right[third] == 1 else -second) / (level * level)
+        # The part turns about the instant centre.
+        row[MOTION] = 1.0
+        row[MOTION + 1] = cosine * s[7] - sine * s[6]
+        row[MOTION + 2] = -(cosine * s[6] + sine * s[7])
+        count += 1
+    return count
+
+
+@inner
+def place_third(row: Array, along: float, peg: int, given: Given) -> None:
+    """Write the separation at which a peg of the other jaw is at x ``along`` from the part's place; of a right jaw's holding
+    the place, written for separation 0, moves with it."""
+    if given.right[peg] == 1:
+        row[SEPARATION] = row[PLACE_X] + along - given.pegs[peg, 0]
+    else:
+        row[SEPARATION] = given.pegs[peg, 0] - (row[PLACE_X] + along)
+        row[PLACE_X] += row[SEPARATION]
+
+
+@compiled
+def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+    """Write the candidates of four contacts, two of each jaw, at roots of APART (R, 6) to ``out``; return their number."""
+    count = 0
+    for r in range(roots.shape[0]):
+        psi = roots[r, ROOT_PSI]
+        one, two = given.holdings[int(roots[r, ROOT_HOLDING])], given.holdings[int(roots[r, ROOT_PIECE])]
+        s, t = held(one, given, psi), held(two, given, psi)
+        if not (is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])):
+            continue
+        cosine, sine = cos(psi), sin(psi)
+        p, q = int(one[FIRST_PEG]), int(two[FIRST_PEG])
+        x, y = given.pegs[p, 0] - (cosine * s[0] + sine * s[1]), given.pegs[p, 1] - (cosine * s[1] - sine * s[0])
+        row = out[count]
+        write_pose(row, -psi, x, y, 4)
+        row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))
+        write_holding(row, 0, one, given, pocket_pieces)
+        write_holding(row, 2, two, given, pocket_pieces)
+        row[DOUBT] = roots[r, ROOT_DOUBT]
+        count += 1
+    return count
+
+
+@inner
+def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) -> int:
+    """Write candidates of a part that three contacts fix to a jaw, with each piece that a peg of the other meets at its
+    height.
+
+    fixed : candidate with three contacts, its place that at separation 0. Return the new count, or -1.
+    """
+    theta = fixed[THETA]
+    cosine, sine = cos(theta), sin(theta)
+    for k in range(4):
+        if given.right[k] == jaw:
+            continue
+        level = given.pegs[k, 1] - fixed[PLACE_Y]
+        for number in range(given.rows.shape[0]):
+            piece = given.rows[number]
+            # The turned piece, level with the peg.
+            cx, up = cosine * piece[X] - sine * piece[Y], level - (sine * piece[X] + cosine * piece[Y])
+            for side in range(1 if piece[IS_ARC] == 0.0 else 2):
+                if piece[IS_ARC] == 0.0:
+                    ax = cosine * piece[AXIS_X] - sine * piece[AXIS_Y]
+                    ay = sine * piece[AXIS_X] + cosine * piece[AXIS_Y]
+                    if abs(ay) < 1e-12 or abs(up) > (piece[HALF_EXTENT] + END) * abs(ay):
+                        continue
+                    along = cx + up / ay * ax
+                else:
+                    if abs(up) > piece[RADIUS]:
+                        continue
+                    along = cx + (1.0 - 2.0 * side) * sqrt((piece[RADIUS] - up) * (piece[RADIUS] + up))
+                    if not on_piece(piece, cosine * along + sine * level, cosine * level - sine * along, END):
+                        continue
+                if count >= out.shape[0]:
+                    return -1
+                row = out[count]
+                for j in range(CANDIDATE_LENGTH):
+                    row[j] = fixed[j]
+                row[CONTACTS], row[PEG + 3], row[PIECE + 3] = 4.0, k, number
+                place_third(row, along, k, given)
+                count += 1
+    return count
+
+
+@compiled
+def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, fixed: Array, out: Array) -> int:
+    """Write the candidates of three contacts of a jaw, at roots of GAP (R, 6), and one of the other to ``out``.
+
+    fixed : (24,) work space. Return their number, or -1 where they do not fit.
+    """
+    count = 0
+    for r in range(roots.shape[0]):
+        root = roots[r]
+        holding, psi = given.holdings[int(root[ROOT_HOLDING])], root[ROOT_PSI]
+        third, piece, tail = int(root[ROOT_PEG]), given.rows[int(root[ROOT_PIECE])], int(holding[FIRST_PEG])
+        s = held(holding, given, psi)
+        cosine, sine = cos(psi), sin(psi)
+        ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
+        if not (
+            is_on_its_pieces(holding, given, psi, s[0], s[1])
+            and on_piece(piece, s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy, END)
+        ):
+            continue
+        x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
+        y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
+        write_pose(fixed, -psi, x, y, 3)
+        write_holding(fixed, 0, holding, given, pocket_pieces)
+        fixed[PEG + 2], fixed[PIECE + 2], fixed[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
+        count = add_fourths(fixed, given.right[tail], given, out, count)
+        if count < 0:
+            return -1
+    return count
+
+
+@compiled
+def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
+    """See ``add_fourths``, for one part that three contacts fix to a jaw."""
+    return add_fourths(fixed, jaw, given, out, 0)
+
+
+@compiled
+def settle(candidates: Array, given: Given, size: float, balance: Array, normal: Array) -> None:
+    """Write the forces of candidates (N, 24), how well they balance, and the clearance of the pegs that do not touch.
+
+    Forces, moments over ``size`` in mm and the jaw give four equations; they are met by least squares.
+
+    Parameters
+    ----------
+    balance, normal : (4, 4) and (4, 5) work space.
+    """
+    for number in range(candidates.shape[0]):
+        row = candidates[number]
+        n = int(row[CONTACTS])
+        cosine, sine = cos(row[THETA]), sin(row[THETA])
+        misfit = 0.0
+        for i in range(n):
+            peg, piece = int(row[PEG + i]), given.rows[int(row[PIECE + i])]
+            qx = given.pegs[peg, 0] + given.right[peg] * row[SEPARATION] - row[PLACE_X]
+            qy = given.pegs[peg, 1] - row[PLACE_Y]
+            x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
+            misfit = max(misfit, abs(distance_to(piece, x, y)))
+            nx, ny = normal_at(piece, x, y)
+            vx, vy = cosine * nx - sine * ny, sine * nx + cosine * ny
+            balance[i, 0], balance[i, 1], balance[i, 2] = vx, vy, (qx * vy - qy * vx) / size
+            balance[i, 3] = vx if given.right[peg] == 1 else 0.0
+        row[RESIDUAL] = inf
+        # Beyond a tangency there is no chord, whatever the formulas say.
+        if misfit > MISFIT or not solve(balance, normal, n):
+            continue
+        for i in range(n):
+            row[FORCE + i] = normal[i, n] / normal[i, i]
+        residual = 0.0
+        for e in range(4):
+            total = -1.0 if e == 3 else 0.0
+            for i in range(n):
+                total += balance[i, e] * row[FORCE + i]
+            residual = max(residual, abs(total))
+        row[RESIDUAL] = residual
+        row[CLEAR] = inf
+        for peg in range(4):
+            touching = False
+            for i in range(n):
+                touching = touching or int(row[PEG + i]) == peg
+            if not touching:
+                qx = given.pegs[peg, 0] + given.right[peg] * row[SEPARATION] - row[PLACE_X]
+                qy = given.pegs[peg, 1] - row[PLACE_Y]
+                row[CLEAR] = min(row[CLEAR], clearance(cosine * qx + sine * qy, cosine * qy - sine * qx, given.rows))
+
+
+@inner
+def solve(balance: Array, normal: Array, n: int) -> bool:
+    """Bring the normal equations of n forces to diagonal form; whether that is possible."""
+    for i in range(n):
+        for j in range(n):
+            normal[i, j] = 0.0
+            for e in range(4):
+                normal[i, j] += balance[i, e] * balance[j, e]
+        normal[i, n] = balance[i, 3]
+    for i in range(n):
+        best = i
+        for j in range(i + 1, n):
+            if abs(normal[j, i]) > abs(normal[best, i]):
+                best = j
+        if abs(normal[best, i]) < SINGULAR:
+            return False
+        if best != i:
+            for e in range(n + 1):
+                normal[i, e], normal[best, e] = normal[best, e], normal[i, e]
+        for j in range(n):
+            if j != i:
+                factor = normal[j, i] / normal[i, i]
+                for e in range(i, n + 1):
+                    normal[j, e] -= factor * normal[i, e]
+    return True

@@ -1,0 +1,94 @@
+"""The rows that kernels of seating hand each other, and what all of them are given.
+
+A holding is two contacts of one jaw, as a curve over psi, the orientation of the pegs seen from the part (= -theta): a chord
+curve, or one peg in a pocket, about which the part turns. KIND (0 chord, 1 pocket), SOURCE (number of the curve or the
+pocket), FIRST_PEG and SECOND_PEG (tail and head of a chord, the second -1 of a pocket), ANGLE (of the chord in the vise
+frame, so that alpha = psi + angle), PIVOT_X and PIVOT_Y (of a pocket).
+
+A cell is a part of a holding's range: LOW and HIGH (psi), SPEED (bound of how fast the instant centre moves, in mm per
+radian), BOTTOM and TOP (bounds of the height), HOLDING (number), VAGUE (1 beside a tangency, where the speed is unbounded).
+
+A candidate is a configuration that may be an equilibrium: THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS (how many),
+four pegs from PEG on, four pieces from PIECE on, four forces from FORCE on (per unit of jaw force; of contacts there
+are fewer), SECOND (second derivative of the separation along what is left free, in any positive measure; 0 of four
+contacts), the direction of that motion from MOTION on (theta, x, y), DOUBT (1 where bounds did not decide that it
+exists), CLEAR (least clearance in mm of the pegs that do not touch), RESIDUAL (how far the forces are from a balance).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+KIND, SOURCE, FIRST_PEG, SECOND_PEG, ANGLE, PIVOT_X, PIVOT_Y = range(7)
+HOLDING_LENGTH = 7
+LOW, HIGH, SPEED, BOTTOM, TOP, HOLDING, VAGUE = range(7)
+CELL_LENGTH = 7
+THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS, PEG = range(6)
+PIECE, FORCE, SECOND, MOTION = 9, 13, 17, 18
+DOUBT, CLEAR, RESIDUAL = 21, 22, 23
+CANDIDATE_LENGTH = 24
+# Rows of the work space in which ranges wait to be looked at.
+DEPTH = 128
+
+
+class Given(NamedTuple):
+    """What is held by what.
+
+    Parameters
+    ----------
+    holdings : (H, 7), see above.
+    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``curves.columns``.
+    rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
+    pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
+    right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.
+    """
+
+    holdings: NDArray[np.float64]
+    curves: NDArray[np.int64]
+    reals: NDArray[np.float64]
+    rows: NDArray[np.float64]
+    pegs: NDArray[np.float64]
+    right: NDArray[np.int64]
+
+
+class Obstacles(NamedTuple):
+    """What keeps pegs off a part while the jaws close.
+
+    Parameters
+    ----------
+    rows : (N, 10) pieces.
+    spans : (N, 2) lowest and highest parameter at which each counts: past a pocket it counts a little further.
+    pegs, right : as of ``Given``.
+    size : of the part in mm, by which turns are compared with shifts.
+    stop : the smallest jaw separation, in mm.
+    """
+
+    rows: NDArray[np.float64]
+    spans: NDArray[np.float64]
+    pegs: NDArray[np.float64]
+    right: NDArray[np.int64]
+    size: float
+    stop: float
+
+
+class WorkSpace(NamedTuple):
+    """Room for the linear programs of a step.
+
+    Parameters
+    ----------
+    near : (64, 5) gradients and clearances of what is near.
+    basis, triangle : (5, 4) and (5, 6).
+    step, way, trial : (4,).
+    members : (8,).
+    """
+
+    near: NDArray[np.float64]
+    basis: NDArray[np.float64]
+    triangle: NDArray[np.float64]
+    step: NDArray[np.float64]
+    way: NDArray[np.float64]
+    trial: NDArray[np.float64]
+    members: NDArray[np.int64]

@@ -1,0 +1,188 @@
+"""Where two holdings of the two jaws have one height, and where another peg of a holding's own jaw touches: four contacts.
+
+Both are roots of functions (``roots.APART``, ``roots.GAP``) whose first derivative is known at a place and whose second is
+bounded over a cell by the speed of the instant centres. A range is dropped where the function cannot vanish, solved
+where its derivative keeps its sign, and halved otherwise; what is too narrow to be halved is told as in doubt. (At a
+double root, which cannot be told from two or none, nothing clamps.)
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import (
+    BOTTOM,
+    FIRST_PEG,
+    HIGH,
+    HOLDING,
+    LOW,
+    SECOND_PEG,
+    SPEED,
+    TOP,
+    VAGUE,
+    Given,
+)
+from workhold.kernels.seating.holdings import END, height, held
+from workhold.kernels.seating.roots import APART, GAP, is_level, root_between
+from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
+
+Array = NDArray[np.float64]
+
+# Ranges narrower than this, in radians, are not halved.
+NARROWEST = 1e-9
+# mm. Rounding of a height or a distance; and how near places are that are one.
+ROUNDING, SAME = 2e-12, 1e-7
+
+
+@inner
+def told_of_two(p: Array, q: Array, low: float, high: float, given: Given) -> int:
+    """What is told of a range of two cells: NOTHING there, HALVES to look at, or one root (MAYBE)."""
+    one, two = given.holdings[int(p[HOLDING])], given.holdings[int(q[HOLDING])]
+    psi, reach = (low + high) / 2.0, (high - low) / 2.0
+    s, t = held(one, given, psi), held(two, given, psi)
+    cosine, sine = cos(psi), sin(psi)
+    f = height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
+    gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
+    apart = hypot(gx, gy)
+    # Two pegs in one place, and holdings that turn about one centre: the first cannot be, the second are loose throughout.
+    if (hypot(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
+        return NOTHING
+    slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
+    if abs(f) > reach * (slope + bend * reach / 2.0 * 1.001) + ROUNDING:
+        return NOTHING
+    return MAYBE if slope > bend * reach * 1.001 else HALVES
+
+
+@inner
+def told_of_third(cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given) -> int:
+    """What is told of a range in which a peg (ox, oy) from the first may touch a piece; see ``told_of_two``."""
+    psi, reach = (low + high) / 2.0, (high - low) / 2.0
+    s = held(given.holdings[int(cell[HOLDING])], given, psi)
+    cosine, sine = cos(psi), sin(psi)
+    x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
+    gx, gy = x - s[6], y - s[7]
+    speed = (hypot(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
+    bend = speed + cell[SPEED]
+    dx, dy = x - piece[X], y - piece[Y]
+    if piece[IS_ARC] == 0.0:
+        if abs(dx * piece[AXIS_X] + dy * piece[AXIS_Y]) > piece[HALF_EXTENT] + speed * reach + END:
+            return NOTHING
+        f, nx, ny = dx * piece[AXIS_Y] - dy * piece[AXIS_X], piece[AXIS_Y], -piece[AXIS_X]
+    else:
+        size = max(hypot(dx, dy), 1e-300)
+        f, nx, ny = piece[SIGN] * (size - piece[RADIUS]), piece[SIGN] * dx / size, piece[SIGN] * dy / size
+        if cell[SPEED] == 0.0 and hypot(s[6] - piece[X], s[7] - piece[Y]) < SAME:
+            return NOTHING
+        least = size - speed * reach
+        bend += speed * speed / least if least > 0.0 else inf
+    if abs(f) > speed * reach + ROUNDING:
+        return NOTHING
+    slope = abs(ny * gx - nx * gy)
+    if abs(f) > reach * (slope + bend * reach / 2.0 * 1.001) + ROUNDING:
+        return NOTHING
+    return MAYBE if slope > bend * reach * 1.001 else HALVES
+
+
+@inner
+def roots_between(
+    kind: float, p: Array, q: Array, peg: int, number: int, given: Given, stack: Array, out: Array, count: int
+) -> int:
+    """Write the roots of a function over two cells (APART), or one cell, a peg and a piece (GAP); the new count, or -1."""
+    one, two = given.holdings[int(p[HOLDING])], given.holdings[int(q[HOLDING])]
+    vague = p[VAGUE] != 0.0 or q[VAGUE] != 0.0
+    piece, ox, oy, least = given.rows[0], 0.0, 0.0, ROUNDING
+    if kind == GAP:
+        piece, tail = given.rows[number], int(one[FIRST_PEG])
+        ox, oy = given.pegs[peg, 0] - given.pegs[tail, 0], given.pegs[peg, 1] - given.pegs[tail, 1]
+    depth = 1
+    stack[0, 0], stack[0, 1] = max(p[LOW], q[LOW]), min(p[HIGH], q[HIGH])
+    while depth > 0:
+        depth -= 1
+        low, high = stack[depth, 0], stack[depth, 1]
+        psi = (low + high) / 2.0
+        told = MAYBE
+        if not vague:
+            told = (
+                told_of_two(p, q, low, high, given)
+                if kind == APART
+                else told_of_third(p, ox, oy, piece, low, high, given)
+            )
+        if told == NOTHING:
+            continue
+        doubt = 0.0
+        if told == MAYBE:
+            found, psi = root_between(kind, one, two, piece, ox, oy, given, low, high)
+            if not found:
+                continue
+        elif high - low > 2.0 * NARROWEST and depth < stack.shape[0] - 1:
+            stack[depth, 0], stack[depth, 1] = low, psi
+            stack[depth + 1, 0], stack[depth + 1, 1] = psi, high
+            depth += 2
+            continue
+        else:
+            if is_level(kind, one, two, piece, ox, oy, given, low, high, least):
+                continue
+            doubt = 1.0
+        count = write_root(out, count, p[HOLDING], peg, number if kind == GAP else int(q[HOLDING]), 0.0, psi, doubt)
+        if count < 0:
+            return -1
+    return count
+
+
+@compiled
+def two_holdings(left: Array, right: Array, given: Given, stack: Array, out: Array) -> int:
+    """Orientations at which a holding of the left jaw and one of the right have one height; how many, or -1.
+
+    Parameters
+    ----------
+    left, right : (C, 7) cells of each jaw, ordered by their lowest orientation; those that reach beyond a turn stand there a
+        second time, a turn lower.
+    stack : (DEPTH, 2) work space.
+    out : (N, 6) roots, written here: the right holding stands in the column of the piece.
+    """
+    count, widest = 0, 0.0
+    for j in range(right.shape[0]):
+        widest = max(widest, right[j, HIGH] - right[j, LOW])
+    for i in range(left.shape[0]):
+        p = left[i]
+        # The first cell that may reach into this one.
+        start, end = 0, right.shape[0]
+        while start < end:
+            at = (start + end) // 2
+            if right[at, LOW] < p[LOW] - widest:
+                start = at + 1
+            else:
+                end = at
+        for j in range(start, right.shape[0]):
+            q = right[j]
+            if q[LOW] > p[HIGH]:
+                break
+            if q[HIGH] < p[LOW] or q[BOTTOM] > p[TOP] or q[TOP] < p[BOTTOM]:
+                continue
+            count = roots_between(APART, p, q, -1, -1, given, stack, out, count)
+            if count < 0:
+                return -1
+    return count
+
+
+@compiled
+def third_of_jaw(cells: Array, given: Given, stack: Array, out: Array) -> int:
+    """Orientations at which a third peg of a holding's own jaw touches a piece; how many, or -1. See ``two_holdings``."""
+    count = 0
+    for number in range(cells.shape[0]):
+        cell = cells[number]
+        holding = given.holdings[int(cell[HOLDING])]
+        tail, head = int(holding[FIRST_PEG]), int(holding[SECOND_PEG])
+        for third in range(4):
+            if given.right[third] != given.right[tail] or third in (tail, head):
+                continue
+            for piece in range(given.rows.shape[0]):
+                count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
+                if count < 0:
+                    return -1
+    return count

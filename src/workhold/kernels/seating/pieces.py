@@ -1,0 +1,109 @@
+"""Points and pieces of the boundary on which the centres of pegs lie."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import PARALLEL, SAME_CENTER
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+
+Array = NDArray[np.float64]
+Foot = tuple[float, float, float, float, float, float]
+
+
+@inner
+def angle_from_middle(row: Array, dx: float, dy: float) -> float:
+    """Angle in radians, in (-pi, pi], of a direction from an arc's centre, seen from its middle."""
+    return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)
+
+
+@inner
+def on_piece(row: Array, x: float, y: float, slack: float) -> bool:
+    """Whether a point of a piece's carrier lies on the piece, or past its end by no more than a slack in mm."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        return abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) <= row[HALF_EXTENT] + slack
+    return row[HALF_EXTENT] >= pi or abs(angle_from_middle(row, dx, dy)) <= row[HALF_EXTENT] + slack / row[RADIUS]
+
+
+@inner
+def normal_at(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Outward unit normal of a piece at a point on it."""
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y], -row[AXIS_X])
+    dx, dy = x - row[X], y - row[Y]
+    size = max(hypot(dx, dy), 1e-300)
+    return (row[SIGN] * dx / size, row[SIGN] * dy / size)
+
+
+@inner
+def foot(row: Array, x: float, y: float, side: float) -> Foot:
+    """Foot of a point on a piece's carrier, of a circle that on the point's side (1) or the far one (-1).
+
+    Returns
+    -------
+    (x, y, outward normal's x and y, distance in mm from the centre or inf of a line, parameter)
+    """
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        s = dx * row[AXIS_X] + dy * row[AXIS_Y]
+        return (row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf, s)
+    size = max(hypot(dx, dy), 1e-300)
+    ex, ey = side * dx / size, side * dy / size
+    at = angle_from_middle(row, ex, ey)
+    return (row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size, at)
+
+
+@inner
+def share_normals(a: Array, b: Array) -> bool:
+    """Whether two pieces are parallel lines or concentric arcs: a normal of one is one of the other."""
+    if a[IS_ARC] != b[IS_ARC]:
+        return False
+    if a[IS_ARC] == 0.0:
+        return abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
+    return hypot(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER
+
+
+@inner
+def distance_to(row: Array, x: float, y: float) -> float:
+    """Distance in mm of a point from a piece, negative where the nearest point of the piece is seen from the part's side."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        across = dx * row[AXIS_Y] - dy * row[AXIS_X]
+        beyond = max(abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) - row[HALF_EXTENT], 0.0)
+        return hypot(beyond, across) if across >= 0.0 else -hypot(beyond, across)
+    size = hypot(dx, dy)
+    if row[HALF_EXTENT] >= pi or abs(angle_from_middle(row, dx, dy)) <= row[HALF_EXTENT]:
+        return row[SIGN] * (size - row[RADIUS])
+    end = row[HALF_EXTENT] if angle_from_middle(row, dx, dy) > 0.0 else -row[HALF_EXTENT]
+    nx = row[AXIS_X] * cos(end) - row[AXIS_Y] * sin(end)
+    ny = row[AXIS_Y] * cos(end) + row[AXIS_X] * sin(end)
+    ex, ey = dx - row[RADIUS] * nx, dy - row[RADIUS] * ny
+    return hypot(ex, ey) if row[SIGN] * (ex * nx + ey * ny) >= 0.0 else -hypot(ex, ey)
+
+
+@inner
+def clearance(x: float, y: float, rows: Array) -> float:
+    """Distance in mm of a peg's centre from the boundary, negative where the peg is in the part."""
+    best = inf
+    for k in range(rows.shape[0]):
+        row = rows[k]
+        # What cannot be nearer: its carrier is not.
+        dx, dy = x - row[X], y - row[Y]
+        off = dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else hypot(dx, dy) - row[RADIUS]
+        if abs(off) < abs(best):
+            d = distance_to(row, x, y)
+            if abs(d) < abs(best):
+                best = d
+    return best
+
+
+@compiled
+def clearances(points: Array, rows: Array, out: Array) -> None:
+    """Distances in mm (M,) of peg centres (M, 2) from the boundary of (N, 10) pieces, written to ``out``."""
+    for k in range(points.shape[0]):
+        out[k] = clearance(points[k, 0], points[k, 1], rows)

@@ -1,0 +1,242 @@
+"""Where the normal of a third peg, of the other jaw, goes through the instant centre of a holding: three forces in balance.
+
+Over a range of orientations the instant centre P moves no faster than the speed V of its cell, which bounds the foot of P on
+a piece, the directions of all three forces and the height missed (``roots.MISS``). A range is dropped where the foot is off
+the piece, the forces cannot all press, or the height cannot vanish. Where the derivative keeps its sign, by an enclosure of
+P' (``chord.center_speeds``), there is one root at most; else the range is halved. What is too narrow to be halved is told as
+in doubt, but for ranges beside a tangency, where V tells nothing, in which three values hardly differ.
+"""
+
+from __future__ import annotations
+
+from math import asin, cos, hypot, inf, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.interval import Interval, idivide, imul
+from workhold.kernels.chord.center_speeds import center_motion
+from workhold.kernels.curves.columns import HEAD, LENGTH, TAIL
+from workhold.kernels.seating.columns import (
+    ANGLE,
+    FIRST_PEG,
+    HIGH,
+    HOLDING,
+    KIND,
+    LOW,
+    SOURCE,
+    SPEED,
+    VAGUE,
+    Given,
+)
+from workhold.kernels.seating.holdings import END, Held, held
+from workhold.kernels.seating.pieces import Foot, foot, share_normals
+from workhold.kernels.seating.roots import MISS, is_level, root_between
+
+Array = NDArray[np.float64]
+
+# Ranges narrower than this, in radians, are not halved.
+NARROWEST = 2e-8
+# mm. Rounding of a height and of a direction.
+ROUNDING = 2e-12
+# Columns of what is found: ROOT_HOLDING, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT.
+ROOT_HOLDING, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT = range(6)
+ROOT_LENGTH = 6
+# What may be told of a range.
+NOTHING, HALVES, MAYBE = 0, 1, 2
+
+
+@inner
+def may_balance(
+    a: Array, b: Array, d: float, alpha: float, s: Held, f: Foot, low: float, high: float, move: float, turn: float
+) -> bool:
+    """Whether the force of the third contact may lie between the other two somewhere in a range.
+
+    Normals of arcs turn with the contacts, which move about P; the third turns by ``turn`` at most.
+    """
+    reach = (high - low) / 2.0 * (1.0 + (high - low))
+    vx, vy = s[0] + d * cos(alpha), s[1] + d * sin(alpha)
+    turn_a = 0.0 if a[IS_ARC] == 0.0 else (hypot(s[0] - s[6], s[1] - s[7]) + move) * reach / a[RADIUS]
+    turn_b = 0.0 if b[IS_ARC] == 0.0 else (hypot(vx - s[6], vy - s[7]) + move) * reach / b[RADIUS]
+    sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+    first, second = sign * (f[3] * s[4] - f[2] * s[5]), sign * (s[3] * f[2] - s[2] * f[3])
+    return first >= -(turn + turn_b) - 1e-9 and second >= -(turn + turn_a) - 1e-9
+
+
+@inner
+def excluded(
+    piece: Array, push: float, missed: float, cosine: float, sine: float, s: Held, f: Foot, speed: float, reach: float
+) -> int:
+    """What is told of a range by the foot of P alone: NOTHING there, HALVES to look at, or MAYBE more."""
+    move, turn = speed * reach, 0.0
+    if piece[IS_ARC] != 0.0:
+        if f[4] <= move * 1.0001 + ROUNDING:
+            return HALVES
+        turn = asin(move / f[4])
+        if piece[HALF_EXTENT] < pi and abs(f[5]) > piece[HALF_EXTENT] + turn + END / piece[RADIUS]:
+            return NOTHING
+    elif abs(f[5]) > piece[HALF_EXTENT] + move + END:
+        return NOTHING
+    if push * (f[2] * cosine + f[3] * sine) < -(turn + reach):
+        return NOTHING
+    way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f[4] - move)
+    if abs(missed) > (hypot(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
+        return NOTHING
+    return MAYBE
+
+
+@inner
+def is_steady(
+    piece: Array,
+    side: float,
+    cosine: float,
+    sine: float,
+    s: Held,
+    f: Foot,
+    motion: tuple[Interval, Interval],
+    speed: float,
+    reach: float,
+) -> bool:
+    """Whether the height missed is monotone over a range in which P' is enclosed."""
+    qx, qy = motion
+    if not (qx[1] - qx[0] < inf and qy[1] - qy[0] < inf):
+        return False
+    mx, my, spread = (qx[0] + qx[1]) / 2.0, (qy[0] + qy[1]) / 2.0, hypot(qx[1] - qx[0], qy[1] - qy[0]) / 2.0
+    move, size = speed * reach, min(hypot(mx, my) + spread, speed)
+    gx, gy = s[6] - f[0], s[7] - f[1]
+    far = hypot(gx, gy) + move
+    slope = cosine * gx + sine * gy
+    if piece[IS_ARC] == 0.0:
+        tx, ty = -f[3], f[2]
+        slope += (mx * tx + my * ty) * (cosine * ty - sine * tx)
+        return abs(slope) > (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING
+    # foot' is the part of P' across the way from the centre, in proportion; that way turns by ``turn`` at most.
+    turn = asin(move / f[4])
+    ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
+    ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
+    slope += side * ratio * (my * ex - mx * ey) * (cosine * ex + sine * ey)
+    doubt = move + far * (turn + reach) + worst * (spread + size * (2.0 * turn + reach)) + size * (worst - ratio)
+    return abs(slope) > doubt * (1.0 + 1e-6) + ROUNDING
+
+
+@inner
+def center_velocity(
+    a: Array, b: Array, reals: Array, low: float, high: float, sign: float
+) -> tuple[Interval, Interval]:
+    """Enclosure of P' over alpha in [low, high]; ``sign`` that of the cross product of the normals."""
+    motion = center_motion(a, b, reals, low, high, sign * a[SIGN] * b[SIGN])
+    cube = imul(motion[0], imul(motion[0], motion[0]))
+    return (idivide(motion[1], cube), idivide(motion[2], cube))
+
+
+@inner
+def roots_of_cell(
+    cell: Array,
+    third: int,
+    number: int,
+    side: float,
+    middle: Held,
+    whole: tuple[Interval, Interval],
+    given: Given,
+    stack: Array,
+    out: Array,
+    count: int,
+) -> int:
+    """Write the balances of a cell with a third peg on a piece; return the new count, or -1 where they do not fit."""
+    holding, piece = given.holdings[int(cell[HOLDING])], given.rows[number]
+    k, tail, speed = int(holding[SOURCE]), int(holding[FIRST_PEG]), cell[SPEED]
+    a, b, d = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]], given.reals[k, LENGTH]
+    # Forces press the left jaw to the left, the right one to the right.
+    push = 1.0 if given.right[third] == 1 else -1.0
+    above = given.pegs[third, 1] - given.pegs[tail, 1]
+    depth = 1
+    stack[0, 0], stack[0, 1] = cell[LOW], cell[HIGH]
+    while depth > 0:
+        depth -= 1
+        low, high = stack[depth, 0], stack[depth, 1]
+        psi, reach = (low + high) / 2.0, (high - low) / 2.0
+        first = reach == (cell[HIGH] - cell[LOW]) / 2.0
+        s = middle if first else held(holding, given, psi)
+        cosine, sine = cos(psi), sin(psi)
+        f = foot(piece, s[6], s[7], side)
+        missed = cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - above
+        told = excluded(piece, push, missed, cosine, sine, s, f, speed, reach)
+        if told == NOTHING:
+            continue
+        if told == MAYBE:
+            alpha, move = psi + holding[ANGLE], speed * reach
+            turn = 0.0 if piece[IS_ARC] == 0.0 else asin(move / f[4])
+            if not may_balance(a, b, d, alpha, s, f, low, high, move, turn):
+                continue
+            motion = whole
+            if not first:
+                sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+                motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
+            if is_steady(piece, side, cosine, sine, s, f, motion, speed, reach):
+                found, psi = root_between(MISS, holding, holding, piece, above, side, given, low, high)
+                if found:
+                    count = write_root(out, count, cell[HOLDING], third, number, side, psi, 0.0)
+                if count < 0:
+                    return -1
+                continue
+        if reach > NARROWEST and depth < stack.shape[0] - 1:
+            stack[depth, 0], stack[depth, 1] = low, psi
+            stack[depth + 1, 0], stack[depth + 1, 1] = psi, high
+            depth += 2
+        elif told == MAYBE and not is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
+            count = write_root(out, count, cell[HOLDING], third, number, side, psi, 1.0)
+            if count < 0:
+                return -1
+    return count
+
+
+@inner
+def write_root(
+    out: Array, count: int, holding: float, peg: int, piece: int, side: float, psi: float, doubt: float
+) -> int:
+    """Write a root; return the new count, or -1 where it does not fit."""
+    if count >= out.shape[0]:
+        return -1
+    row = out[count]
+    row[ROOT_HOLDING], row[ROOT_PEG], row[ROOT_PIECE], row[ROOT_SIDE] = holding, peg, piece, side
+    row[ROOT_PSI], row[ROOT_DOUBT] = psi, doubt
+    return count + 1
+
+
+@compiled
+def three_contacts(cells: Array, given: Given, stack: Array, out: Array) -> int:
+    """All orientations at which two pegs of one jaw and one of the other may balance; how many, or -1 where they do not fit.
+
+    Parameters
+    ----------
+    cells : (C, 7) of the holdings.
+    stack : (DEPTH, 2) work space.
+    out : (N, 6) roots, written here.
+    """
+    count = 0
+    for number in range(cells.shape[0]):
+        cell = cells[number]
+        holding = given.holdings[int(cell[HOLDING])]
+        if cell[VAGUE] != 0.0 or holding[KIND] == 1.0:
+            continue
+        k = int(holding[SOURCE])
+        a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
+        middle = held(holding, given, (cell[LOW] + cell[HIGH]) / 2.0)
+        sign = 1.0 if middle[2] * middle[5] - middle[3] * middle[4] >= 0.0 else -1.0
+        whole = center_velocity(a, b, given.reals[k], cell[LOW] + holding[ANGLE], cell[HIGH] + holding[ANGLE], sign)
+        for third in range(4):
+            if given.right[third] == given.right[int(holding[FIRST_PEG])]:
+                continue
+            for piece in range(given.rows.shape[0]):
+                c = given.rows[piece]
+                # Where its normal is that of another contact throughout, the one that is left has no force.
+                if share_normals(a, c) or share_normals(b, c):
+                    continue
+                for sides in range(1 if c[IS_ARC] == 0.0 else 2):
+                    side = 1.0 - 2.0 * sides
+                    count = roots_of_cell(cell, third, piece, side, middle, whole, given, stack, out, count)
+                    if count < 0:
+                        return -1
+    return count

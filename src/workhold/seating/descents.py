@@ -1,0 +1,61 @@
+"""Where closing the jaws leads from a configuration, and whether a part can be taken away from all pegs."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.kernels.seating.closing import close_jaws
+from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.leaving import leaves
+from workhold.seating.locus import Locus
+from workhold.seating.pattern import Pattern
+
+__all__ = ["Closing"]
+
+Array = NDArray[np.float64]
+# No step is longer than this part of the peg radius: no wall is thin enough to be passed.
+LONGEST_STEP = 0.35
+# Directions in which a part may be taken away.
+DIRECTIONS = 48
+
+
+@define(frozen=True, eq=False)
+class Closing:
+    """The jaws of a pattern about a part.
+
+    Parameters
+    ----------
+    locus, pattern : of the part and the pegs.
+    size : of the part in mm.
+    """
+
+    locus: Locus
+    pattern: Pattern
+    size: float
+
+    @property
+    def obstacles(self) -> Obstacles:
+        """What kernels are given."""
+        pattern = self.pattern
+        rows = np.array(self.locus.rows)
+        return Obstacles(rows, self.locus.spans, np.array(pattern.pegs), pattern.right, self.size, pattern.stop)
+
+    def run(self, configs: Array, first: float) -> tuple[Array, NDArray[np.int8]]:
+        """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
+
+        Parameters
+        ----------
+        first : how long the first steps are, in mm.
+        """
+        out = np.array(configs, dtype=np.float64)
+        ends = np.zeros(len(out), np.int8)
+        step, way, trial = np.empty(4), np.empty(4), np.empty(4)
+        work = WorkSpace(np.empty((64, 5)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
+        close_jaws(out, first, LONGEST_STEP * self.pattern.peg_radius, self.obstacles, work, ends)
+        return out, ends
+
+    def escapes(self, config: Array) -> bool:
+        """Whether a part can be taken straight away from all pegs, jaws as they stand, in one of many directions."""
+        return leaves(self.pattern.at(config[None])[0], np.array(self.locus.rows), DIRECTIONS)

@@ -1,0 +1,307 @@
+"""Loose equilibria: sets of configurations with one S along which the part slides on flat faces, or turns on concentric
+arcs."""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.conventions import PARALLEL, SAME_CENTER
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SEPARATION,
+    THETA,
+)
+from workhold.kernels.seating.pieces import clearances
+from workhold.seating.holdings import Slide
+from workhold.seating.locus import Locus, all_contained, contains
+from workhold.seating.pattern import Pattern
+
+__all__ = ["Family", "families"]
+
+Array = NDArray[np.float64]
+# Configurations by which a slide is told, and a turn.
+SLIDE_STEPS, TURN_STEPS = 48, 384
+# mm. Pegs this near touch all along; shorter slides are none; separations this near are one.
+TOUCHES, SHORTEST, SAME = 1e-7, 1e-6, 1e-6
+# A force's share below this is none.
+LEAST_SHARE = 1e-9
+Contact = tuple[int, int]
+
+
+@define(frozen=True, eq=False)
+class Family:
+    """A connected set of equilibria with one separation.
+
+    Parameters
+    ----------
+    candidate : the middle of where the most pegs touch, and what they touch.
+    configs : (N, 4) along it.
+    is_closed : whether it is a whole turn, which has no ends.
+    across : (2,) direction in which the part gives way to both sides, or None where it does not.
+    """
+
+    candidate: Array
+    configs: Array
+    is_closed: bool
+    across: tuple[float, float] | None
+
+    @property
+    def middle(self) -> Array:
+        """The configuration (4,) of the candidate."""
+        return self.candidate[[THETA, PLACE_X, PLACE_Y, SEPARATION]]
+
+    def holds(self, config: Array, arm: float) -> bool:
+        """Whether a configuration lies in the set, as far as its steps tell."""
+        turn = (self.configs[:, 0] - config[0] + pi) % tau - pi
+        away = np.abs(turn) * arm + np.hypot(*(self.configs[:, 1:3] - config[1:3]).T)
+        steps = np.abs(np.diff(self.configs, axis=0)) @ np.array([arm, 1.0, 1.0, 0.0])
+        return bool(abs(config[3] - self.candidate[SEPARATION]) < 1e-3 and away.min() <= steps.max(initial=0.0) + 0.02)
+
+
+@define(frozen=True, eq=False)
+class Finder:
+    """What families are sought with."""
+
+    locus: Locus
+    pattern: Pattern
+
+    @property
+    def rows(self) -> Array:
+        """The pieces."""
+        return self.locus.rows
+
+    @property
+    def lines(self) -> list[int]:
+        """Numbers of the straight pieces."""
+        return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
+
+    @property
+    def opposed(self) -> list[tuple[int, int]]:
+        """Pairs of straight pieces that face away from each other."""
+        along = self.rows[:, [AXIS_X, AXIS_Y]]
+        return [(a, b) for a, b in product(self.lines, repeat=2) if np.abs(along[a] + along[b]).sum() <= PARALLEL]
+
+    def cut(
+        self, configs: Array, contacts: list[Contact], closed: bool, across: tuple[float, float] | None
+    ) -> list[Family]:
+        """The free runs of a set of configurations in which some contacts stay."""
+        points = self.pattern.at(configs)
+        clear = np.empty((len(configs), 4))
+        for k in range(4):
+            clearances(np.ascontiguousarray(points[:, k]), self.rows, clear[:, k])
+        good = np.asarray((clear > -TOUCHES).all(axis=1), np.bool_)
+        for peg, piece in contacts:
+            good &= all_contained(self.rows[piece], points[:, peg])
+        out = []
+        for numbers in runs(good, closed):
+            # The middle of where the most pegs touch.
+            touches = np.abs(clear[numbers]) < TOUCHES
+            most = np.flatnonzero(touches.sum(axis=1) == touches.sum(axis=1).max())
+            middle = numbers[most[len(most) // 2]]
+            touching = np.flatnonzero(np.abs(clear[middle]) < TOUCHES).tolist()
+            known = dict(contacts)
+            told = [(peg, known.get(peg, nearest(self.locus, *points[middle, peg]))) for peg in touching]
+            row = np.zeros(CANDIDATE_LENGTH)
+            row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
+            row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
+            for at, (peg, piece) in enumerate(told):
+                row[PEG + at], row[PIECE + at] = peg, piece
+            out.append(Family(row, configs[numbers], closed and len(numbers) == len(configs), across))
+        return out
+
+    def sliding(
+        self, theta: float, start: Array, line: Array, low: float, high: float, s: float, contacts: list[Contact]
+    ) -> list[Family]:
+        """The families of a part that slides with one peg, which stands at ``start``, on a line from a parameter to
+        another."""
+        if high - low < SHORTEST or s <= self.pattern.stop + SAME:
+            return []
+        t = np.linspace(low, high, SLIDE_STEPS)
+        x, y = line[X] + t * line[AXIS_X], line[Y] + t * line[AXIS_Y]
+        c, d = cos(theta), sin(theta)
+        every = np.ones(SLIDE_STEPS)
+        configs = np.stack([theta * every, start[0] - (c * x - d * y), start[1] - (d * x + c * y), s * every], axis=1)
+        return self.cut(configs, contacts, False, None)
+
+    def turning(
+        self,
+        row: Array,
+        center: tuple[float, float],
+        s: float,
+        contacts: list[Contact],
+        across: tuple[float, float] | None,
+    ) -> list[Family]:
+        """The families of a part that turns about the centre of an arc, which stands at a place in the vise."""
+        if s <= self.pattern.stop + SAME:
+            return []
+        theta = np.arange(TURN_STEPS) * tau / TURN_STEPS
+        c, d = np.cos(theta), np.sin(theta)
+        x, y = center[0] - (c * row[X] - d * row[Y]), center[1] - (d * row[X] + c * row[Y])
+        return self.cut(np.stack([theta, x, y, np.full(TURN_STEPS, s)], axis=1), contacts, True, across)
+
+    def on_one_line(self) -> list[Family]:
+        """Two pegs that press parallel faces, or arcs of one centre, along one line."""
+        out = []
+        pegs, right = self.pattern.pegs, self.pattern.right
+        for i, j in product(np.flatnonzero(right == 0).tolist(), np.flatnonzero(right == 1).tolist()):
+            run, rise = pegs[j] - pegs[i]
+            for a, b in self.opposed:
+                one, two = self.rows[a], self.rows[b]
+                ux, uy = -one[AXIS_Y], one[AXIS_X]
+                d = (two[X] - one[X]) * ux + (two[Y] - one[Y]) * uy
+                if d <= abs(rise) * (1.0 + 1e-12):
+                    continue
+                omega = asin(rise / d)
+                shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
+                low, high = (
+                    max(-one[HALF_EXTENT], shift - two[HALF_EXTENT]),
+                    min(one[HALF_EXTENT], shift + two[HALF_EXTENT]),
+                )
+                s, contacts = d * cos(omega) - run, [(i, a), (j, b)]
+                out += self.sliding(omega - atan2(uy, ux), pegs[i], one, low, high, s, contacts)
+            for group in self.concentric:
+                for a, b in product(group, repeat=2):
+                    one, two = (float(self.rows[k, SIGN] * self.rows[k, RADIUS]) for k in (a, b))
+                    d = one + two
+                    if d <= max(abs(rise) * (1.0 + 1e-12), SHORTEST):
+                        continue
+                    omega = asin(rise / d)
+                    center = pegs[i, 0] + one * cos(omega), pegs[i, 1] + one * sin(omega)
+                    # Square to the line the centre gives way where both arcs bend away.
+                    falls = 2.0 / d < 1.0 / one + 1.0 / two - 1e-12
+                    across = (-sin(omega), cos(omega)) if falls else None
+                    out += self.turning(self.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across)
+        return out
+
+    def between_two(self, slides: tuple[Slide, ...]) -> list[Family]:
+        """Two pegs of one jaw on a face, and one of the other, between them, on a face parallel to it."""
+        out = []
+        pegs, right = self.pattern.pegs, self.pattern.right
+        for slide in slides:
+            a, b = slide.pieces
+            one = self.rows[a]
+            if one[IS_ARC] != 0.0 or one[AXIS_X] * self.rows[b, AXIS_X] + one[AXIS_Y] * self.rows[b, AXIS_Y] < 0.0:
+                continue
+            theta = -slide.psi
+            c, d = cos(theta), sin(theta)
+            # The face's direction and its outward normal in the vise frame.
+            tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
+            nx, ny = ty, -tx
+            if abs(nx) < 1e-9:
+                continue
+            for k in np.flatnonzero(right != right[slide.first]).tolist():
+                for first, other in self.opposed:
+                    if first != a:
+                        continue
+                    two = self.rows[other]
+                    thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
+                    run, rise = pegs[k] - pegs[slide.first]
+                    moving = 1.0 if right[k] == 1 else -1.0
+                    s = -(thick + run * nx + rise * ny) / (moving * nx)
+                    places = pegs[:, 0] * tx + pegs[:, 1] * ty + s * right * tx
+                    ends = sorted((places[slide.first], places[slide.second]))
+                    if not ends[0] + SHORTEST < places[k] < ends[1] - SHORTEST:
+                        continue
+                    shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
+                    shift -= places[k] - places[slide.first]
+                    low, high = max(slide.low, shift - two[HALF_EXTENT]), min(slide.high, shift + two[HALF_EXTENT])
+                    start = pegs[slide.first] + [s * right[slide.first], 0.0]
+                    contacts = [(slide.first, a), (slide.second, b), (k, other)]
+                    out += self.sliding(theta, start, one, low, high, s, contacts)
+        return out
+
+    @property
+    def concentric(self) -> list[list[int]]:
+        """Arcs by their centres."""
+        groups: list[list[int]] = []
+        for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
+            center = self.rows[k, [X, Y]]
+            group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
+            groups.append([k]) if group is None else group.append(k)
+        return groups
+
+    def on_one_center(self) -> list[Family]:
+        """Two pegs of one jaw and one of the other on arcs of one centre."""
+        out = []
+        pegs, right = self.pattern.pegs, self.pattern.right
+        pairs = [(p, q) for p, q in combinations(range(4), 2) if right[p] == right[q]]
+        for group, (p, q) in product(self.concentric, pairs):
+            for a, b in product(group, repeat=2):
+                for x, y in circles_meet(pegs[p], self.rows[a, RADIUS], pegs[q], self.rows[b, RADIUS]):
+                    for c, k in product(group, np.flatnonzero(right != right[p]).tolist()):
+                        square = self.rows[c, RADIUS] ** 2 - (y - pegs[k, 1]) ** 2
+                        for side in (1.0, -1.0) if square >= 0.0 else ():
+                            at = x + side * sqrt(square)
+                            s = at - pegs[k, 0] if right[k] == 1 else pegs[k, 0] - at
+                            center = (x + s * right[p], y)
+                            if self.balances(s, center, [(p, a), (q, b), (k, c)]):
+                                out += self.turning(self.rows[a], center, s, [(p, a), (q, b), (k, c)], None)
+        return out
+
+    def balances(self, s: float, center: tuple[float, float], contacts: list[Contact]) -> bool:
+        """Whether three forces towards or from one centre can balance with the jaw's."""
+        matrix = np.empty((3, 3))
+        for at, (peg, piece) in enumerate(contacts):
+            x, y = self.pattern.pegs[peg] + [s * self.pattern.right[peg], 0.0] - np.array(center)
+            n = self.rows[piece, SIGN] * np.array([x, y]) / self.rows[piece, RADIUS]
+            matrix[:, at] = *n, n[0] * self.pattern.right[peg]
+        if abs(np.linalg.det(matrix)) < LEAST_SHARE:
+            return False
+        return bool((np.linalg.solve(matrix, [0.0, 0.0, 1.0]) > LEAST_SHARE).all())
+
+
+def families(locus: Locus, pattern: Pattern, slides: tuple[Slide, ...]) -> list[Family]:
+    """All loose equilibria of a pattern, each once: the one with the most contacts of those that lie in each other."""
+    finder = Finder(locus, pattern)
+    kept: list[Family] = []
+    found = finder.on_one_line() + finder.between_two(slides) + finder.on_one_center()
+    for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
+        if not any(abs(one.middle[3] - other.middle[3]) < SAME and other.holds(one.middle, 1.0) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def runs(good: NDArray[np.bool_], closed: bool) -> list[NDArray[np.int64]]:
+    """Numbers of neighbours that are all good, run by run; of what is closed the last and the first are neighbours."""
+    count = len(good)
+    if good.all():
+        return [np.arange(count)]
+    shift = int(np.argmin(good)) if closed else 0
+    order = (np.arange(count) + shift) % count
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], good[order], [False]]).astype(np.int8)))
+    return [order[first:end] for first, end in edges.reshape(-1, 2)]
+
+
+def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[float, float]]:
+    """The points at given distances from two places."""
+    d = hypot(*(two - one))
+    along = (d * d + r1 * r1 - r2 * r2) / (2.0 * d)
+    square = r1 * r1 - along * along
+    if square < 0.0:
+        return []
+    ex, ey = (two - one) / d
+    half = sqrt(square)
+    return [(one[0] + along * ex - t * half * ey, one[1] + along * ey + t * half * ex) for t in (1.0, -1.0)]
+
+
+def nearest(locus: Locus, x: float, y: float) -> int:
+    """Number of the piece that a point on the boundary lies on."""
+    rows = locus.rows
+    away = np.where(
+        rows[:, IS_ARC] == 0.0,
+        np.abs((x - rows[:, X]) * rows[:, AXIS_Y] - (y - rows[:, Y]) * rows[:, AXIS_X]),
+        np.abs(np.hypot(x - rows[:, X], y - rows[:, Y]) - rows[:, RADIUS]),
+    )
+    on = np.array([contains(row, x, y) for row in rows])
+    return int(np.argmin(np.where(on, away, np.inf)))

@@ -1,0 +1,235 @@
+"""The whole boundary of (part + disc of the peg radius), rolled corners included, and where it has inner corners.
+
+Glossary
+--------
+piece : a straight or circular part of the boundary; a peg's centre on it touches one face, or one corner of the part.
+pocket : a corner of the boundary in which a peg touches two pieces at once.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import atan2, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
+from workhold.contact.problem import centered
+from workhold.conventions import CLEARANCE, END_SLACK, JOINT, TANGENT
+from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
+from workhold.geometry.segment import Arc, Point, Segment, segment_rows
+from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
+from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    from workhold.seating.common_normals import CommonNormal
+
+__all__ = ["Locus", "Touch", "all_contained", "contains"]
+
+Array = NDArray[np.float64]
+# Corners that turn by less, in radians, are rounding.
+STRAIGHT_ON = 1e-7
+# mm. How far past a pocket a piece still counts for a peg beside it.
+PAST_POCKET = 0.05
+
+
+@define(frozen=True)
+class Touch:
+    """What of the part a peg on a piece touches.
+
+    Parameters
+    ----------
+    face : number of the face, or of the face that begins at the corner.
+    corner : whether it is the corner rather than the face.
+    """
+
+    face: int
+    corner: bool
+
+
+@define(frozen=True, eq=False, slots=False)
+class Locus:
+    """The boundary on which the centres of pegs of one radius lie while they touch a part.
+
+    Parameters
+    ----------
+    rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
+    touches : what a peg on each piece touches.
+    pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
+    pocket_pieces : (V, 2) their numbers.
+    mirrored : whether the part is turned over.
+    """
+
+    rows: Array
+    touches: tuple[Touch, ...]
+    pockets: Array
+    pocket_pieces: NDArray[np.int64]
+    mirrored: bool = False
+
+    @classmethod
+    def of(cls, workpiece: Workpiece, radius: float) -> Locus:
+        """The boundary for pegs of a radius in mm, above 0."""
+        faces = workpiece.faces
+        segments = [face.segment for face in faces]
+        pieces = [(Touch(faces[k].number, False), piece) for k, piece in trimmed_offsets(segments, radius)]
+        number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
+        pieces += [(Touch(number[corner], True), arc) for corner, arc in rolled_corners(segments, radius)]
+        rows = centered(segment_rows([piece for _, piece in pieces]), workpiece.center)
+        return cls(rows, tuple(touch for touch, _ in pieces), *pockets_of([piece for _, piece in pieces], rows))
+
+    @cached_property
+    def loose(self) -> Array:
+        """The pieces with their ends moved out by a hair, as chord curves want them."""
+        return loosened(self.rows)
+
+    @cached_property
+    def spans(self) -> Array:
+        """Lowest and highest parameter (N, 2) of the pieces, past pockets by half their other extent's reach.
+
+        Beyond a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end it is.
+        """
+        rows = self.rows
+        hair = np.where(rows[:, IS_ARC] != 0.0, END_SLACK / np.maximum(rows[:, RADIUS], END_SLACK), END_SLACK)
+        out = np.stack([-rows[:, HALF_EXTENT] - hair, rows[:, HALF_EXTENT] + hair], axis=1)
+        for (x, y, *_), pieces in zip(self.pockets, self.pocket_pieces, strict=True):
+            for k in pieces:
+                unit = rows[k, RADIUS] if rows[k, IS_ARC] != 0.0 else 1.0
+                end = 1 if along(rows[k], x, y) > 0.0 else 0
+                out[k, end] += (2 * end - 1) * PAST_POCKET / unit
+        return out
+
+    @cached_property
+    def tables(self) -> dict[float, CurveTable]:
+        """Chord curves by the length of the chord, as far as they have been asked for."""
+        return {}
+
+    def curves(self, length: float) -> CurveTable:
+        """The curves of chords of a length in mm, tail on the piece of the lower number, their direction being the angle."""
+        key = round(length, 9)
+        if key not in self.tables:
+            steps = LatticeSteps(
+                np.array([length]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
+            )
+            self.tables[key] = curve_table(self.loose, steps)
+        return self.tables[key]
+
+    def normal(self, number: int, x: float, y: float) -> tuple[float, float]:
+        """Outward unit normal of a piece at a point on it."""
+        row = self.rows[number]
+        if row[IS_ARC] == 0.0:
+            return float(row[AXIS_Y]), float(-row[AXIS_X])
+        dx, dy = row[SIGN] * (x - row[X]) / row[RADIUS], row[SIGN] * (y - row[Y]) / row[RADIUS]
+        return float(dx), float(dy)
+
+    @cached_property
+    def common_normals(self) -> list[CommonNormal]:
+        """See ``seating.common_normals``."""
+        from workhold.seating.common_normals import common_normals
+
+        return common_normals(self)
+
+    @cached_property
+    def turned_over(self) -> Locus:
+        """The boundary of the part turned over, x to -x in its own frame about the centre."""
+        rows = np.array(self.rows)
+        is_arc = rows[:, IS_ARC] != 0.0
+        rows[:, X] *= -1.0
+        rows[:, REST_X] *= -1.0
+        rows[is_arc, AXIS_X] *= -1.0
+        rows[~is_arc, AXIS_Y] *= -1.0
+        rows.setflags(write=False)
+        pockets = self.pockets * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
+        return Locus(rows, self.touches, pockets, self.pocket_pieces, not self.mirrored)
+
+
+def contains(row: Array, x: float, y: float) -> bool:
+    """Whether a point of a piece's carrier lies on the piece, up to rounding."""
+    unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
+    whole = row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi
+    return bool(whole or abs(along(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
+
+
+def all_contained(row: Array, points: Array) -> NDArray[np.bool_]:
+    """Which of the points (N, 2) of a piece's carrier lie on the piece, up to rounding."""
+    dx, dy = (points - row[[X, Y]]).T
+    across, forth = row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy
+    if row[IS_ARC] == 0.0:
+        return np.asarray(np.abs(forth) <= row[HALF_EXTENT] + END_SLACK)
+    near = np.abs(np.arctan2(across, forth)) <= row[HALF_EXTENT] + END_SLACK / row[RADIUS]
+    return np.asarray(near | (row[HALF_EXTENT] >= pi))
+
+
+def along(row: Array, x: float, y: float) -> float:
+    """Parameter of a point on a piece."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        return float(dx * row[AXIS_X] + dy * row[AXIS_Y])
+    return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)
+
+
+def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
+    """The arcs on which a disc rolls around the convex corners of an outline, as far as nothing else is nearer."""
+    rows, out = segment_rows(segments), []
+    raw = [piece for piece in (raw_offset(segment, radius) for segment in segments) if piece is not None]
+    before = {segment.end: segment for segment in segments if not is_full(segment)}
+    joints = [segment.start for segment in segments if not is_full(segment)]
+
+    def is_clear(points: Array) -> NDArray[np.bool_]:
+        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
+
+    for segment in segments:
+        if is_full(segment):
+            continue
+        previous = before.get(segment.start) or min(before.values(), key=lambda s: distance(s.end, segment.start))
+        low, high = end_angle(previous, 1.0), end_angle(segment, -1.0)
+        turn = (high - low + pi) % (2 * pi) - pi
+        if turn <= STRAIGHT_ON:
+            continue
+        arc = Arc(segment.start, radius, low + turn / 2, turn / 2, 1.0)
+        others = [joint for joint in joints if 0.0 < distance(joint, segment.start) <= 2 * radius + CLEARANCE]
+        out += [(segment.start, kept) for kept in kept_parts(arc, cut_points(arc, raw, others, radius), is_clear)]
+    return [(corner, arc) for corner, arc in out if isinstance(arc, Arc)]
+
+
+def is_full(segment: Segment) -> bool:
+    """Whether a segment is a whole circle."""
+    return isinstance(segment, Arc) and segment.is_full
+
+
+def distance(a: Point, b: Point) -> float:
+    """Distance in mm of two points."""
+    return float(np.hypot(a[0] - b[0], a[1] - b[1]))
+
+
+def end_angle(segment: Segment, end: float) -> float:
+    """Direction in radians of the outward normal at the end (1) or the start (-1) of a segment."""
+    along = end * segment.half_extent * (segment.sign if isinstance(segment, Arc) else 1.0)
+    x, y = segment.normal(along)
+    return atan2(y, x)
+
+
+def pockets_of(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Where two pieces end in one point with different normals: place about the centre, normals, and whose they are."""
+    ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
+    if not ends:
+        return np.zeros((0, 6)), np.zeros((0, 2), np.int64)
+    points = np.array([pieces[k].at(s * pieces[k].half_extent) for k, s in ends])
+    normals = np.array([pieces[k].normal(s * pieces[k].half_extent) for k, s in ends])
+    shift = rows[0, [X, Y]] - np.array(
+        pieces[0].center if isinstance(pieces[0], Arc) else pieces[0].middle  # the same point before centring
+    )
+    found, whose = [], []
+    for i in range(len(ends)):
+        for j in range(i + 1, len(ends)):
+            if np.abs(points[i] - points[j]).max() > JOINT or ends[i][0] == ends[j][0]:
+                continue
+            if np.abs(normals[i] - normals[j]).max() <= TANGENT:
+                continue
+            place = (points[i] + points[j]) / 2 + shift
+            found.append([*place, *normals[i], *normals[j]])
+            whose.append([ends[i][0], ends[j][0]])
+    return np.array(found).reshape(-1, 6), np.array(whose, dtype=np.int64).reshape(-1, 2)

@@ -1,0 +1,300 @@
+"""The seating of a fixture: from how wide open the part is caught, where else it can rest, and how one would notice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, pi, radians, sin, tau
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.errors import WorkholdError
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    FORCE,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SEPARATION,
+    THETA,
+)
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.result import Result
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+from workhold.seating.cage import Surroundings
+from workhold.seating.descents import Closing
+from workhold.seating.equilibria import equilibria
+from workhold.seating.figures import Cage, Contact, Pass, Seat, Seating
+from workhold.seating.locus import Locus
+from workhold.seating.pattern import Pattern
+from workhold.seating.place import Silhouette
+from workhold.seating.sticking import sticking_friction
+from workhold.seating.tree import CONFIG, Join, Tree, distances
+
+__all__ = ["Solver", "seatings"]
+
+Array = NDArray[np.float64]
+# mm. A fixture is found among the seats of its pegs when both pose and separation agree to this.
+AGREES = 1e-5
+# mm. Seats from which a part is out again with less are not listed: they may be or not.
+SHALLOW = 1e-3
+# A share of the opening, by which less than the capture opening is less.
+LESS = 1e-6
+KINDS = {2: "curved", 3: "curved", 4: "fixture"}
+
+
+@define(eq=False)
+class Solver:
+    """Solves patterns of pegs on a part, each once.
+
+    Parameters
+    ----------
+    workpiece, toolkit : what is held in what.
+    """
+
+    workpiece: Workpiece
+    toolkit: Toolkit
+    loci: dict[float, Locus] = field(factory=dict)
+    solved: dict[tuple[object, ...], tuple[Pattern, tuple[Tree, Tree]]] = field(factory=dict)
+    outline: Silhouette = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.outline = Silhouette.of(self.workpiece)
+
+    def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
+        """The jaws of a pattern about the part, also turned over."""
+        if pattern.peg_radius not in self.loci:
+            self.loci[pattern.peg_radius] = Locus.of(self.workpiece, pattern.peg_radius)
+        locus = self.loci[pattern.peg_radius]
+        return Closing(locus.turned_over if turned_over else locus, pattern, self.outline.arm)
+
+    def trees(self, pattern: Pattern) -> tuple[Tree, Tree]:
+        """What can be reached from where, as drawn and turned over."""
+        one, two = (
+            Tree.of(equilibria(closing.locus, pattern, closing.size), closing)
+            for closing in (self.closing(pattern, turned_over) for turned_over in (False, True))
+        )
+        return one, two
+
+    def of(self, fixture: Fixture, with_cage: bool = True) -> Seating:
+        """The seating of a fixture.
+
+        Parameters
+        ----------
+        with_cage : whether cage and placing are worked out, which takes about as long as all else.
+
+        Raises
+        ------
+        InputError
+            As ``Pattern.of``.
+        WorkholdError
+            When the fixture is not found among the seats of its own pegs, which is a mistake of the program.
+        """
+        pattern = Pattern.of(fixture, self.toolkit)
+        key = pattern.key()
+        if key not in self.solved:
+            self.solved[key] = pattern, self.trees(pattern)
+        known, trees = self.solved[key]
+        return Reading(self, fixture, pattern, known, trees).seating(with_cage)
+
+
+@define(frozen=True, eq=False)
+class Reading:
+    """What a solved pattern says of one of its fixtures, whose pegs may stand elsewhere and in another order.
+
+    Parameters
+    ----------
+    pattern, known : the fixture's, and the one that was solved.
+    """
+
+    solver: Solver
+    fixture: Fixture
+    pattern: Pattern
+    known: Pattern
+    trees: tuple[Tree, Tree]
+
+    @property
+    def shift(self) -> Array:
+        """(4,) by which configurations of the solved pattern become the fixture's."""
+        here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right))[0] for p in (self.pattern, self.known))
+        right = np.lexsort((self.pattern.pegs[:, 1], self.pattern.pegs[:, 0], -self.pattern.right))[0]
+        other = np.lexsort((self.known.pegs[:, 1], self.known.pegs[:, 0], -self.known.right))[0]
+        dx, dy = self.pattern.pegs[here] - self.known.pegs[there]
+        return np.array([0.0, dx, dy, dx - (self.pattern.pegs[right, 0] - self.known.pegs[other, 0])])
+
+    @property
+    def order(self) -> NDArray[np.int64]:
+        """(4,) number of each solved peg among the fixture's."""
+        here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right)) for p in (self.pattern, self.known))
+        out = np.empty(4, np.int64)
+        out[there] = here
+        return out
+
+    @property
+    def own(self) -> Array:
+        """(4,) configuration of the fixture."""
+        return self.config(self.fixture.pose, self.fixture.jaw_separation)
+
+    def config(self, pose: Pose, separation: float) -> Array:
+        """A pose of the part, as drawn, and a separation as a configuration."""
+        x, y = pose.apply(*self.solver.workpiece.center)
+        return np.array([radians(pose.theta_deg), x, y, separation])
+
+    def pose(self, config: Array, mirrored: bool) -> Pose:
+        """The pose of a configuration."""
+        x, y = self.solver.workpiece.center
+        x = -x if mirrored else x
+        theta = float(config[0]) % tau
+        c, s = cos(theta), sin(theta)
+        return Pose(theta * 180.0 / pi, float(config[1]) - (c * x - s * y), float(config[2]) - (s * x + c * y))
+
+    def contacts(self, row: Array, mirrored: bool) -> tuple[Contact, ...]:
+        """What touches in a candidate."""
+        touches = self.solver.closing(self.known, mirrored).locus.touches
+        count = int(row[CONTACTS])
+        told = [(int(self.order[int(row[PEG + k])]), touches[int(row[PIECE + k])]) for k in range(count)]
+        return tuple(Contact(peg, touch.face, touch.corner) for peg, touch in told)
+
+    def seat(self, row: Array, kind: str, mirrored: bool, depth: float | None, has_forces: bool = True) -> Seat:
+        """A seat of a candidate."""
+        config, own = row[CONFIG] + self.shift, self.own
+        contacts = self.contacts(row, mirrored)
+        if kind == "fixture" and len({contact.peg for contact in contacts}) < 4:
+            kind = "pocket"
+        elif kind == "fixture" and any(contact.corner for contact in contacts):
+            kind = "corner"
+        is_own = not mirrored and distances(config[None], own, self.solver.outline.arm)[0] < AGREES
+        is_own = bool(is_own and abs(config[3] - own[3]) < AGREES and kind != "unsettled")
+        return Seat(
+            kind,
+            self.pose(config, mirrored),
+            float(config[3]),
+            float(config[3] - own[3]),
+            mirrored,
+            bool(self.solver.outline.covers_same(own, config, mirrored)),
+            contacts,
+            tuple(float(row[FORCE + k]) for k in range(len(contacts))) if has_forces else (),
+            depth,
+            is_own,
+        )
+
+    def seats(self) -> tuple[Seat, ...]:
+        """All seats, by their separations."""
+        out = []
+        for mirrored, tree in zip((False, True), self.trees, strict=True):
+
+            def depth(place: int, level: float, tree: Tree = tree) -> float | None:
+                join = tree.join_of(place)
+                return None if join is None else join.separation - level
+
+            for place, row in enumerate(tree.seats):
+                kind = KINDS[int(row[CONTACTS])]
+                out.append(self.seat(row, kind, mirrored, depth(place, row[SEPARATION])))
+            for k, family in enumerate(tree.loose):
+                row = family.candidate
+                out.append(self.seat(row, "loose", mirrored, depth(len(tree.seats) + k, row[SEPARATION]), False))
+            out += [self.seat(family.candidate, "loose", mirrored, 0.0, False) for family in tree.slack]
+            for config in tree.doubtful:
+                row = np.zeros(CANDIDATE_LENGTH)
+                row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = config
+                out.append(self.seat(row, "unsettled", mirrored, None, False))
+        kept = [seat for seat in out if seat.is_own or seat.kind in ("loose", "unsettled") or deep(seat)]
+        return tuple(sorted(kept, key=lambda seat: (seat.jaw_separation, seat.mirrored, seat.pose.theta_deg)))
+
+    def seating(self, with_cage: bool) -> Seating:
+        """The seating of the fixture."""
+        tree, own = self.trees[0], self.own
+        configs = tree.seats[:, CONFIG] + self.shift
+        away = distances(configs, own, self.solver.outline.arm) + np.abs(configs[:, 3] - own[3])
+        if not len(away) or away.min() > AGREES:
+            raise WorkholdError(
+                f"the fixture at {self.fixture.pose.theta_deg:.3f} degrees was not found among the seats of its own pegs."
+            )
+        place = int(np.argmin(away))
+        row, join = tree.seats[place], tree.join_of(place)
+        way_out = tree.way_out(place)
+        seats = self.seats()
+        factor = float(row[FORCE : FORCE + 4].sum())
+        capture = None if join is None else float(join.separation - row[SEPARATION])
+        cage, placing = (None, None)
+        if join is not None and with_cage:
+            cage, placing = self.freedom(row[CONFIG], join)
+        unsettled = sum(seat.kind == "unsettled" for seat in seats)
+        return Seating(
+            capture_opening=capture,
+            room_factor=factor,
+            lowest_pass=None if join is None else self.lowest_pass(join),
+            way_out=None if way_out is None else float(way_out - row[SEPARATION]),
+            cage=cage,
+            placing=placing,
+            sticking_friction=self.sticking(row),
+            stop=self.pattern.stop,
+            seats=seats,
+            unsettled=() if not unsettled else (f"{unsettled} places where the part may rest could not be settled.",),
+        )
+
+    def lowest_pass(self, join: Join) -> Pass:
+        """A join as the fixture's pass."""
+        config = join.candidate[CONFIG] + self.shift
+        return Pass(self.pose(config, False), float(config[3]), self.contacts(join.candidate, False))
+
+    def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
+        """Cage and placing."""
+        closing, top = self.solver.closing(self.known, False), join.candidate[CONFIG]
+        opening = (top[3] - seat[3]) * (1.0 - LESS)
+        way = top[:3] - seat[:3]
+        way[0] = (way[0] + pi) % tau - pi
+        around = Surroundings(closing, np.array(seat), opening, way, self.solver.outline.arm)
+        turns, x, y = ((float(low), float(high)) for low, high in around.cage)
+        return Cage((turns[0] * 180.0 / pi, turns[1] * 180.0 / pi), x, y), around.placing
+
+    def sticking(self, row: Array) -> float:
+        """The friction below which the part cannot stick near its seat."""
+        closing = self.solver.closing(self.known, False)
+        points = closing.pattern.at(row[CONFIG][None])[0]
+        c, s = cos(row[THETA]), sin(row[THETA])
+        contacts, normals, right = [], [], []
+        for k in range(4):
+            peg = int(row[PEG + k])
+            nx, ny = closing.locus.normal(int(row[PIECE + k]), *points[peg])
+            normals.append((c * nx - s * ny, s * nx + c * ny))
+            x, y = points[peg] - self.pattern.peg_radius * np.array([nx, ny])
+            contacts.append((c * x - s * y, s * x + c * y))
+            right.append(int(closing.pattern.right[peg]))
+        return sticking_friction(np.array(contacts), np.array(normals), np.array(right))
+
+
+def deep(seat: Seat) -> bool:
+    """Whether a part does not get out of a seat with next to nothing."""
+    return seat.depth is None or seat.depth >= SHALLOW
+
+
+def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Seating]:
+    """The seatings of fixtures of a result: from how wide open each catches the part, and where else it can rest.
+
+    Parameters
+    ----------
+    fixtures : which, or how many of the best.
+    with_cage : whether cage and placing are worked out.
+
+    Raises
+    ------
+    InputError
+        For a toolkit other than a vise that closes, and for pegs of radius 0.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> widget = workhold.load("widget")
+    >>> result = workhold.design(widget, workhold.Vise(pitch=8, columns=2, peg_radius=2), best=1)
+    >>> [told] = workhold.seatings(result)
+    >>> round(told.capture_opening, 3), round(told.sticking_friction, 3)
+    (0.03, 0.083)
+    """
+    solver = Solver(result.workpiece, result.toolkit)
+    chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
+    return [solver.of(fixture, with_cage) for fixture in chosen]

@@ -1,0 +1,95 @@
+"""Below which friction a part cannot stick near its seat: where three of the four contacts balance the jaw inside their
+cones.
+
+Contact i presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches is zero; with
+three unknown ratios, one of them up to scale, the least largest ratio has all three equal, or one of the contacts without
+force (V.-D. Nguyen, International Journal of Robotics Research 7, 1988). A determinant of signs is a cubic in mu.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["sticking_friction"]
+
+Array = NDArray[np.float64]
+TRIPLES = np.array(list(combinations(range(4), 3)))
+SIGNS = np.array(list(product((1.0, -1.0), repeat=3)))
+# Points at which a cubic is told by its values, and back.
+AT = np.array([0.0, 1.0, -1.0, 2.0])
+TO_CUBIC = np.linalg.inv(np.vander(AT, 4))
+
+
+def sticking_friction(points: Array, normals: Array, right: Array) -> float:
+    """The least coefficient of friction at which three of four contacts (two included) balance the jaw, or infinity.
+
+    Parameters
+    ----------
+    points : (4, 2) contact points in mm, in the vise frame.
+    normals : (4, 2) outward unit normals there.
+    right : (4,) 1 for contacts of the right jaw's pegs, 0 for others.
+    """
+    tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    size = max(float(np.ptp(points, axis=0).max()), 1e-9)
+    points = (points - points.mean(axis=0)) / size
+
+    def wrench(forces: Array, at: Array) -> Array:
+        return np.concatenate([forces, (at[..., 0] * forces[..., 1] - at[..., 1] * forces[..., 0])[..., None]], axis=-1)
+
+    straight, across = wrench(-normals, points), wrench(tangents, points)
+    least = np.inf
+    one = straight[TRIPLES][:, None, None]
+    two = SIGNS[None, :, None, :, None] * across[TRIPLES][:, None, None]
+    values = np.linalg.det(one + AT[None, None, :, None, None] * two)
+    cubics = values @ TO_CUBIC.T
+    for t, triple in enumerate(TRIPLES):
+        for k, signs in enumerate(SIGNS):
+            for root in real_roots(cubics[t, k]):
+                if not 0.0 <= root < least:
+                    continue
+                w = straight[triple] + root * signs[:, None] * across[triple]
+                if presses(w, right[triple]):
+                    least = root
+    for i, j in combinations(range(4), 2):
+        if right[i] == right[j]:
+            continue
+        line = points[j] - points[i]
+        span = np.hypot(*line)
+        if span < 1e-12:
+            continue
+        ratios = []
+        for k, toward in ((i, line / span), (j, -line / span)):
+            along = float(-normals[k] @ toward)
+            if along <= 1e-12:
+                break
+            ratios.append(abs(float(tangents[k] @ toward)) / along)
+        # The force of the right peg on the part points to the left.
+        moving = line / span if right[i] == 1 else -line / span
+        if len(ratios) == 2 and moving[0] < -1e-12:
+            least = min(least, max(ratios))
+    return float(least)
+
+
+def real_roots(cubic: Array) -> list[float]:
+    """The real roots of a polynomial, highest power first, which may begin with zeros."""
+    scale = np.abs(cubic).max()
+    if scale < 1e-14:
+        return []
+    roots = np.roots(np.where(np.abs(cubic) < 1e-13 * scale, 0.0, cubic))
+    return [float(root.real) for root in roots if abs(root.imag) < 1e-7 * (1.0 + abs(root))]
+
+
+def presses(wrenches: Array, right: Array) -> bool:
+    """Whether three dependent wrenches (3, 3) balance with forces of one sign that close the right jaw."""
+    crosses = np.array([np.cross(wrenches[:, a], wrenches[:, b]) for a, b in ((0, 1), (1, 2), (0, 2))])
+    null = crosses[np.abs(crosses).max(axis=1).argmax()]
+    size = np.abs(null).max()
+    if size < 1e-12:
+        return False
+    null = null / size
+    if (null < 0.0).sum() > (null > 0.0).sum():
+        null = -null
+    return bool((null >= -1e-9).all() and (null * wrenches[:, 0] * right).sum() < -1e-9)

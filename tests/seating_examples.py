@@ -1,0 +1,122 @@
+"""Parts, pegs and fixtures of which the seats are known, and ways to look at them that share nothing with the program."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from math import atan2, cos, hypot, pi, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
+from workhold.geometry.segment import Line
+from workhold.seating.figures import Seating
+from workhold.seating.seating import Solver
+
+Array = NDArray[np.float64]
+SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]
+LEFT, RIGHT = "left", "right"
+
+
+def held(pegs: list[tuple[str, float, float]], pose: tuple[float, float, float], separation: float) -> Fixture:
+    """A fixture of which only what seating needs is told."""
+    placed = tuple(Peg(carrier, 0, 0, x, y, 0, 0.0) for carrier, x, y in pegs)
+    return Fixture("I", placed, Pose(*pose), separation, {})
+
+
+def case_fixture(case: dict[str, Any]) -> tuple[Workpiece, Vise, Fixture]:
+    """The part, vise and fixture of a sampled case."""
+    part = load("widget") if case["loops"] is None else Workpiece.from_loops(case["part"], case["loops"])
+    pegs = [(peg["jaw"], peg["x"], peg["y"]) for peg in case["pegs"]]
+    pose = tuple(case["pose"][k] for k in ("theta_deg", "x", "y"))
+    return part, Vise(**case["vise"]), held(pegs, pose, case["jaw_separation"])
+
+
+@cache
+def solved(number: int) -> tuple[Solver, Fixture, Seating]:
+    """A sampled case, solved once for all tests."""
+    part, vise, fixture = case_fixture(SAMPLED[number])
+    solver = Solver(part, vise)
+    return solver, fixture, solver.of(fixture)
+
+
+class Obstacle:
+    """A part and pegs whose clearances and their slopes are told from the outline by elementary geometry."""
+
+    def __init__(self, part: Workpiece, fixture: Fixture, radius: float) -> None:
+        self.faces = [face.segment for face in part.faces]
+        self.radius, self.center = radius, np.array(part.center)
+        self.right = np.array([float(peg.carrier == RIGHT) for peg in fixture.pegs])
+        self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs])
+        self.pegs[:, 0] -= self.right * fixture.jaw_separation
+
+    def start(self, fixture: Fixture) -> Array:
+        """theta, x and y of the middle of the part's box, and S."""
+        x, y = fixture.pose.apply(*self.center)
+        return np.array([np.radians(fixture.pose.theta_deg), x, y, fixture.jaw_separation])
+
+    def near(self, config: Array, reach: float) -> list[tuple[float, Array]]:
+        """Clearances below a reach, with their slopes over theta, x, y and S."""
+        theta, x, y, s = config
+        c, d = cos(theta), sin(theta)
+        out = []
+        for right, (px, py) in zip(self.right, self.pegs, strict=True):
+            qx, qy = px + right * s - x, py - y
+            at = np.array([c * qx + d * qy, c * qy - d * qx])
+            for face in self.faces:
+                for touch in touched(face, at + self.center):
+                    away = at + self.center - touch
+                    size = hypot(*away)
+                    if size - self.radius < reach:
+                        n = away / max(size, 1e-12)
+                        vx, vy = c * n[0] - d * n[1], d * n[0] + c * n[1]
+                        out.append((size - self.radius, np.array([n[0] * at[1] - n[1] * at[0], -vx, -vy, vx * right])))
+        return out
+
+    def free(self, config: Array) -> float:
+        """The least clearance."""
+        return min(d for d, _ in self.near(config, np.inf))
+
+
+def touched(face: Any, point: Array) -> list[Array]:
+    """The nearest point of a face, inside its ends or at one."""
+    if isinstance(face, Line):
+        t = min(max(face.parameter(tuple(point)), -face.half_extent), face.half_extent)
+        return [np.array(face.at(t))]
+    angle = atan2(point[1] - face.center[1], point[0] - face.center[0]) - face.mid_angle
+    angle = (angle + pi) % (2 * pi) - pi
+    if abs(angle) <= face.half_sweep:
+        return [np.array(face.at(angle))]
+    return [np.array(face.at(face.half_sweep if angle > 0 else -face.half_sweep))]
+
+
+def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array:
+    """Where closing ends by small linear programs of scipy: each step lowers S most within a box."""
+    from scipy.optimize import linprog
+
+    trust = 0.05
+    scale = np.array([1.0 / size, 1.0, 1.0, 1.0])
+    for _ in range(600):
+        near = obstacle.near(config, 8.0 * trust)
+        slopes = np.array([g * scale for _, g in near]).reshape(-1, 4)
+        room = np.array([max(d, 0.0) for d, _ in near])
+        told = linprog(
+            [0, 0, 0, 1], -slopes if len(near) else None, room if len(near) else None, bounds=[(-trust, trust)] * 4
+        )
+        step = told.x * scale
+        gain = -told.x[3]
+        after = config + step
+        # Out again of what was entered to second order.
+        for _ in range(8):
+            for d, g in obstacle.near(after, 1e-12):
+                after = after - g * scale**2 * (d - 1e-12) / ((g * scale) @ (g * scale))
+        if gain > 1e-9 and after[3] < config[3] - 0.1 * gain and obstacle.free(after) > -1e-7:
+            config, trust = after, min(2.0 * trust, 0.4)
+        else:
+            trust *= 0.3
+            if trust < 1e-6 or config[3] < stop + 1e-6:
+                return config
+    return config
