@@ -52,5 +52,6 @@ def test_no_worker_is_started_for_nothing() -> None:
 
 def test_workers_that_cannot_be_started_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "worker", ends_at_once)
-    with LocalWorkers(1, Onlooker()) as queue, pytest.raises(InputError, match="3 in a row ended with code 3 before"):
+    monkeypatch.setattr(module, "MOST_FAILED_STARTS", 2)
+    with LocalWorkers(1, Onlooker()) as queue, pytest.raises(InputError, match="2 in a row ended with code 3 before"):
         list(queue.run(iter(tasks(tmp_path, 0)), Event()))

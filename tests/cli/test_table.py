@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import termios
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import pytest
 
 from fakes import fake_result
 from workhold.cli.table import Table
+from workhold.cli.tables import width_of
 from workhold.files.result.writer import write_result
 
 
@@ -44,6 +47,16 @@ def test_spare_columns_are_left_out_and_named() -> None:
     assert fitted.lines[-1] == "No room for: what it is."
     assert "plate" not in " ".join(fitted.lines)
     assert "plate" in " ".join(table(spare=1).fitted(76).lines)
+
+
+def test_a_terminal_that_nobody_has_told_its_size_has_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    ours, theirs = os.openpty()
+    with os.fdopen(theirs, "w") as terminal:
+        assert width_of(terminal) is None
+        termios.tcsetwinsize(theirs, (24, 80))
+        assert width_of(terminal) == 80
+    os.close(ours)
 
 
 def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -50,14 +50,14 @@ HEAD = """<!DOCTYPE html>
 <meta http-equiv="Content-Security-Policy"
  content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
 <title>workhold batch</title><style>
-body{font:15px/1.45 "DejaVu Sans",Verdana,Arial,sans-serif;color:#1a1a1a;margin:24px;background:#fff}
+body{font:14px/1.45 "DejaVu Sans",Verdana,Arial,sans-serif;color:#1a1a1a;margin:24px;background:#fff}
 h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}p{margin:4px 0;max-width:60em}
-table{border-collapse:collapse}th,td{padding:5px 10px;border-bottom:1px solid #d5d9df;vertical-align:middle;text-align:left}
+table{border-collapse:collapse}th,td{padding:5px 7px;border-bottom:1px solid #d5d9df;vertical-align:middle;text-align:left}
 .box{overflow-x:auto}th{background:#eef1f5;position:sticky;top:0}th button{all:unset;cursor:pointer;font-weight:bold}
 th button:focus-visible{outline:2px solid #0b3a82}th[aria-sort=ascending] button::after{content:" \\25B2"}
 th[aria-sort=descending] button::after{content:" \\25BC"}td.n{text-align:right;font-variant-numeric:tabular-nums}
-td.bad{color:#b3122a}td.once{white-space:nowrap}small{display:block;color:#5f6670;min-width:11em;max-width:26em}
-td code{white-space:normal;display:block;max-width:26em}img{display:block;width:160px;height:120px}code{font-size:13px}
+td.bad{color:#b3122a}td.once{white-space:nowrap}small{display:block;color:#5f6670;min-width:8em;max-width:26em}
+td code{white-space:normal;display:block;max-width:26em}img{display:block;width:160px;height:120px}code{font-size:12px}
 input{font:inherit;padding:4px 8px;width:22em;max-width:90%;margin:6px 0}
 </style></head><body>
 """

@@ -93,7 +93,8 @@ def width_of(stream: TextIO) -> int | None:
     if given.isascii() and given.isdigit() and int(given[:6]):
         return int(given[:6])
     try:
-        return os.get_terminal_size(stream.fileno()).columns if stream.isatty() else None
+        # A terminal that nobody has told its size says 0.
+        return os.get_terminal_size(stream.fileno()).columns or None if stream.isatty() else None
     except (OSError, ValueError):
         return None
 
