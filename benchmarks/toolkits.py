@@ -17,7 +17,9 @@ MOST_TIMES = 1.1
 MOST_SECONDS = 0.5
 REPEATS = 5
 # Part, pitch and columns of the vise; on plates the same part and pitch.
-PARTS = (("widget", 8, 4), ("ring", 12, 4))
+PARTS = (("widget", 8, 4), ("flange", 8, 4))
+# mm. A fence has so few contacts that rows of holes of a usual pitch cost what a search costs that finds nothing.
+FENCE_PITCH = 2
 
 COLUMNS = (
     Column("toolkit", 26, right=False),
@@ -32,17 +34,25 @@ COLUMNS = (
 def run(quick: bool) -> Section:
     """Measure plates beside the vise, then two clamps."""
     section = Section("toolkits", "Other toolkits, one thread", COLUMNS).begin()
-    worst = 0.0
+    worst = fences = 0.0
     for part, pitch, columns in PARTS[:1] if quick else PARTS:
         vise = told(section, "vise, Type II", part, ("Vise", part, pitch, columns, "II"))
         for name in ("-x", "-y"):
             plate = told(section, f"plate, clamp {name}", part, ("Plate", part, pitch, 8, name))
             worst = max(worst, plate / vise)
+        fence = told(section, "fence, clamp any way", part, ("Fence", part, FENCE_PITCH, 0, ""))
+        fences = max(fences, fence / vise)
     section.target(
         10,
         f"a contact on a plate costs at most {MOST_TIMES:g} times one of the vise's Type II",
         f"{worst:.2f} times",
         worst <= MOST_TIMES,
+    )
+    section.target(
+        10,
+        f"a contact on a fence costs at most {MOST_TIMES:g} times one of the vise's Type II",
+        f"{fences:.2f} times",
+        fences <= MOST_TIMES,
     )
     outcome = measured("toolkits.two_clamps", REPEATS)
     section.row("plate, two clamps, best 100", "100 × 60", "", f"{outcome['pairs']:,}", f"{outcome['seconds']:.3f}", "")
@@ -61,22 +71,29 @@ def told(section: Section, toolkit: str, part: str, task: tuple[Any, ...]) -> fl
 
 
 def query_of(kind: str, part: str, pitch: float, columns: int, way: str) -> Any:
-    """A design in a vise of one type, or on a plate with one direction."""
+    """A design in a vise of one type, on a plate with one direction, or on a fence."""
     import workhold
 
     workpiece = workhold.load(part)
     if kind == "Vise":
         return workhold.Query(workpiece, workhold.Vise(pitch=pitch, columns=columns, peg_radius=3), way)
+    if kind == "Fence":
+        return workhold.Query(workpiece, workhold.Fence(pitch=pitch, peg_radius=1, wall_offset=5))
     plate = workhold.Plate(pitch=pitch, peg_radius=3, columns=columns, rows=columns, directions=[way])
     return workhold.Query(workpiece, plate)
 
 
 def contacts(*task: Any) -> int:
     """Task: simultaneous contacts of a design."""
+    query = query_of(*task)
+    if query.toolkit.wall is not None:
+        import workhold
+
+        return int(workhold.answer(query, threads=1).statistics["contacts_examined"])
     from workhold.contact.problem import Problem
     from workhold.search.contacts import contacts_of
 
-    return contacts_of(Problem.of(query_of(*task)), 1)
+    return contacts_of(Problem.of(query), 1)
 
 
 def design_seconds(*task: Any) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
 from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.verification import verify
 
 TESTS = Path(__file__).parent.parent
 COMPLETE = sorted((TESTS / "data" / "toolkits").glob("edge_*.json"))
@@ -308,3 +309,15 @@ def test_contacts_at_tangent_joints_are_listed_once(tmp_path: Path) -> None:
     at_joint = [f for f in result if f.pose.theta_deg == 0.0 and f.pegs[0].row == 1]
     assert at_joint and {f.pegs[0].face for f in at_joint} <= {1, 2}
     assert result.proof is not None and not result.proof.undecided
+
+
+def test_where_a_row_grazes_an_arc_balls_tell_the_contact() -> None:
+    """A locator at the very top of an arc, pressed by next to nothing: its place and forces are finite, and not refuted."""
+    result = design(workhold.load("flange"), Fence(2, 1, wall_offset=5, directions=("-y",)), best=2000)
+    assert np.isfinite(result.table.force).all() and np.isfinite(result.table.quality[:, 0]).all()
+    last = result[-1]
+    assert 1e-6 < last.quality["closure_margin"] < 1e-4 and last.quality["warnings"] > 0
+    # Few of the contacts beside arcs are left to balls.
+    assert result.proof is not None and result.proof.escalated < 0.04 * result.proof.candidates
+    few = attrs.evolve(result, table=result.table.take(np.arange(len(result) - 3, len(result))))
+    assert verify(few).refuted == 0

@@ -16,7 +16,7 @@ from workhold.model.toolkit import Carrier
 from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
 
-__all__ = ["Candidate", "pressing"]
+__all__ = ["Candidate", "SharpContacts", "pressing", "reactions_on_fence", "sharp_contacts"]
 
 Point = tuple[arb, arb]
 
@@ -45,6 +45,21 @@ class Candidate:
     branches: tuple[float, float]
 
 
+@frozen
+class SharpContacts:
+    """A candidate to the last digit.
+
+    Parameters
+    ----------
+    locator, tip : their centres along the hull edge from its start and above it, in mm.
+    null : forces of the wall's two ends, locator and clamp, not scaled.
+    """
+
+    locator: list[float]
+    tip: list[float]
+    null: list[float]
+
+
 def pressing(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
     """Whether a candidate presses the part, its contacts inside their features; None where that is not decided.
 
@@ -67,12 +82,9 @@ def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tup
     contacts = contacts_of(candidate, problem, plate)
     if contacts is None:
         return False
-    wall, ((u, v), a, slack), ((p, q), b, other) = contacts
     length = arb(problem.wrench_length)
-    across, ahead = abs(a[0]), abs(b[0])
-    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
-    both = wall * (ahead * a[1] + across * b[1]) / length
-    null = [both - last, last, ahead * wall / length, across * wall / length]
+    wall, (_, a, slack), (_, b, other) = contacts
+    null = null_of(contacts, length)
     size = sum((abs(entry) for entry in null), arb(0))
     margin = arb(problem.contact_margin)
     pushes = -(b[0] * push[0] + b[1] * push[1])
@@ -85,6 +97,26 @@ def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tup
     if any(rule <= 0 for rule in rules):
         return False
     return True if all(rule > 0 for rule in rules) else None
+
+
+def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpContacts | None:
+    """A candidate that presses the part, to the last digit; None where it touches nothing."""
+    with BALLS, ctx.workprec(PRECISIONS[-1]):
+        contacts = contacts_of(candidate, problem, plate)
+        if contacts is None:
+            return None
+        points = [[float(value.mid()) for value in contact[0]] for contact in contacts[1:]]
+        null = [float(entry.mid()) for entry in null_of(contacts, arb(problem.wrench_length))]
+    return SharpContacts(points[0], points[1], null)
+
+
+def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
+    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.fence_search.closure``."""
+    wall, ((u, v), a, _), ((p, q), b, _) = contacts
+    across, ahead = abs(a[0]), abs(b[0])
+    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
+    both = wall * (ahead * a[1] + across * b[1]) / length
+    return [both - last, last, ahead * wall / length, across * wall / length]
 
 
 Contact = tuple[Point, Point, list[arb]]

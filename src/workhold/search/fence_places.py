@@ -170,8 +170,11 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
     with np.errstate(divide="ignore", invalid="ignore"):
         reach = 4.0 * laid.off * some[:, RADIUS] / half
-    # Beside a grazing line the square root is of what rounding leaves.
-    reach[~(half * half > 16.0 * laid.off * some[:, RADIUS])] = np.inf
+    # Beside a grazing line the square root is of what rounding leaves: the place is off by no more than both roots. Its
+    # normal is across the line to within its swing, so no contact there is told to press, but by balls.
+    least = 16.0 * laid.off * some[:, RADIUS]
+    grazing = ~(half * half > least)
+    reach[grazing] = (half + np.sqrt(2.0 * least))[grazing]
     angle = np.arctan2(
         some[:, AXIS_X] * ray[:, 1] - some[:, AXIS_Y] * ray[:, 0],
         some[:, AXIS_X] * ray[:, 0] + some[:, AXIS_Y] * ray[:, 1],

@@ -26,6 +26,7 @@ from workhold.conventions import (
     LEAST_SEAT,
     LEAST_SPAN,
     PARALLEL,
+    SAME_PLACE,
 )
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
@@ -34,7 +35,7 @@ from workhold.kernels.contact.closure import ROUNDING
 from workhold.listing.on_fence import Pressed
 from workhold.model.fixture import Pose
 from workhold.model.toolkit import Carrier
-from workhold.proof.flush import Candidate, pressing, reactions_on_fence
+from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts
 from workhold.search.fence_places import Laid, Places, laid_on, places_on
 
 __all__ = ["FenceSearch"]
@@ -217,14 +218,29 @@ class FenceSearch:
 
         good = np.flatnonzero(held)
         self.verified += len(good)
+        found = self.placed(pairs(good), edge, clamps, good, one)
         if self.problem.pairing:
-            return self.sharpened(pairs(good), edge, laid, clamps, good, one)
+            return self.sharpened(found, edge, laid, clamps, good, one)
         if self.verified == 0:
             share = null.min(axis=1) / np.maximum(np.abs(null).sum(axis=1), 1e-300)
             best = int(share.argmax())
             if self.nearest is None or share[best] > self.nearest[0]:
                 self.nearest = float(share[best]), pairs(np.array([best]))
-        return pairs(good)
+        return found
+
+    def placed(self, pressed: Pressed, edge: int, clamps: Clamps, good: IntArray, locators: Places) -> Pressed:
+        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
+        column that grazes an arc."""
+        reach = np.maximum(locators.reach[clamps.locator[good]], clamps.places.reach[good])
+        far = np.flatnonzero(reach > SAME_PLACE / 2)
+        locator, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
+        for k in far.tolist():
+            candidate = self.candidate(edge, locators, clamps.places, clamps, int(good[k]))
+            sharp = sharp_contacts(candidate, self.problem, self.plate)
+            if sharp is not None:
+                locator[k], tip[k] = sharp.locator, sharp.tip
+                null[k] = null[k] if self.problem.pairing else sharp.null
+        return evolve(pressed, locator=locator, tip=tip, null=null) if len(far) else pressed
 
     def sharpened(
         self, pressed: Pressed, edge: int, laid: Laid, clamps: Clamps, good: IntArray, locators: Places
