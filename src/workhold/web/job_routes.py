@@ -14,12 +14,13 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 from workhold.model.result import FixtureTable, Result
 from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer
+from workhold.web.families import FamilyForm
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
 from workhold.web.selection import Selection, angle_range
 from workhold.web.state import ServerState, address_of, at_desk, state_of
 
-__all__ = ["attachment", "found_job", "result_of_job", "router"]
+__all__ = ["attachment", "begin", "found_job", "result_of_job", "router"]
 
 router = APIRouter(prefix="/api")
 
@@ -58,6 +59,8 @@ def result_of_job(job: Job, revision: int | None = None, when_over: bool = False
     """
     if job.compares:
         raise HTTPException(409, "A comparison of vises has no fixtures: search in one of the vises.")
+    if job.kind == "family":
+        raise HTTPException(409, "A family has plans and no list of fixtures: search for one of its parts.")
     if revision is not None and revision != job.revision:
         raise HTTPException(409, "The list of fixtures has changed meanwhile: load it again.")
     if job.result is None or (when_over and not job.is_over):
@@ -66,13 +69,14 @@ def result_of_job(job: Job, revision: int | None = None, when_over: bool = False
     return job.result
 
 
-async def begin(request: Request, form: JobForm | ExploreForm) -> JSONResponse:
+async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm) -> JSONResponse:
     """Check what is asked for and begin with it."""
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)
     queries = await at_desk(request, "check_job", (form, state.limits.segments))
-    job = state.jobs.submit(form.model_dump(), queries, address, isinstance(form, ExploreForm))
+    kind = {ExploreForm: "explore", FamilyForm: "family"}.get(type(form), "design")
+    job = state.jobs.submit(form.model_dump(), queries, address, kind)
     url = f"/api/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
 

@@ -2,7 +2,7 @@
 
 Glossary
 --------
-job : a search, or a comparison of vises, with what is known of it.
+job : a search, a comparison of vises, or a family of parts, with what is known of it.
 revision : a number that grows whenever the fixtures to show have changed.
 """
 
@@ -22,6 +22,7 @@ from workhold.model.explanation import Explanation
 from workhold.model.notes import kept_note, stopped_note
 from workhold.model.result import Result
 from workhold.web.answers import arrangements_answer, proof_answer
+from workhold.web.families import FamilyFound
 from workhold.web.limits import Limits
 from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
 from workhold.web.selection import Selection
@@ -51,14 +52,14 @@ class Job:
     request : what was asked for, as it came.
     queries : the query, or those of a comparison and what their vises are called.
     address : who asked.
-    compares : whether it is a comparison of vises.
+    kind : "design", "explore" for a comparison of vises, or "family" of several parts.
     """
 
     name: str
     request: Mapping[str, Any]
     queries: tuple[NamedQuery, ...]
     address: str
-    compares: bool
+    kind: str
     state: str = "queued"
     fraction: float = 0.0
     found: int = 0
@@ -77,6 +78,12 @@ class Job:
     watchers: set[asyncio.Event] = field(factory=set)
     orders: dict[tuple[int, Selection], Entries] = field(factory=dict)
     result_hash: str | None = None
+    family: FamilyFound | None = None
+
+    @property
+    def compares(self) -> bool:
+        """Whether it is a comparison of vises."""
+        return self.kind == "explore"
 
     @property
     def is_over(self) -> bool:
@@ -101,11 +108,11 @@ class Job:
         """What is known of it, but for the request."""
         result, over = self.result, self.is_over
         end = self.ended if self.ended is not None else monotonic()
-        complete = self.state == "done" and (self.compares or (result is not None and result.complete))
+        complete = self.state == "done" and (self.kind != "design" or (result is not None and result.complete))
         listed = result if over and result is not None and self.state != "failed" else None
         return {
             "job": self.name,
-            "kind": "explore" if self.compares else "design",
+            "kind": self.kind,
             "state": self.state,
             "fraction": round(self.fraction, 4),
             "found": self.found,
@@ -113,7 +120,7 @@ class Job:
             "counts": None if listed is None else dict(listed.found),
             "distinct": None if listed is None else dict(listed.distinct),
             "listed": 0 if result is None else len(result),
-            "arrangements": [] if self.compares else arrangements_answer(self.queries[0][1].toolkit),
+            "arrangements": [] if self.kind != "design" else arrangements_answer(self.queries[0][1].toolkit),
             "ranking": None if result is None else list(result.query.ranking),
             "complete": complete,
             "notes": list(self.notes),
@@ -170,7 +177,7 @@ class Jobs:
             raise TooManyError(f"{running} of your searches are not over yet: wait for one of them, or cancel one.")
         self.pool.refuse_more(address)
 
-    def submit(self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, compares: bool) -> Job:
+    def submit(self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, kind: str) -> Job:
         """Begin a job.
 
         Raises
@@ -179,7 +186,7 @@ class Jobs:
             See :meth:`refuse_more`.
         """
         self.refuse_more(address)
-        job = Job(token_urlsafe(NAME_BYTES), request, queries, address, compares)
+        job = Job(token_urlsafe(NAME_BYTES), request, queries, address, kind)
         self.by_name[job.name] = job
         job.runner = asyncio.create_task(self.run(job))
         self.make_room()
@@ -193,14 +200,14 @@ class Jobs:
 
     async def run(self, job: Job) -> None:
         """See a job through."""
-        payload: Any = job.queries if job.compares else (job.queries[0][1], self.limits.fixtures)
-        name = "explore" if job.compares else "search"
+        payload: Any = job.queries if job.kind != "design" else (job.queries[0][1], self.limits.fixtures)
+        name = "search" if job.kind == "design" else job.kind
         job.task = Task(
             name,
             payload,
             self.limits.seconds,
             job.address,
-            stops_well=True,
+            stops_well=job.kind != "family",
             report=lambda value: self.heard(job, value),
             begun=lambda: self.begin(job),
         )
@@ -208,6 +215,8 @@ class Jobs:
             outcome = await self.pool.run(job.task)
             if isinstance(outcome, Found):
                 self.keep(job, outcome)
+            elif isinstance(outcome, FamilyFound):
+                job.family, job.fraction = outcome, 1.0
             elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
                 job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the vises was not tried.",)
             job.state = "cancelled" if job.task.stop.is_set() else "done"
@@ -239,7 +248,7 @@ class Jobs:
         match value:
             case ("progress", fraction, found):
                 job.fraction, job.found = max(float(fraction), job.fraction), int(found)
-                if job.fraction >= LISTING and not job.compares:
+                if job.fraction >= LISTING and job.kind == "design":
                     job.state = "listing"
             case ("preview", Result() as result):
                 job.result = evolve(result, query=job.queries[0][1])

@@ -22,6 +22,7 @@ from workhold.model.explanation import Explanation
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
+from workhold.web.families import find_family, make_family_paper
 from workhold.web.paper import make_paper
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
     from workhold.model.fixture import Fixture
     from workhold.model.toolkit import Toolkit
+    from workhold.web.families import FamilyForm
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
 __all__ = ["TASKS", "Found", "NamedQuery", "Upload", "warm_up", "work"]
@@ -150,7 +152,7 @@ def explanation(query: Query, order: Order) -> Explanation:
     return explain(query)
 
 
-def check_job(payload: tuple[JobForm | ExploreForm, int], order: Order) -> tuple[NamedQuery, ...]:
+def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> tuple[NamedQuery, ...]:
     """The queries of a request, after everything that can be known to be wrong with them is asked for."""
     from workhold.contact.problem import Problem
 
@@ -291,6 +293,8 @@ TASKS: Tasks = {
     "warnings": warnings,
     "resist": resist,
     "paper": make_paper,
+    "family": find_family,
+    "family_paper": make_family_paper,
 }
 
 

@@ -4,6 +4,7 @@
 import { ask, send } from "./api.js";
 import { detailsPanel } from "./details-panel.js";
 import { byId, quiet, show } from "./dom.js";
+import { familiesDialog } from "./families-dialog.js";
 import { forcesPanel } from "./forces-panel.js";
 import { listenToKeys } from "./keys.js";
 import { keep, restored } from "./link.js";
@@ -79,6 +80,7 @@ async function begin() {
   resultsPanel(figures);
   whyPanel();
   visesDialog(figures);
+  familiesDialog();
   takePanel(about);
   warningsPanel();
   await takeUpState().catch(() => {});

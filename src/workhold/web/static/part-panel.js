@@ -3,6 +3,7 @@
  */
 import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, make, show } from "./dom.js";
+import { openFamily, takesDrop } from "./families-dialog.js";
 import { previewOf } from "./file-preview.js";
 import { askQuestions, noQuestions, showQuestions } from "./file-questions.js";
 import { start } from "./search.js";
@@ -143,8 +144,9 @@ function listenToDrops(readDropped) {
   addEventListener("drop", (event) => {
     event.preventDefault();
     over(-depth);
-    const dropped = event.dataTransfer?.files[0];
-    if (dropped) readDropped(dropped);
+    const dropped = [...(event.dataTransfer?.files ?? [])];
+    if (dropped.length && takesDrop(dropped.length)) openFamily(dropped);
+    else if (dropped.length) readDropped(dropped[0]);
   });
 }
 

@@ -1,0 +1,198 @@
+"""Families of parts over HTTP: what is asked, what a worker finds, and what is made of it."""
+
+from __future__ import annotations
+
+from datetime import date
+from typing import TYPE_CHECKING, Annotated, Any
+
+from attrs import evolve, frozen
+from pydantic import Field
+
+from workhold.errors import InputError
+from workhold.model.query import Query, asked_ranking
+from workhold.web.forms import LARGEST, Form, HeldIn, Name, ToleranceForm, WorkpieceForm
+from workhold.web.worker import Order
+
+if TYPE_CHECKING:
+    from workhold.family.family import Family
+    from workhold.family.plan import Plan
+
+__all__ = ["PAPERS", "FamilyForm", "FamilyFound", "FamilyPaper", "find_family", "make_family_paper"]
+
+MOST_PARTS = 50
+# Of the time for a search, the share in which the proof must end.
+PROOF = 0.25
+# What can be made of a family: its content type.
+PAPERS = {
+    "curve.svg": "image/svg+xml",
+    "sheets.svg": "image/svg+xml",
+    "sheets.pdf": "application/pdf",
+    "plans.json": "application/json",
+}
+
+
+class FamilyForm(Form):
+    """Parts that are to be held in one toolkit with few set-ups."""
+
+    workpieces: Annotated[list[WorkpieceForm], Field(min_length=1, max_length=MOST_PARTS)]
+    vise: HeldIn
+    types: list[Name] | None = Field(default=None, max_length=10)
+    contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
+    ranking: list[Name] | None = Field(default=None, max_length=10)
+    prefer: Name | None = None
+    tolerance: ToleranceForm | None = None
+
+    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+        """The query of each part, and what the part is called.
+
+        Raises
+        ------
+        InputError
+            For the first value that cannot be, and where the solver is not installed.
+        """
+        from workhold.family.covering import load_solver
+        from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
+
+        load_solver()
+        toolkit = self.vise.toolkit()
+        usual = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+        ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
+        tolerance = None if self.tolerance is None else self.tolerance.tolerance()
+        parts = [form.workpiece(most_segments) for form in self.workpieces]
+        asked = {"contact_margin": self.contact_margin, "ranking": ranking, "tolerance": tolerance}
+        return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)  # type: ignore[arg-type]
+
+
+@frozen(eq=False)
+class FamilyFound:
+    """A family with its plans, and no more of its members' fixtures than those need.
+
+    Parameters
+    ----------
+    family : without a table, and its members without patterns.
+    plans : at each point of the curve.
+    text : the family's file.
+    """
+
+    family: Family
+    plans: tuple[Plan, ...]
+    text: str
+
+    def answer(self) -> dict[str, Any]:
+        """What the page shows."""
+        from math import isfinite
+
+        family = self.family
+        points = []
+        for plan in self.plans:
+            worst = max((one for setup in plan.setups for one in setup.holdings), key=lambda one: one.loss)
+            points.append(
+                {
+                    "setups": plan.point.setups,
+                    "loss": plan.point.loss if isfinite(plan.point.loss) else None,
+                    "at_least": plan.point.at_least,
+                    "is_least": plan.point.is_least,
+                    "pegs_moved": plan.moved,
+                    "worst": worst.member.name,
+                    "figure": worst.figure if isfinite(worst.figure) else None,
+                }
+            )
+        return {
+            "figure": family.figure.key,
+            "parts": [one.name for one in family.members],
+            "left_out": [{"name": one.name, "reason": one.reason} for one in family.left_out],
+            "points": points,
+        }
+
+    def plan(self, setups: int | None) -> Plan:
+        """The plan with at most so many set-ups; None is the fewest.
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
+        if not fitting:
+            raise InputError("there is no plan with so few set-ups: ask for more.")
+        return fitting[0 if setups is None else -1]
+
+
+def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyFound:
+    """Find a family; reports are ("progress", fraction, found)."""
+    from workhold.family.family import Asked, family_of
+    from workhold.family.file import family_text
+
+    def progress(fraction: float, found: int) -> None:
+        order.report(("progress", fraction, found))
+
+    names = numbered([name for name, _ in payload])
+    asked = [Asked(name, query) for name, (_, query) in zip(names, payload, strict=True)]
+    family = family_of(asked, seconds=PROOF * order.seconds, progress=progress)
+    text, plans = family_text(family), family.plans
+    small = {
+        id(one): evolve(
+            one,
+            words=one.words[:0],
+            loss=one.loss[:0],
+            number=one.number[:0],
+            turned=one.turned[:0],
+            table=one.table.take(slice(0, 0)),
+        )
+        for one in family.members
+    }
+    slim = tuple(
+        evolve(
+            plan,
+            setups=tuple(
+                evolve(setup, holdings=tuple(evolve(one, member=small[id(one.member)]) for one in setup.holdings))
+                for setup in plan.setups
+            ),
+        )
+        for plan in plans
+    )
+    return FamilyFound(evolve(family, members=tuple(small.values()), table=None), slim, text)
+
+
+def numbered(names: list[str]) -> list[str]:
+    """Names of which no two are the same.
+
+    >>> numbered(["a", "b", "a"])
+    ['a', 'b', 'a (2)']
+    """
+    return [
+        name if names.index(name) == place else f"{name} ({names[: place + 1].count(name)})"
+        for place, name in enumerate(names)
+    ]
+
+
+@frozen(eq=False)
+class FamilyPaper:
+    """What to make of a family: one of :data:`PAPERS`, of the plan with at most so many set-ups, in a unit, of a day."""
+
+    kind: str
+    found: FamilyFound
+    setups: int | None
+    unit: str
+    day: date
+
+
+def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
+    """The bytes of what was ordered."""
+    from workhold.drawing.scene import stacked
+    from workhold.family.curve_picture import draw_curve
+    from workhold.family.setup_pages import draw_setups
+    from workhold.model.units import unit_named
+
+    found = payload.found
+    if payload.kind == "plans.json":
+        return found.text.encode("utf-8")
+    if payload.kind == "curve.svg":
+        chosen = None if payload.setups is None else found.plan(payload.setups).point
+        return draw_curve(found.family, chosen).encode("utf-8")
+    pages = draw_setups(found.plan(payload.setups), found.family.figure, payload.day, unit_named(payload.unit))
+    if payload.kind == "sheets.svg":
+        return stacked(pages).encode("utf-8")
+    from workhold.drawing.pdf import svg_to_pdf
+
+    return svg_to_pdf(pages, payload.day)
