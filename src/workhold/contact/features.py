@@ -94,9 +94,9 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
     for face in workpiece.faces:
         if number in face.segments:
             return face.number
-    last = len(workpiece.segments) - 1
+    last = workpiece.faces[-1].number
     raise InputError(
-        f"{workpiece.name} has no face {number}: its segments are numbered from 0 to {last}; see workhold features."
+        f"{workpiece.name} has no face {number}: the last one is {last}; look at the picture of its faces."
     )
 
 
