@@ -19,7 +19,10 @@ from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
 from test_command import run, started, wait_for_records
 from test_run import square
 
+from workhold.batch.measured import Measured
 from workhold.batch.records import plain_record, refusal_record
+from workhold.batch.report import Summary
+from workhold.batch.results import write_results
 from workhold.batch.store import FolderStore
 from workhold.batch.tables import table_names
 from workhold.batch.url_store import UrlStore, store_at
@@ -79,6 +82,10 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     store.write("abcd", refusal_record("no")[:-1])
     assert not store.has("abcd") and store.read("abcd") is None
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
+    write_results(batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), tmp_path)
+    text = (tmp_path / "r.html").read_text()
+    assert store.place(name) in text and text.count("<img") == 1 and "workhold sheet" not in text
+    assert len(list(tmp_path.glob("*.pdf"))) == 1
 
 
 def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -95,6 +102,14 @@ def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: py
     (tmp_path / "file").touch()
     lost = done_there(task, FolderStore(tmp_path / "file"))
     assert lost.record is None and "cannot be written" in lost.failure
+
+
+@pytest.mark.parametrize("address", ["foo", "tcp://", "127.0.0.1:99999", "tcp://:8786", "inproc://x:1", "tcp://a:1x"])
+def test_words_that_are_no_address_are_refused(address: str) -> None:
+    from workhold.batch.cluster import ClusterWorkers
+
+    with pytest.raises(InputError, match="is no address of a scheduler"):
+        ClusterWorkers(Onlooker(), address).__enter__()
 
 
 def test_stores_are_told_by_their_urls(tmp_path: Path) -> None:

@@ -62,10 +62,10 @@ class ClusterWorkers:
     def __enter__(self) -> ClusterWorkers:
         from distributed import Client, LocalCluster
 
+        at: Any = None if self.address is None else checked_address(self.address)
         # What Dask has to say of what is lost is told in sentences of this program's own.
         self.stack.callback(logging.disable, logging.root.manager.disable)
         logging.disable(logging.CRITICAL)
-        at: Any = self.address
         try:
             if at is None:
                 with deaf_children():
@@ -175,6 +175,29 @@ class ClusterWorkers:
         )
         self.watcher.told(f"T{self.gone[1:]}")
         stop.set()
+
+
+def checked_address(address: str) -> str:
+    """The address of a scheduler; without a kind it is one of TCP.
+
+    Raises
+    ------
+    InputError
+        For words that are none, over which the library would stumble.
+
+    Examples
+    --------
+    >>> checked_address("10.0.0.5:8786")
+    'tcp://10.0.0.5:8786'
+    """
+    kind, _, place = address.strip().rpartition("://")
+    host, _, port = place.rpartition(":")
+    is_port = port.isascii() and port.isdigit() and int(port[:6]) < 1 << 16
+    if kind not in ("", "tcp", "tls", "ws", "wss", "ucx") or not (host and is_port):
+        raise InputError(
+            f"{address!r} is no address of a scheduler: give the one it says, such as tcp://10.0.0.5:8786."
+        )
+    return f"{kind or 'tcp'}://{place}"
 
 
 def done_there(task: Task, store: Store | None) -> Outcome:

@@ -165,6 +165,9 @@ class Report:
         """How to get on from a row: its record, and its setup sheet or the line that makes it."""
         if row["state"] != "held":
             return ""
+        if "://" in row["record"]:
+            # In an object store: no command opens it there.
+            return f"<small>{told(row['record'])}</small>"
         record = Path(row["record"])
         link = (
             f'<a href="{told(record.relative_to(self.folder).as_posix())}">the best</a>' if self.holds(record) else ""
