@@ -300,3 +300,27 @@ def test_other_toolkits_are_refused_in_a_sentence():
 def test_case_fixtures_have_a_part():
     """The data tell what they are of."""
     assert [case_fixture(case)[0].name for case in SAMPLED] == ["widget", "widget", "notch"]
+
+
+def test_three_parallel_forces_are_found():
+    """A round on one end of a bar, pressed beside its flat: the two pegs of a jaw have parallel normals at the seat or
+    pass."""
+    bar = Workpiece.from_loops("bar", [[[0, 0, 0], [60, 0, 0], [60, 12, 0], [50, 12, 0], [34, 12, -0.5], [0, 12, 0]]])
+    vise = Vise(10, 2, 2)
+    pegs = [(LEFT, 0.0, 0.0), (LEFT, 0.0, 30.0), (RIGHT, 10.0, 10.0), (RIGHT, 20.0, 20.0)]
+    solver = Solver(bar, vise)
+    pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
+    closing = solver.closing(pattern, False)
+    found = equilibria(closing.locus, pattern, closing.size)
+    rows = [row for row in [*found.seats, *found.passes] if row[4] == 3.0]
+    obstacle = Obstacle(bar, held(pegs, (0.0, 0.0, 0.0), 0.0), 2.0)
+    parallel = []
+    for row in rows:
+        normals = np.array([g[1:3] for d, g in obstacle.near(row[[0, 1, 2, 3]], 1e-6) if abs(d) < 1e-7])
+        cross = normals[:, 0] * normals[0, 1] - normals[:, 1] * normals[0, 0]
+        parallel.append(len(normals) == 3 and np.abs(cross).max() < 1e-7)
+    assert any(parallel)
+    # S is stationary along the part's only freedom: a step along it changes S by its square.
+    for row in (row for row, level in zip(rows, parallel, strict=True) if level):
+        slopes = np.array([g for d, g in obstacle.near(row[[0, 1, 2, 3]], 1e-6) if abs(d) < 1e-7])
+        assert nonnegative(slopes.T, np.array([0.0, 0.0, 0.0, 1.0]))[1] < 1e-9

@@ -32,6 +32,7 @@ from workhold.seating.holdings import Holdings, filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.sliding import slid
+from workhold.seating.tangent import at_tangencies
 
 __all__ = ["Equilibria", "equilibria"]
 
@@ -81,9 +82,9 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
             filled(
                 CANDIDATE_LENGTH, 8 * len(third) + 16, complete_third, third, given, pockets, np.empty(CANDIDATE_LENGTH)
             ),
-            np.array(squeezed(pattern, locus.common_normals) + slid(locus, pattern, holdings)).reshape(
-                -1, CANDIDATE_LENGTH
-            ),
+            np.array(
+                squeezed(pattern, locus.common_normals) + slid(locus, pattern, holdings) + at_tangencies(locus, pattern)
+            ).reshape(-1, CANDIDATE_LENGTH),
         ]
     )
     candidates = candidates[candidates[:, SEPARATION] > pattern.stop]

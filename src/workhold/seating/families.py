@@ -31,7 +31,9 @@ __all__ = ["Family", "families"]
 
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
-SLIDE_STEPS, TURN_STEPS = 48, 384
+SLIDE_STEPS, TURN_STEPS = 144, 384
+# By how many halvings the end of a slide is found.
+EDGE_HALVINGS = 24
 # mm. Pegs this near touch all along; shorter slides are none; separations this near are one.
 TOUCHES, SHORTEST, SAME = 1e-7, 1e-6, 1e-6
 # A force's share below this is none.
@@ -117,8 +119,27 @@ class Finder:
             row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
             for at, (peg, piece) in enumerate(told):
                 row[PEG + at], row[PIECE + at] = peg, piece
-            out.append(Family(row, configs[numbers], closed and len(numbers) == len(configs), across))
+            along = configs[numbers]
+            if not closed:
+                ends = [(numbers[0], numbers[0] - 1), (numbers[-1], numbers[-1] + 1)]
+                first, last = (
+                    self.edge(configs[inner], configs[outer], contacts) if 0 <= outer < len(configs) else configs[inner]
+                    for inner, outer in ends
+                )
+                along = np.concatenate([[first], along, [last]])
+            out.append(Family(row, along, closed and len(numbers) == len(configs), across))
         return out
+
+    def edge(self, inner: Array, outer: Array, contacts: list[Contact]) -> Array:
+        """The last free configuration on the straight way from one that is free to one that is not."""
+        clear = np.empty(4)
+        for _ in range(EDGE_HALVINGS):
+            middle = (inner + outer) / 2.0
+            points = self.pattern.at(middle[None])[0]
+            clearances(points, self.rows, clear)
+            on = all(contains(self.rows[piece], *points[peg]) for peg, piece in contacts)
+            inner, outer = (middle, outer) if on and clear.min() > -TOUCHES else (inner, middle)
+        return inner
 
     def sliding(
         self, theta: float, start: Array, line: Array, low: float, high: float, s: float, contacts: list[Contact]
@@ -184,42 +205,55 @@ class Finder:
                     out += self.turning(self.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across)
         return out
 
-    def between_two(self, slides: tuple[Slide, ...]) -> list[Family]:
-        """Two pegs of one jaw on a face, and one of the other, between them, on a face parallel to it."""
+    def on_parallel_lines(self, slides: tuple[Slide, ...]) -> list[Family]:
+        """Two pegs of one jaw and one of the other on parallel faces, the middle one of the three against the outer two."""
         out = []
         pegs, right = self.pattern.pegs, self.pattern.right
         for slide in slides:
             a, b = slide.pieces
             one = self.rows[a]
-            if one[IS_ARC] != 0.0 or one[AXIS_X] * self.rows[b, AXIS_X] + one[AXIS_Y] * self.rows[b, AXIS_Y] < 0.0:
-                continue
             theta = -slide.psi
             c, d = cos(theta), sin(theta)
             # The face's direction and its outward normal in the vise frame.
             tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
             nx, ny = ty, -tx
-            if abs(nx) < 1e-9:
+            if one[IS_ARC] != 0.0 or abs(nx) < 1e-9:
                 continue
-            for k in np.flatnonzero(right != right[slide.first]).tolist():
-                for first, other in self.opposed:
-                    if first != a:
-                        continue
-                    two = self.rows[other]
-                    thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
-                    run, rise = pegs[k] - pegs[slide.first]
-                    moving = 1.0 if right[k] == 1 else -1.0
-                    s = -(thick + run * nx + rise * ny) / (moving * nx)
-                    places = pegs[:, 0] * tx + pegs[:, 1] * ty + s * right * tx
-                    ends = sorted((places[slide.first], places[slide.second]))
-                    if not ends[0] + SHORTEST < places[k] < ends[1] - SHORTEST:
-                        continue
-                    shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
-                    shift -= places[k] - places[slide.first]
-                    low, high = max(slide.low, shift - two[HALF_EXTENT]), min(slide.high, shift + two[HALF_EXTENT])
-                    start = pegs[slide.first] + [s * right[slide.first], 0.0]
-                    contacts = [(slide.first, a), (slide.second, b), (k, other)]
-                    out += self.sliding(theta, start, one, low, high, s, contacts)
+            for k, other in product(np.flatnonzero(right != right[slide.first]).tolist(), self.parallel_to(a)):
+                two = self.rows[other]
+                thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
+                run, rise = pegs[k] - pegs[slide.first]
+                moving = 1.0 if right[k] == 1 else -1.0
+                s = -(thick + run * nx + rise * ny) / (moving * nx)
+                places = pegs[:, 0] * tx + pegs[:, 1] * ty + s * right * tx
+                contacts = [(slide.first, a), (slide.second, b), (k, other)]
+                if not self.opposes(contacts, places, moving * nx):
+                    continue
+                shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
+                shift -= places[k] - places[slide.first]
+                low, high = max(slide.low, shift - two[HALF_EXTENT]), min(slide.high, shift + two[HALF_EXTENT])
+                start = pegs[slide.first] + [s * right[slide.first], 0.0]
+                out += self.sliding(theta, start, one, low, high, s, contacts)
         return out
+
+    def parallel_to(self, a: int) -> list[int]:
+        """Numbers of the straight pieces parallel to one."""
+        along = self.rows[:, [AXIS_X, AXIS_Y]]
+        cross = along[:, 0] * along[a, 1] - along[:, 1] * along[a, 0]
+        return [k for k in self.lines if abs(cross[k]) <= PARALLEL]
+
+    def opposes(self, contacts: list[Contact], places: Array, push: float) -> bool:
+        """Whether of three parallel forces the middle one is against the outer two, and the last presses its jaw outward.
+
+        Parameters
+        ----------
+        places : (4,) of the pegs along the faces, in mm.
+        push : of a normal like the first contact's, how much it presses the jaw of the last peg outward.
+        """
+        first = self.rows[contacts[0][1]]
+        sides = [float(np.sign(self.rows[k, [AXIS_X, AXIS_Y]] @ first[[AXIS_X, AXIS_Y]])) for _, k in contacts]
+        (p, one), (q, middle), (r, other) = sorted(zip((places[peg] for peg, _ in contacts), sides, strict=True))
+        return q - p > SHORTEST and r - q > SHORTEST and one == other == -middle and sides[2] * push > 0.0
 
     @property
     def concentric(self) -> list[list[int]]:
@@ -265,7 +299,7 @@ def families(locus: Locus, pattern: Pattern, slides: tuple[Slide, ...]) -> list[
     """All loose equilibria of a pattern, each once: the one with the most contacts of those that lie in each other."""
     finder = Finder(locus, pattern)
     kept: list[Family] = []
-    found = finder.on_one_line() + finder.between_two(slides) + finder.on_one_center()
+    found = finder.on_one_line() + finder.on_parallel_lines(slides) + finder.on_one_center()
     for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
         if not any(abs(one.middle[3] - other.middle[3]) < SAME and other.holds(one.middle, 1.0) for other in kept):
             kept.append(one)

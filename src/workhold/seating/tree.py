@@ -130,14 +130,17 @@ def ends_of(family: Family, size: float) -> Array:
     if family.across is not None:
         step = BESIDE * np.array([0.0, *family.across, 0.0])
         return family.middle + np.stack([step, -step])
-    if family.is_closed or len(family.configs) < 2:
+    if family.is_closed or len(family.configs) < 3:
         return np.zeros((0, 4))
     out = []
-    for end, before in ((0, 1), (-1, -2)):
+    # The end may be the same as the configuration before it, but not as the one before that.
+    for end, before in ((0, 2), (-1, -3)):
         step = family.configs[end] - family.configs[before]
         step[0] = (step[0] + pi) % tau - pi
-        out.append(family.configs[end] + BESIDE * step / (abs(step[0]) * size + np.hypot(*step[1:3])))
-    return np.array(out)
+        length = abs(step[0]) * size + np.hypot(*step[1:3])
+        if length > 0.0:
+            out.append(family.configs[end] + BESIDE * step / length)
+    return np.array(out).reshape(-1, 4)
 
 
 @define(eq=False)
