@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold.family.curve import Point, Table, curve_of
+from workhold.family.covering import Cover
+from workhold.family.curve import Point, Search, Table, curve_of, points_of
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -122,3 +123,13 @@ def test_progress_ends_at_one() -> None:
     told: list[float] = []
     curve_of(table_from(random_losses(Random(1), 12, 6)), progress=told.append)
     assert told == sorted(told) and told[-1] == pytest.approx(1.0)
+
+
+def test_a_number_is_the_least_where_the_bound_before_needs_more() -> None:
+    losses = np.array([[1.0, np.nan], [np.nan, 1.0], [1.5, 1.5]])
+    search = Search(table_from(losses), np.array([1.0, 1.5]), None, lambda fraction: None)
+    search.covers = {0: Cover((0, 1), 2), 1: Cover((2,), 1)}
+    assert [point.is_least for point in points_of(search)] == [True, True]
+    # One set-up is not ruled out at the smaller bound.
+    search.covers = {0: Cover((0, 1), 1), 1: Cover((2,), 1)}
+    assert [(point.at_least, point.is_least) for point in points_of(search)] == [(1, True), (1, False)]

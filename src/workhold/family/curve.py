@@ -18,7 +18,7 @@ from workhold.family.covering import WORD, Cover, as_sets, cover, first_cover, m
 from workhold.family.members import Member
 from workhold.listing.canonical_form import changes
 
-__all__ = ["Point", "Table", "curve_of", "table_of"]
+__all__ = ["Point", "Search", "Table", "curve_of", "points_of", "table_of"]
 
 IntArray = NDArray[np.int64]
 
