@@ -10,6 +10,7 @@ M. Rocklin, "Dask: Parallel Computation with Blocked algorithms and Task Schedul
 from __future__ import annotations
 
 import logging
+from collections import deque
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 from queue import Empty, SimpleQueue
@@ -33,6 +34,8 @@ LOOK, COUNT, PATIENCE = 0.1, 2.0, 20.0
 ANSWER = 20
 # Tasks at the scheduler for each thread of a worker, so that none waits for the next one.
 AHEAD = 3
+# What ends the key of a task that is tried alone.
+ALONE = "-alone"
 
 
 @define(eq=False)
@@ -77,8 +80,11 @@ class ClusterWorkers:
                     )
                 at = self.stack.enter_context(cluster)
             self.client = self.stack.enter_context(Client(at, timeout=ANSWER, set_as_default=False))
-        except (OSError, ValueError, TimeoutError) as error:
+        except (OSError, RuntimeError, ValueError, TimeoutError) as error:
             self.stack.close()
+            if self.address is None:
+                words = " ".join(str(error).split())
+                raise InputError(f"a cluster cannot be started on this machine: {words}.") from error
             raise InputError(
                 f"no scheduler answers at {self.address}: start one with dask scheduler, or correct the address."
             ) from error
@@ -103,6 +109,8 @@ class ClusterWorkers:
         """See :class:`workhold.batch.queues.Queue`."""
         finished: SimpleQueue[Any] = SimpleQueue()
         pending: dict[str, tuple[Any, Task]] = {}
+        # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once more, each alone.
+        suspects: deque[Task] = deque()
         exhausted = False
         self.idle_since = monotonic()
         while not stop.is_set():
@@ -112,13 +120,21 @@ class ClusterWorkers:
                 if task is None:
                     exhausted = True
                 else:
-                    pending[task.name] = (self.submit(task, finished), task)
+                    pending[task.name] = (self.submit(task, task.name, finished), task)
+            if not pending and suspects and not self.gone:
+                task = suspects.popleft()
+                pending[f"{task.name}{ALONE}"] = (self.submit(task, f"{task.name}{ALONE}", finished), task)
             if not pending and not self.gone:
                 return
             with suppress(Empty):
                 future = finished.get(timeout=LOOK)
                 taken = pending.pop(future.key, None)
-                outcome = None if taken is None else self.outcome(future, taken[1])
+                if taken is None:
+                    continue
+                if is_killed(future) and not future.key.endswith(ALONE):
+                    suspects.append(taken[1])
+                    continue
+                outcome = self.outcome(future, taken[1])
                 if outcome is not None:
                     yield outcome
             if self.gone or self.client.status != "running":
@@ -126,9 +142,9 @@ class ClusterWorkers:
         with suppress(Exception):
             self.client.cancel([future for future, _ in pending.values()])
 
-    def submit(self, task: Task, finished: SimpleQueue[Any]) -> Any:
-        """Hand a task to the scheduler."""
-        future = self.client.submit(done_there, task, self.store, key=task.name, pure=False)
+    def submit(self, task: Task, key: str, finished: SimpleQueue[Any]) -> Any:
+        """Hand a task to the scheduler under a key."""
+        future = self.client.submit(done_there, task, self.store, key=key, pure=False)
         future.add_done_callback(finished.put)
         return future
 
@@ -157,7 +173,7 @@ class ClusterWorkers:
             return outcome
         if future.status == "error":
             error = future.exception()
-            if type(error).__name__ == "KilledWorker":
+            if is_killed(future):
                 times = error.allowed_failures + 1
                 self.watcher.told(f"{times} workers ended while they had {task.title} in hand; it is given up.")
                 words = f"{times} workers ended while they had this in hand: it may need more memory than they have."
@@ -175,6 +191,11 @@ class ClusterWorkers:
         )
         self.watcher.told(f"T{self.gone[1:]}")
         stop.set()
+
+
+def is_killed(future: Any) -> bool:
+    """Whether the scheduler has given a task up because its workers died."""
+    return future.status == "error" and type(future.exception()).__name__ == "KilledWorker"
 
 
 def checked_address(address: str) -> str:
