@@ -324,3 +324,43 @@ def test_three_parallel_forces_are_found():
     for row in (row for row, level in zip(rows, parallel, strict=True) if level):
         slopes = np.array([g for d, g in obstacle.near(row[[0, 1, 2, 3]], 1e-6) if abs(d) < 1e-7])
         assert nonnegative(slopes.T, np.array([0.0, 0.0, 0.0, 1.0]))[1] < 1e-9
+
+
+@pytest.mark.parametrize("number", CASES)
+def test_every_seat_lies_free_where_its_pose_says(number):
+    """Also turned over: pegs that touch are on the outline, no other is in the part, and none is below the stop."""
+    solver, fixture, told = solved(number)
+    for seat in told.seats:
+        part = solver.workpiece.turned_over if seat.mirrored else solver.workpiece
+        obstacle = Obstacle(part, fixture, solver.toolkit.peg_radius)
+        x, y = seat.pose.apply(*part.center)
+        config = np.array([radians(seat.pose.theta_deg), x, y, seat.jaw_separation])
+        assert obstacle.free(config) > -1e-6
+        if seat.kind != "unsettled":
+            assert sum(abs(d) < 1e-6 for d, _ in obstacle.near(config, 1e-3)) >= len(seat.contacts) >= 2
+    rights, lefts = obstacle.pegs[obstacle.right == 1.0, 0] + told.stop, obstacle.pegs[obstacle.right == 0.0, 0]
+    assert min(b - a for a in lefts for b in rights) == pytest.approx(solver.toolkit.gap, abs=1e-9)
+
+
+@pytest.mark.parametrize("number", CASES)
+def test_curved_seats_hold_and_passes_let_go(number):
+    """Beside a seat of three contacts closing leads back; beside a pass down, but for the side on which a flat face begins."""
+    solver, fixture, _ = solved(number)
+    pattern = Pattern.of(fixture, solver.toolkit)
+    closing = solver.closing(pattern, False)
+    found = equilibria(closing.locus, pattern, closing.size)
+    for rows, holds in ((found.seats, True), (found.passes, False)):
+        for row in (row for row in rows if row[4] < 4.0):
+            motion = np.append(row[18:21], 0.0)
+            step = 0.01 * motion / (abs(motion[0]) * closing.size + hypot(*motion[1:3]))
+            ended, _ = closing.run(row[:4] + np.stack([step, -step]), 0.005)
+            rises = ended[:, 3] - row[3]
+            assert (np.abs(rises) < 1e-6).all() if holds else rises.min() < -1e-7 and rises.max() < 1e-9
+
+
+def test_a_part_like_its_mirror_image_covers_its_place_turned_over():
+    kite = Workpiece.from_loops("kite", [[[0, 0, 0], [60, 0, 0], [30, 70, 0]]])
+    vise = Vise(20, 2, 3)
+    fixture = workhold.design(kite, vise, types="I", best=1)[0]
+    told = Solver(kite, vise).of(fixture, with_cage=False)
+    assert any(seat.mirrored and seat.same_place and abs(seat.difference) < 1e-7 for seat in told.seats)
