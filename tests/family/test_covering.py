@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.family.covering import Cover, as_sets, cover, first_cover, greedy, load_solver, maximal
+from workhold.family.covering import Cover, as_sets, cover, first_cover, greedy, load_solver, maximal, packing
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -42,6 +42,7 @@ def test_covers_are_the_fewest_and_the_first(seed: int) -> None:
     assert found.is_least and found.at_least == len(every[0])
     assert found.sets in every
     assert first_cover(sets, len(found.sets), found.sets) == every[0]
+    assert 1 <= packing(sets) <= len(every[0])
 
 
 def test_greedy_is_not_enough_where_the_largest_set_misleads() -> None:
@@ -79,3 +80,31 @@ def test_without_scipy_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     with pytest.raises(InputError, match=r"pip install 'scipy>=1\.13'"):
         load_solver()
+
+
+def test_a_bound_of_the_solver_is_rounded_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    from scipy import optimize
+
+    class Outcome:
+        x = None
+        mip_dual_bound = 2.3
+
+    monkeypatch.setattr(optimize, "milp", lambda *arguments, **options: Outcome())
+    # Greed takes four sets here, of which every two share a member.
+    sets = np.array(
+        [[1, 1, 1, 1, 0, 0, 0, 0], [0, 0, 0, 1, 1, 1, 0, 0], [0, 1, 0, 0, 0, 1, 1, 0], [0, 0, 1, 0, 1, 0, 0, 1]],
+        np.bool_,
+    )
+    assert greedy(sets) == (0, 1, 2, 3)
+    monkeypatch.setattr("workhold.family.covering.packing", lambda sets: 1)
+    assert cover(sets) == Cover((0, 1, 2, 3), 3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_larger_covers_are_proven_too(seed: int) -> None:
+    random = Random(seed)
+    sets = np.array([[random.random() < 0.08 for _ in range(60)] for _ in range(120)])
+    sets[range(60), range(60)] = True
+    found = cover(sets)
+    assert found.is_least and len(found.sets) < len(greedy(sets))
+    assert sets[list(found.sets)].any(axis=0).all()

@@ -21,7 +21,7 @@ from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING, losses, 
 from workhold.family.members import member_of, with_half_turns
 from workhold.family.plan import Holding
 from workhold.listing.ranking import measured
-from workhold.model.quality import FIGURES, LOCATION_ERROR
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.toolkit import Toolkit
@@ -214,6 +214,20 @@ def test_unfit_fixtures_are_used_when_asked_for() -> None:
     assert len(with_all.words) > len(usual.words)
     assert not unfit(usual.table.quality, result.query.tolerance).any()
     assert with_all.fixtures == usual.fixtures == len(result)
+
+
+def test_the_best_that_a_part_has_is_none_that_is_unfit() -> None:
+    result = answer(asked(TWENTY[:1], VISE)[0].query, threads=1)
+    quality = result.table.quality.copy()
+    # The best fixture hardly holds, so that it is none for a workshop.
+    quality[np.argmin(quality[:, LOCATION_ERROR]), CLOSURE_MARGIN] = 1e-6
+    changed = evolve(result, table=evolve(result.table, quality=quality))
+    fit = ~unfit(quality, result.query.tolerance)
+    table, _ = with_half_turns(changed.table.take(np.flatnonzero(fit)), result.query)
+    member = member_of("a", changed)
+    assert member.best == pytest.approx(table.quality[:, LOCATION_ERROR].min(), abs=1e-12)
+    assert member.loss.min() == 1.0
+    assert member_of("a", changed, unfit=True).best < member.best
 
 
 def test_many_fixtures_are_kept_on_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.listing.canonical_form import changes
 
-__all__ = ["REQUIREMENT", "Cover", "as_sets", "cover", "first_cover", "greedy", "load_solver", "maximal"]
+__all__ = ["REQUIREMENT", "Cover", "as_sets", "cover", "first_cover", "greedy", "load_solver", "maximal", "packing"]
 
 BoolArray = NDArray[np.bool_]
 WordArray = NDArray[np.uint64]
