@@ -20,10 +20,12 @@ from workhold.completeness import verify as verify_completely
 from workhold.contact.features import contact_features
 from workhold.files.toolkit.presets import load_vise
 from workhold.geometry.offset import trimmed_offsets
-from workhold.geometry.segment import Line
-from workhold.model.flat import Flat, flat_of
+from workhold.geometry.segment import Arc, Line
+from workhold.model.flat import Flat, flat_of, standoff
+from workhold.model.load import Load
 from workhold.model.toolkit import Toolkit
-from workhold.verification import verify_file
+from workhold.statics.loads import load_cases
+from workhold.verification import verify_file, verify_fixture
 
 TRIANGLE = [[0, 0, 0], [60, 0, 0], [20, 45, 0]]
 # An acute tooth: behind it the body of a peg whose flat lies on one side comes near to the other.
@@ -230,3 +232,26 @@ def test_a_frame_has_the_angles() -> None:
         told = [row[f"flat{number}_deg"] for number in range(1, 4)]
         wanted = [peg.flat_deg for peg in fixture.pegs if peg.carrier != "wall"]
         assert [None if np.isnan(angle) else angle for angle in told] == wanted
+
+
+def test_the_margin_counts_from_where_the_body_meets_another_face() -> None:
+    """A verification knows the ends of a flat's way as the search does."""
+    vise = Vise(9, 2, RADIUS, flat=DISTANCE)
+    for fixture in design(part(TRIANGLE), vise, best=5):
+        distance = fixture.quality["end_distance"]
+        verdicts = [
+            verify_fixture(fixture, part(TRIANGLE), vise, contact_margin=distance + more).verdict
+            for more in (-0.01, 0.01)
+        ]
+        assert verdicts == ["proven", "refuted"]
+
+
+def test_forces_act_where_the_flat_lies() -> None:
+    """The centre stands so far from a line and from an arc; with friction that is where the lever is counted from."""
+    line, arc = (next(f.segment for f in part(EAR).faces if isinstance(f.segment, kind)) for kind in (Line, Arc))
+    assert (standoff(3.0, Flat(1.5), line), standoff(3.0, Flat(1.5), arc), standoff(3.0, None, line)) == (1.5, 3.0, 3.0)
+    thick, thin = (Vise(9, 2, radius, min_gap=9, flat=DISTANCE) for radius in (RADIUS, DISTANCE))
+    fixture = design(part(TRIANGLE), thick, best=1)[0]
+    loads = [Load(((20.0, 10.0),), 100.0)]
+    told = [load_cases(fixture, part(TRIANGLE), vise, loads, None, 0.2)[0] for vise in (thick, thin)]
+    assert told[0].needed_with_friction == pytest.approx(told[1].needed_with_friction)

@@ -120,35 +120,34 @@ def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> No
         face_of_segment(workpiece, number)
 
 
+# Figures that a narrow terminal shows as well.
+FIGURES_KEPT = 3
+
+
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
     """Write the table and say which vise is best."""
     from workhold.cli.tables import Table, figure_text, heading, print_tables
     from workhold.files.toolkit.presets import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR
 
-    keys = dict.fromkeys([*ranking, FIGURES[LOCATION_ERROR].key])
+    keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in FIGURES if figure.key == key]
-    table = Table(
-        (
-            "vise",
-            ">fixtures",
-            *(f">type {name}" for name in types),
-            *(f">{heading(figure, unit)}" for figure in figures),
-        )
-    )
+    # What is told of all, then what there may be no room for: later figures, and of which types the fixtures are.
+    headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]
+    table = Table(("toolkit", ">fixtures", *headings), spare=max(len(headings) - FIGURES_KEPT, 0))
     for item in found:
         if item.figures and not item.fit:
             table.red.add(len(table.rows))
-        counts = (f"{count:,}" for count in (item.fixtures, *(item.found.get(name, 0) for name in types)))
+        counts = (f"{item.found.get(name, 0):,}" for name in types)
         values = (figure_text(f, item.figures[f.key], unit) if f.key in item.figures else "-" for f in figures)
-        table.add_row(item.name, *counts, *values)
+        table.add_row(item.name, f"{item.fixtures:,}", *values, *counts)
     print_tables(table)
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
     best = first_of(found, ranking)
     if best is not None:
-        told = [figure for figure in figures if figure.key in best.figures]
+        told = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
         words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in told)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
