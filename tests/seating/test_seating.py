@@ -344,7 +344,7 @@ def test_every_seat_lies_free_where_its_pose_says(number):
 
 @pytest.mark.parametrize("number", CASES)
 def test_curved_seats_hold_and_passes_let_go(number):
-    """Beside a seat of three contacts closing leads back; beside a pass down, but for the side on which a flat face begins."""
+    """Beside a seat of three contacts closing leads back; beside a pass down, but where a flat face begins."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, False)
@@ -359,7 +359,7 @@ def test_curved_seats_hold_and_passes_let_go(number):
 
 
 def test_a_part_like_its_mirror_image_covers_its_place_turned_over():
-    kite = Workpiece.from_loops("kite", [[[0, 0, 0], [60, 0, 0], [30, 70, 0]]])
+    kite = Workpiece.from_loops("kite", [[[0, 0, 0], [70, 30, 0], [0, 60, 0]]])
     vise = Vise(20, 2, 3)
     fixture = workhold.design(kite, vise, types="I", best=1)[0]
     told = Solver(kite, vise).of(fixture, with_cage=False)
