@@ -73,6 +73,18 @@ def test_every_bad_end_is_one_sentence(work: str, monkeypatch: pytest.MonkeyPatc
     assert str(caught.value) == said
 
 
+def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The clock of the reading starts behind it; what is refused while it prepares is told."""
+    (tmp_path / "slow_work.py").write_text("import time\nprepare = lambda: time.sleep(2)\nplain = lambda content: 1\n")
+    wanting = "from workhold.errors import InputError\ndef prepare(): raise InputError('it is missing.')\n"
+    (tmp_path / "wanting_work.py").write_text(wanting)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(apart, "WALL_FACTOR", 0.1)
+    assert run_apart("slow_work", b"", {}, "the file") == 1
+    with pytest.raises(InputError, match="it is missing"):
+        run_apart("wanting_work", b"", {}, "the file")
+
+
 def test_a_mistake_of_the_program_stays_one(work: str) -> None:
     """It is no fault of the file's, and its traceback is told."""
     with pytest.raises(RuntimeError, match="a mistake"):

@@ -28,8 +28,11 @@ __all__ = ["limit_memory", "limit_processor", "run_apart"]
 MEMORY_BYTES, MEMORY_FACTOR = 5 << 29, 50
 # Processor seconds for any file, and for every million bytes of it.
 SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
-# Wall time is longer, since the machine may be busy, and the program's own code may have to be compiled.
+# Wall time is longer, since the machine may be busy; it counts from when the process is prepared, which may mean to compile
+# the program's own code.
 WALL_FACTOR = 10.0
+# What the process writes then.
+PREPARED = b"\n"
 START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); from workhold.files.apart import answer; answer()"
 
 
@@ -62,13 +65,14 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             process.kill()
 
         clock = Timer(WALL_FACTOR * seconds, give_up)
-        clock.start()
         try:
             with suppress(BrokenPipeError):
                 process.stdin.write(json.dumps(order).encode() + b"\n" + content)
                 process.stdin.flush()
+            first = process.stdout.read(len(PREPARED))
+            clock.start()
             # Its pipe stays open until it has answered: the process ends when it closes.
-            told = process.stdout.read()
+            told = first + process.stdout.read()
             process.wait()
         finally:
             process.kill()
@@ -119,7 +123,7 @@ def answer() -> None:
     end_with_starter()
     try:
         limit_memory(order["memory"])
-        told = ("done", worked(order, content))
+        told = ("done", worked(order, content, out))
     except InputError as error:
         told = ("refused", str(error))
     except Exception as error:
@@ -132,11 +136,12 @@ def answer() -> None:
     os._exit(0)
 
 
-def worked(order: Mapping[str, Any], content: bytes) -> Any:
-    """The result of an order's work."""
+def worked(order: Mapping[str, Any], content: bytes, out: int) -> Any:
+    """The result of an order's work; once it is prepared that is written to ``out``."""
     module = import_module(order["module"])
     prepare: Callable[[], None] = module.prepare
     prepare()
+    os.write(out, PREPARED)
     limit_processor(order["seconds"])
     return module.plain(content, **order["options"])
 
