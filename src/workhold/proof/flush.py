@@ -6,6 +6,8 @@ exact numbers that their doubles are, to as many digits as it takes.
 
 from __future__ import annotations
 
+from math import inf
+
 from attrs import frozen
 from flint import arb, ctx
 
@@ -16,7 +18,15 @@ from workhold.model.toolkit import Carrier
 from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
 
-__all__ = ["Candidate", "SharpContacts", "pressing", "reactions_on_fence", "sharp_contacts"]
+__all__ = [
+    "Candidate",
+    "SharpContacts",
+    "SharpPlace",
+    "pressing",
+    "reactions_on_fence",
+    "sharp_contacts",
+    "sharp_place",
+]
 
 Point = tuple[arb, arb]
 
@@ -108,6 +118,32 @@ def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> Sh
         points = [[float(value.mid()) for value in contact[0]] for contact in contacts[1:]]
         null = [float(entry.mid()) for entry in null_of(contacts, arb(problem.wrench_length))]
     return SharpContacts(points[0], points[1], null)
+
+
+@frozen
+class SharpPlace:
+    """A contact of a peg in a row: its centre in mm along the hull edge from its start and above it, the outward normal, and
+    the distance in mm to the nearer end of its feature."""
+
+    point: list[float]
+    normal: list[float]
+    slack: float
+
+
+def sharp_place(
+    edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
+) -> SharpPlace | None:
+    """The contact of a peg in a row of a plate with a feature of the part on a hull edge, to the last digit; None where they
+    do not meet."""
+    with BALLS, ctx.workprec(PRECISIONS[-1]):
+        start, tangent, _ = line_of(problem.workpiece.hull_edges[edge], problem.workpiece.center)
+        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * row
+        contact = touched(problem.rows[feature].tolist(), start, tangent, level, False, branch)
+        if contact is None:
+            return None
+        point, normal, slacks = contact
+        least = min((float(slack.mid()) for slack in slacks), default=inf)
+        return SharpPlace([float(v.mid()) for v in point], [float(v.mid()) for v in normal], least)
 
 
 def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:

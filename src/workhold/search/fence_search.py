@@ -35,7 +35,7 @@ from workhold.kernels.contact.closure import ROUNDING
 from workhold.listing.on_fence import Pressed
 from workhold.model.fixture import Pose
 from workhold.model.toolkit import Carrier
-from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts
+from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
 from workhold.search.fence_places import Laid, Places, laid_on, places_on
 
 __all__ = ["FenceSearch"]
@@ -137,13 +137,28 @@ class FenceSearch:
         tilted = np.minimum(np.abs(laid.rows[:, AXIS_X]), np.abs(laid.rows[:, AXIS_Y])) > PARALLEL
         self.is_square = self.is_square and bool((lines & ~tilted).all())
         rows = self.rows_of(laid, problem.standing)
-        locators = places_on(laid, problem.standing, rows, False, problem.contact_margin)
+        locators = self.on_rows(edge, laid, problem.standing, rows)
         self.locators += len(locators)
         if len(locators) == 0:
             return
-        for part in self.clamps(laid, locators):
+        for part in self.clamps(edge, laid, locators):
             if len(part.line):
                 yield self.closing(edge, laid, locators, part)
+
+    def on_rows(self, edge: int, laid: Laid, chosen: tuple[int, int], rows: Array) -> Places:
+        """Contacts of pegs in rows of holes, those where a row grazes an arc told by balls."""
+        problem = self.problem
+        places = places_on(laid, chosen, rows, False, problem.contact_margin)
+        near = np.flatnonzero(places.reach > SAME_PLACE / 2)
+        kept = np.ones(len(places), np.bool_)
+        for k in near.tolist():
+            numbers = int(places.line[k]), int(places.feature[k]), float(places.branch[k])
+            sharp = sharp_place(edge, *numbers, problem, self.plate)
+            kept[k] = sharp is not None
+            if sharp is not None:
+                places.point[k], places.normal[k], places.slack[k] = sharp.point, sharp.normal, sharp.slack
+                places.reach[k], places.swing[k] = 4.0 * laid.off, 4.0 * laid.turn
+        return places.take(kept)
 
     def rows_of(self, laid: Laid, chosen: tuple[int, int]) -> Array:
         """v of the rows of holes, from the first one on, that some features reach."""
@@ -153,11 +168,11 @@ class FenceSearch:
         rows = np.arange(count if self.plate.rows is None else min(count, self.plate.rows), dtype=np.float64)
         return np.asarray(first + pitch * rows)
 
-    def clamps(self, laid: Laid, locators: Places) -> Iterator[Clamps]:
+    def clamps(self, edge: int, laid: Laid, locators: Places) -> Iterator[Clamps]:
         """Contacts of the clamp, those on columns with the locators that these are counted from."""
         problem, margin = self.problem, self.problem.contact_margin
         if self.clamp.is_along_x:
-            places = self.clear(places_on(laid, problem.moving, self.rows_of(laid, problem.moving), False, margin))
+            places = self.clear(self.on_rows(edge, laid, problem.moving, self.rows_of(laid, problem.moving)))
             together = max(TOGETHER // max(len(places), 1), 1)
             for start in range(0, len(locators), together):
                 numbers = np.arange(start, min(start + together, len(locators)))
