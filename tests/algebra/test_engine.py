@@ -38,7 +38,12 @@ def rounded(width: float, height: float, radius: float, angle: float) -> Workpie
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param("triangle_20_2", marks=pytest.mark.prove), "oblongPart_10_1", "opening_saddle_9_2_gap5"]
+    "name",
+    [
+        pytest.param("triangle_20_2", marks=pytest.mark.prove),
+        pytest.param("oblongPart_10_1", marks=pytest.mark.prove),
+        "opening_saddle_9_2_gap5",
+    ],
 )
 def test_complete_sets(name: str) -> None:
     """The engine lists what an independent method found, apart from marginal fixtures."""

@@ -23,7 +23,8 @@ SOURCE = Path(workhold.__file__).parent
 MARKS = [value for name in questions.__all__ if isinstance(value := getattr(questions, name), str)]
 FLAG = re.compile(r"(?<![\w-])--[a-z]")
 # Serving is a command alone, and pip's own option is no word of ours.
-OWN = ("web/serve.py", "files/step/library.py")
+# The report of many parts is written by a command, and has the command for each sheet.
+OWN = ("web/serve.py", "files/step/library.py", "batch/report.py")
 TWO_SQUARES = b"""<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="40mm" viewBox="0 0 90 40">
 <path d="M0 0h40v40h-40z"/><path d="M60 0h20v20h-20z"/></svg>"""
 

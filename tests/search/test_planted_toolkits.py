@@ -140,11 +140,6 @@ def is_planted(fixture: Fixture, planted: OnFence) -> bool:
     )
 
 
-def test_planted_fixtures_on_plates_are_found() -> None:
-    """Each of three."""
-    assert_found_on_plates(0, 3)
-
-
 def test_planted_fixtures_on_fences_are_found() -> None:
     """Each of a hundred."""
     assert_found_on_fences(0, 100)

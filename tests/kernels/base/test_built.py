@@ -123,7 +123,7 @@ def test_the_interpreter_goes_on_while_a_kernel_runs(library):
     """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
     distances, many = door(library, distance.outline_distances), np.zeros((1_000_000, 2))
     before = sys.getswitchinterval()
-    sys.setswitchinterval(60.0)
+    sys.setswitchinterval(4.0)
     try:
         # On a busy machine this thread may not get its turn before the kernel is done.
         assert any(counted_during(Thread(target=distances, args=(many, SQUARE))) for _ in range(20))

@@ -94,8 +94,10 @@ def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
     walk.seen("#bars .bar:nth-child(5)")
     seats = walk.count()
     page.check("#every-pair")
-    walk.search()
-    assert walk.count() > seats
+    page.click("#search")
+    more = "seats => Number(document.querySelector('#count').innerText.replace(/\\D/g, '')) > seats"
+    page.wait_for_function(more, arg=seats, timeout=SEARCH_PATIENCE)
+    walk.searched()
     page.select_option("#clamps", label="one")
     page.wait_for_selector("#pairs-box", state="hidden")
 
