@@ -94,7 +94,7 @@ def test_files_have_them() -> None:
 
 def test_a_clamp_has_none() -> None:
     """Locators with flats, the clamp's tip round."""
-    plate = Plate((16, 14), 3, flat=2, columns=5, rows=5, travel=(4, 40))
+    plate = Plate((16, 14), 3, flat=2, columns=4, rows=4, travel=(4, 40))
     fixture = held(plate)[0]
     assert fixture.pegs[3].flat_deg is None and any(peg.flat_deg is not None for peg in fixture.pegs[:3])
     rows = [line.split(",") for line in pin_list(fixture, plate, MILLIMETRE, None, None).splitlines()]

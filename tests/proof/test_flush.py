@@ -58,7 +58,11 @@ def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
         search = FenceSearch(Problem.of(Query(part, fence.changed({"directions": way.directions}))))
         tops = [p for e in search.edges for found in search.pressed(e) for p in found.locator.tolist() if e == 0]
         assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
-        assert search.escalated > 0 and not search.undecided
+        assert not search.undecided
+        laid, standing = search.laid(0), search.problem.standing
+        told = search.on_rows(0, laid, standing, search.rows_of(laid, standing))
+        top = told.point[:, 1] > 41.9
+        assert top.any() and (np.abs(told.normal[top, 0]) < 1e-12).all() and (told.reach < 1e-6).all()
 
 
 def test_a_line_that_misses_an_arc_has_no_contact() -> None:
