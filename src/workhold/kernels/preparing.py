@@ -121,11 +121,12 @@ def seats_and_passes() -> Calls:
     one, points, many = np.zeros(CONFIGURATION), np.zeros((0, 2)), np.zeros((0, CANDIDATE_LENGTH))
     rows, pegs, sides = np.zeros((0, SEGMENT_LENGTH)), np.zeros((4, 2)), np.zeros(4, np.int64)
     curves = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
-    given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides)
-    obstacles = Obstacles(rows, points, pegs, sides, 1.0, 0.0)
+    parts = np.zeros((2, 2), np.int64)
+    given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides, parts)
+    obstacles = Obstacles(rows, points, pegs, sides, parts, 1.0, 0.0)
     cells, stack, roots = np.zeros((0, CELL_LENGTH)), np.zeros((DEPTH, 2)), np.zeros((0, ROOT_LENGTH))
     none, pockets = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
-    yield clearances, (points, rows, one)
+    yield clearances, (points, rows, 0, 0, one)
     yield make_cells, (given, np.zeros((0, STRETCH_LENGTH)), cells)
     yield held_at, (none, np.zeros(0), given, np.zeros((0, 4)))
     yield three_contacts, (cells, given, stack, roots)
@@ -140,7 +141,7 @@ def seats_and_passes() -> Calls:
     yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, work, np.zeros(0, np.int8))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leaves, (np.zeros((0, 2)), rows, 1)
+    yield leaves, (np.zeros((0, 2)), obstacles, 1)
 
 
 # Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.

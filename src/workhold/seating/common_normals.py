@@ -79,13 +79,18 @@ class CommonNormal:
 
 
 def common_normals(locus: Locus) -> list[CommonNormal]:
-    """All common normals of a part, both ways round; those of parallel lines and concentric arcs, which are many, left
-    out."""
-    found = [normal for a, b in product(range(len(locus.rows)), repeat=2) for normal in of_pieces(locus.rows, a, b)]
-    for pocket, b in product(range(len(locus.pockets)), range(len(locus.rows))):
-        for normal in of_pocket(locus, pocket, b):
-            found += [normal, normal.turned]
+    """All common normals of a part from pegs that stand still to those that move; those of parallel lines and concentric
+    arcs, which are many, left out."""
+    standing, moving = range(*locus.parts[0]), range(*locus.parts[1])
+    found = [normal for a, b in product(standing, moving) for normal in of_pieces(locus.rows, a, b)]
+    for v, (piece, _) in enumerate(locus.pocket_pieces.tolist()):
+        if piece in standing:
+            found += [normal for b in moving for normal in of_pocket(locus, v, b)]
+        if piece in moving:
+            found += [normal.turned for a in standing for normal in of_pocket(locus, v, a)]
     for v, w in product(range(len(locus.pockets)), repeat=2):
+        if locus.pocket_pieces[v, 0] not in standing or locus.pocket_pieces[w, 0] not in moving:
+            continue
         (vx, vy), (wx, wy) = locus.pockets[v, :2], locus.pockets[w, :2]
         d = hypot(wx - vx, wy - vy)
         if d > SHORTEST:

@@ -40,7 +40,8 @@ class Closing:
         """What kernels are given."""
         pattern = self.pattern
         rows = np.array(self.locus.rows)
-        return Obstacles(rows, self.locus.spans, np.array(pattern.pegs), pattern.right, self.size, pattern.stop)
+        pegs = np.array(pattern.pegs), pattern.right, self.locus.parts
+        return Obstacles(rows, self.locus.spans, *pegs, self.size, pattern.stop)
 
     def run(self, configs: Array, first: float) -> tuple[Array, NDArray[np.int8]]:
         """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
@@ -53,9 +54,9 @@ class Closing:
         ends = np.zeros(len(out), np.int8)
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         work = WorkSpace(np.empty((64, 5)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
-        close_jaws(out, first, LONGEST_STEP * self.pattern.peg_radius, self.obstacles, work, ends)
+        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), self.obstacles, work, ends)
         return out, ends
 
     def escapes(self, config: Array) -> bool:
         """Whether a part can be taken straight away from all pegs, jaws as they stand, in one of many directions."""
-        return leaves(self.pattern.at(config[None])[0], np.array(self.locus.rows), DIRECTIONS)
+        return leaves(self.pattern.at(config[None])[0], self.obstacles, DIRECTIONS)

@@ -94,14 +94,24 @@ class Finder:
         along = self.rows[:, [AXIS_X, AXIS_Y]]
         return [(a, b) for a, b in product(self.lines, repeat=2) if np.abs(along[a] + along[b]).sum() <= PARALLEL]
 
+    def clearances(self, points: Array) -> Array:
+        """Distances (N, 4) in mm from the boundary of pegs at places (N, 4, 2) on the part."""
+        out = np.empty((4, len(points)))
+        for k, side in enumerate(self.pattern.right.tolist()):
+            first, end = self.locus.parts[side].tolist()
+            clearances(np.ascontiguousarray(points[:, k]), self.rows, first, end, out[k])
+        return out.T
+
+    def touch(self, contacts: list[Contact]) -> bool:
+        """Whether pegs can touch the pieces that they are said to touch."""
+        return all(self.locus.fits(self.pattern.right[peg], piece) for peg, piece in contacts)
+
     def cut(
         self, configs: Array, contacts: list[Contact], closed: bool, across: tuple[float, float] | None
     ) -> list[Family]:
         """The free runs of a set of configurations in which some contacts stay."""
         points = self.pattern.at(configs)
-        clear = np.empty((len(configs), 4))
-        for k in range(4):
-            clearances(np.ascontiguousarray(points[:, k]), self.rows, clear[:, k])
+        clear = self.clearances(points)
         good = np.asarray((clear > -TOUCHES).all(axis=1), np.bool_)
         for peg, piece in contacts:
             good &= all_contained(self.rows[piece], points[:, peg])
@@ -113,7 +123,8 @@ class Finder:
             middle = numbers[most[len(most) // 2]]
             touching = np.flatnonzero(np.abs(clear[middle]) < TOUCHES).tolist()
             known = dict(contacts)
-            told = [(peg, known.get(peg, nearest(self.locus, *points[middle, peg]))) for peg in touching]
+            sides = self.pattern.right
+            told = [(peg, known.get(peg, nearest(self.locus, sides[peg], *points[middle, peg]))) for peg in touching]
             row = np.zeros(CANDIDATE_LENGTH)
             row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
             row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
@@ -132,12 +143,11 @@ class Finder:
 
     def edge(self, inner: Array, outer: Array, contacts: list[Contact]) -> Array:
         """The last free configuration on the straight way from one that is free to one that is not."""
-        clear = np.empty(4)
         for _ in range(EDGE_HALVINGS):
             middle = (inner + outer) / 2.0
-            points = self.pattern.at(middle[None])[0]
-            clearances(points, self.rows, clear)
-            on = all(contains(self.rows[piece], *points[peg]) for peg, piece in contacts)
+            points = self.pattern.at(middle[None])
+            clear = self.clearances(points)
+            on = all(contains(self.rows[piece], *points[0, peg]) for peg, piece in contacts)
             inner, outer = (middle, outer) if on and clear.min() > -TOUCHES else (inner, middle)
         return inner
 
@@ -181,7 +191,7 @@ class Finder:
                 one, two = self.rows[a], self.rows[b]
                 ux, uy = -one[AXIS_Y], one[AXIS_X]
                 d = (two[X] - one[X]) * ux + (two[Y] - one[Y]) * uy
-                if d <= abs(rise) * (1.0 + 1e-12):
+                if d <= abs(rise) * (1.0 + 1e-12) or not self.touch([(i, a), (j, b)]):
                     continue
                 omega = asin(rise / d)
                 shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
@@ -195,7 +205,7 @@ class Finder:
                 for a, b in product(group, repeat=2):
                     one, two = (float(self.rows[k, SIGN] * self.rows[k, RADIUS]) for k in (a, b))
                     d = one + two
-                    if d <= max(abs(rise) * (1.0 + 1e-12), SHORTEST):
+                    if d <= max(abs(rise) * (1.0 + 1e-12), SHORTEST) or not self.touch([(i, a), (j, b)]):
                         continue
                     omega = asin(rise / d)
                     center = pegs[i, 0] + one * cos(omega), pegs[i, 1] + one * sin(omega)
@@ -227,7 +237,7 @@ class Finder:
                 s = -(thick + run * nx + rise * ny) / (moving * nx)
                 places = pegs[:, 0] * tx + pegs[:, 1] * ty + s * right * tx
                 contacts = [(slide.first, a), (slide.second, b), (k, other)]
-                if not self.opposes(contacts, places, moving * nx):
+                if not (self.touch(contacts) and self.opposes(contacts, places, moving * nx)):
                     continue
                 shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
                 shift -= places[k] - places[slide.first]
@@ -272,8 +282,12 @@ class Finder:
         pairs = [(p, q) for p, q in combinations(range(4), 2) if right[p] == right[q]]
         for group, (p, q) in product(self.concentric, pairs):
             for a, b in product(group, repeat=2):
+                if not self.touch([(p, a), (q, b)]):
+                    continue
                 for x, y in circles_meet(pegs[p], self.rows[a, RADIUS], pegs[q], self.rows[b, RADIUS]):
                     for c, k in product(group, np.flatnonzero(right != right[p]).tolist()):
+                        if not self.touch([(k, c)]):
+                            continue
                         square = self.rows[c, RADIUS] ** 2 - (y - pegs[k, 1]) ** 2
                         for side in (1.0, -1.0) if square >= 0.0 else ():
                             at = x + side * sqrt(square)
@@ -329,13 +343,14 @@ def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[flo
     return [(one[0] + along * ex - t * half * ey, one[1] + along * ey + t * half * ex) for t in (1.0, -1.0)]
 
 
-def nearest(locus: Locus, x: float, y: float) -> int:
-    """Number of the piece that a point on the boundary lies on."""
-    rows = locus.rows
+def nearest(locus: Locus, side: int, x: float, y: float) -> int:
+    """Number of the piece that a peg that stands still (0), or moves (1), touches at a point of its boundary."""
+    first, end = locus.parts[side].tolist()
+    rows = locus.rows[first:end]
     away = np.where(
         rows[:, IS_ARC] == 0.0,
         np.abs((x - rows[:, X]) * rows[:, AXIS_Y] - (y - rows[:, Y]) * rows[:, AXIS_X]),
         np.abs(np.hypot(x - rows[:, X], y - rows[:, Y]) - rows[:, RADIUS]),
     )
     on = np.array([contains(row, x, y) for row in rows])
-    return int(np.argmin(np.where(on, away, np.inf)))
+    return int(first + np.argmin(np.where(on, away, np.inf)))

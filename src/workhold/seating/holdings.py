@@ -88,7 +88,7 @@ class Holdings:
     @classmethod
     def of(cls, locus: Locus, pattern: Pattern) -> Holdings:
         """The holdings of a pattern on a part."""
-        holdings, slides = [pockets_held(locus)], list[Slide]()
+        holdings, slides = [pockets_held(locus, pattern.right)], list[Slide]()
         integers, reals, stretches = [np.zeros((0, CURVE_INTEGERS), np.int64)], [np.zeros((0, CURVE_REALS))], []
         stretches.append(np.zeros((0, STRETCH_LENGTH)))
         curves_before = stretches_before = 0
@@ -96,7 +96,7 @@ class Holdings:
             if pattern.right[one] != pattern.right[two]:
                 continue
             dx, dy = pattern.pegs[two] - pattern.pegs[one]
-            table = locus.curves(hypot(dx, dy))
+            table = locus.curves(hypot(dx, dy), int(pattern.right[one]))
             whole = np.array(table.curves.integers)
             whole[:, [FIRST_STRETCH, END_STRETCH]] += stretches_before
             for first, second, angle in ((one, two, atan2(dy, dx)), (two, one, atan2(dy, dx) + pi)):
@@ -122,6 +122,7 @@ class Holdings:
             np.array(locus.loose),
             np.array(pattern.pegs),
             pattern.right,
+            locus.parts,
         )
         every = np.concatenate(stretches)
         cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(locus.pockets) + 64, make_cells, given, every)
@@ -157,13 +158,18 @@ class Holdings:
         return float(min(max(psi + tau * np.ceil((low - 1e-9 - psi) / tau), low), high))
 
 
-def pockets_held(locus: Locus) -> Array:
+def pockets_held(locus: Locus, right: NDArray[np.int64]) -> Array:
     """The holdings of each peg in each pocket."""
-    count = len(locus.pockets)
-    rows = np.zeros((4 * count, HOLDING_LENGTH))
+    held = [
+        (peg, pocket)
+        for peg, side in enumerate(right.tolist())
+        for pocket, (piece, _) in enumerate(locus.pocket_pieces.tolist())
+        if locus.fits(side, piece)
+    ]
+    rows = np.zeros((len(held), HOLDING_LENGTH))
     rows[:, KIND], rows[:, SECOND_PEG] = 1.0, -1.0
-    rows[:, SOURCE], rows[:, FIRST_PEG] = np.tile(np.arange(count), 4), np.repeat(np.arange(4), count)
-    rows[:, [PIVOT_X, PIVOT_Y]] = np.tile(locus.pockets[:, :2], (4, 1))
+    rows[:, [FIRST_PEG, SOURCE]] = np.array(held).reshape(-1, 2)
+    rows[:, [PIVOT_X, PIVOT_Y]] = locus.pockets[rows[:, SOURCE].astype(np.int64), :2]
     return rows
 
 

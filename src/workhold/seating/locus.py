@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import atan2, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define
@@ -23,6 +23,7 @@ from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed
 from workhold.geometry.segment import Arc, Point, Segment, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
+from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -53,11 +54,13 @@ class Touch:
 
 @define(frozen=True, eq=False, slots=False)
 class Locus:
-    """The boundary on which the centres of pegs of one radius lie while they touch a part.
+    """The boundary on which the centres of pegs lie while they touch a part; where those that move have another radius than
+    those that stand still, both boundaries, one after the other.
 
     Parameters
     ----------
     rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
+    parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that move.
     touches : what a peg on each piece touches.
     pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
     pocket_pieces : (V, 2) their numbers.
@@ -65,21 +68,33 @@ class Locus:
     """
 
     rows: Array
+    parts: NDArray[np.int64]
     touches: tuple[Touch, ...]
     pockets: Array
     pocket_pieces: NDArray[np.int64]
     mirrored: bool = False
 
     @classmethod
-    def of(cls, workpiece: Workpiece, radius: float) -> Locus:
-        """The boundary for pegs of a radius in mm, above 0."""
-        faces = workpiece.faces
-        segments = [face.segment for face in faces]
-        pieces = [(Touch(faces[k].number, False), piece) for k, piece in trimmed_offsets(segments, radius)]
-        number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
-        pieces += [(Touch(number[corner], True), arc) for corner, arc in rolled_corners(segments, radius)]
-        rows = centered(segment_rows([piece for _, piece in pieces]), workpiece.center)
-        return cls(rows, tuple(touch for touch, _ in pieces), *pockets_of([piece for _, piece in pieces], rows))
+    def of(cls, workpiece: Workpiece, radii: tuple[float, float]) -> Locus:
+        """The boundary for pegs that stand still, and for those that move; their radii in mm, above 0."""
+        rows, touches, pockets, whose, starts = list[Array](), list[Touch](), list[Array](), list[Any](), [0]
+        for radius in dict.fromkeys(radii):
+            touched = touched_pieces(workpiece, radius)
+            pieces = [piece for _, piece in touched]
+            rows.append(centered(segment_rows(pieces), workpiece.center))
+            touches += [touch for touch, _ in touched]
+            places, numbers = pockets_of(pieces, rows[-1])
+            pockets.append(places)
+            whose.append(numbers + starts[-1])
+            starts.append(starts[-1] + len(pieces))
+        every = np.concatenate(rows)
+        every.setflags(write=False)
+        parts = np.array([starts[:2], starts[-2:]], dtype=np.int64)
+        return cls(every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose))
+
+    def fits(self, side: int, piece: int) -> bool:
+        """Whether pegs that stand still (0), or that move (1), can touch a piece."""
+        return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
 
     @cached_property
     def loose(self) -> Array:
@@ -103,18 +118,23 @@ class Locus:
         return out
 
     @cached_property
-    def tables(self) -> dict[float, CurveTable]:
-        """Chord curves by the length of the chord, as far as they have been asked for."""
+    def tables(self) -> dict[tuple[float, int], CurveTable]:
+        """Chord curves by the length of the chord and the first piece, as far as they have been asked for."""
         return {}
 
-    def curves(self, length: float) -> CurveTable:
-        """The curves of chords of a length in mm, tail on the piece of the lower number, their direction being the angle."""
-        key = round(length, 9)
+    def curves(self, length: float, side: int) -> CurveTable:
+        """The curves of chords of a length in mm of pegs that stand still (0), or that move (1), tail on the piece of the
+        lower number, their direction being the angle."""
+        first, end = self.parts[side].tolist()
+        key = round(length, 9), first
         if key not in self.tables:
             steps = LatticeSteps(
                 np.array([length]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
             )
-            self.tables[key] = curve_table(self.loose, steps)
+            table = curve_table(self.loose[first:end], steps)
+            for integers in (table.curves.integers, table.sliding_pairs.integers):
+                integers[:, [TAIL, HEAD]] += first
+            self.tables[key] = table
         return self.tables[key]
 
     def normal(self, number: int, x: float, y: float) -> tuple[float, float]:
@@ -143,7 +163,16 @@ class Locus:
         rows[~is_arc, AXIS_Y] *= -1.0
         rows.setflags(write=False)
         pockets = self.pockets * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
-        return Locus(rows, self.touches, pockets, self.pocket_pieces, not self.mirrored)
+        return Locus(rows, self.parts, self.touches, pockets, self.pocket_pieces, not self.mirrored)
+
+
+def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Segment]]:
+    """The boundary for pegs of a radius in mm, and what they touch on each piece."""
+    faces = workpiece.faces
+    segments = [face.segment for face in faces]
+    pieces = [(Touch(faces[k].number, False), piece) for k, piece in trimmed_offsets(segments, radius)]
+    number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
+    return pieces + [(Touch(number[corner], True), arc) for corner, arc in rolled_corners(segments, radius)]
 
 
 def contains(row: Array, x: float, y: float) -> bool:

@@ -26,13 +26,13 @@ class Pattern:
     ----------
     pegs : (4, 2) their places in mm at jaw separation 0.
     right : (4,) 1 for those of the right jaw, 0 for others.
-    peg_radius : in mm.
+    radii : in mm, of the pegs that stand still and of those that move.
     gap : smallest distance in mm along x from a left peg to a right one.
     """
 
     pegs: Array
     right: NDArray[np.int64]
-    peg_radius: float
+    radii: tuple[float, float]
     gap: float
 
     @classmethod
@@ -53,7 +53,7 @@ class Pattern:
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs], dtype=np.int64)
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs], dtype=np.float64)
         places[:, 0] -= right * fixture.jaw_separation
-        return cls(places, right, toolkit.peg_radius, toolkit.gap)
+        return cls(places, right, (toolkit.peg_radius, toolkit.peg_radius), toolkit.gap)
 
     @property
     def stop(self) -> float:
@@ -65,7 +65,7 @@ class Pattern:
         """What patterns share that differ by a shift of all pegs and by their order."""
         order = np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
         moved = np.rint((self.pegs[order] - self.pegs[order[0]]) / SAME_PATTERN)
-        return (self.peg_radius, self.gap, *self.right[order].tolist(), *(moved + 0.0).ravel().tolist())
+        return (*self.radii, self.gap, *self.right[order].tolist(), *(moved + 0.0).ravel().tolist())
 
     def at(self, configs: Array) -> Array:
         """Places (N, 4, 2) of the pegs on the part, in configurations (N, 4) of theta, x, y and S."""

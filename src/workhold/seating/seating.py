@@ -58,7 +58,7 @@ class Solver:
 
     workpiece: Workpiece
     toolkit: Toolkit
-    loci: dict[float, Locus] = field(factory=dict)
+    loci: dict[tuple[float, float], Locus] = field(factory=dict)
     solved: dict[tuple[object, ...], tuple[Pattern, tuple[Tree, Tree]]] = field(factory=dict)
     outline: Silhouette = field(init=False)
 
@@ -67,9 +67,9 @@ class Solver:
 
     def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
         """The jaws of a pattern about the part, also turned over."""
-        if pattern.peg_radius not in self.loci:
-            self.loci[pattern.peg_radius] = Locus.of(self.workpiece, pattern.peg_radius)
-        locus = self.loci[pattern.peg_radius]
+        if pattern.radii not in self.loci:
+            self.loci[pattern.radii] = Locus.of(self.workpiece, pattern.radii)
+        locus = self.loci[pattern.radii]
         return Closing(locus.turned_over if turned_over else locus, pattern, self.outline.arm)
 
     def trees(self, pattern: Pattern) -> tuple[Tree, Tree]:
@@ -262,7 +262,7 @@ class Reading:
             peg = int(row[PEG + k])
             nx, ny = closing.locus.normal(int(row[PIECE + k]), *points[peg])
             normals.append((c * nx - s * ny, s * nx + c * ny))
-            x, y = points[peg] - self.pattern.peg_radius * np.array([nx, ny])
+            x, y = points[peg] - self.pattern.radii[closing.pattern.right[peg]] * np.array([nx, ny])
             contacts.append((c * x - s * y, s * x + c * y))
             right.append(int(closing.pattern.right[peg]))
         return sticking_friction(np.array(contacts), np.array(normals), np.array(right))

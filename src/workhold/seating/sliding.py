@@ -125,7 +125,8 @@ def three_contacts(track: Track, locus: Locus, pattern: Pattern, peg: int) -> li
     out: list[Array] = []
     row, (ux, uy) = track.row, track.up
     above = pattern.pegs[peg, 1] - pattern.pegs[track.slide.first, 1]
-    for number, piece in enumerate(locus.rows):
+    for number in range(*locus.parts[pattern.right[peg]]):
+        piece = locus.rows[number]
         found: list[tuple[float, float, float]] = []
         curved = piece[IS_ARC] != 0.0
         bend = piece[SIGN] * piece[RADIUS] if curved else 0.0
@@ -208,7 +209,8 @@ def three_and_one(track: Track, locus: Locus, pattern: Pattern, holdings: Holdin
             continue
         dx, dy = pattern.pegs[third] - pattern.pegs[slide.first]
         ox, oy = c * dx - s * dy, s * dx + c * dy
-        for number, piece in enumerate(locus.rows):
+        for number in range(*locus.parts[jaw]):
+            piece = locus.rows[number]
             for t in stopped(track, piece, ox, oy):
                 x, y = track.at(t)
                 if contains(piece, x + ox, y + oy):

@@ -47,8 +47,12 @@ def at_tangencies(locus: Locus, pattern: Pattern) -> list[Array]:
             continue
         dx, dy = pattern.pegs[j] - pattern.pegs[i]
         for a, b, side in product((a for a in lines if opposed[a]), arcs, (1.0, -1.0)):
+            if not (locus.fits(pattern.right[i], a) and locus.fits(pattern.right[i], b)):
+                continue
             for tail, alpha in tangencies(locus.rows[a], locus.rows[b], hypot(dx, dy), side):
                 for k, c in product(np.flatnonzero(pattern.right != pattern.right[i]).tolist(), opposed[a]):
+                    if not locus.fits(pattern.right[k], c):
+                        continue
                     theta = atan2(dy, dx) - alpha
                     out += with_third(locus, pattern, theta, tail, (i, j, k), (a, b, c), hypot(dx, dy))
     return out

@@ -163,7 +163,7 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
         if given.right[k] == jaw:
             continue
         level = given.pegs[k, 1] - fixed[PLACE_Y]
-        for number in range(given.rows.shape[0]):
+        for number in range(given.parts[given.right[k], 0], given.parts[given.right[k], 1]):
             piece = given.rows[number]
             # The turned piece, level with the peg.
             cx, up = cosine * piece[X] - sine * piece[Y], level - (sine * piece[X] + cosine * piece[Y])
@@ -273,7 +273,9 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
             if not touching:
                 qx = given.pegs[peg, 0] + given.right[peg] * row[SEPARATION] - row[PLACE_X]
                 qy = given.pegs[peg, 1] - row[PLACE_Y]
-                row[CLEAR] = min(row[CLEAR], clearance(cosine * qx + sine * qy, cosine * qy - sine * qx, given.rows))
+                first, end = given.parts[given.right[peg], 0], given.parts[given.right[peg], 1]
+                x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
+                row[CLEAR] = min(row[CLEAR], clearance(x, y, given.rows, first, end))
 
 
 @inner

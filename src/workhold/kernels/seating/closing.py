@@ -37,7 +37,8 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
         moving = float(obstacles.right[peg])
         qx, qy = obstacles.pegs[peg, 0] + moving * config[3] - config[1], obstacles.pegs[peg, 1] - config[2]
         x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
-        for k in range(obstacles.rows.shape[0]):
+        side = obstacles.right[peg]
+        for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
             row = obstacles.rows[k]
             dx, dy = x - row[X], y - row[Y]
             if row[IS_ARC] == 0.0:

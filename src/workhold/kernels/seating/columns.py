@@ -44,6 +44,7 @@ class Given(NamedTuple):
     rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
     pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
     right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.
+    parts : (2, 2) first and past-the-last number of the pieces that pegs of the left jaw, and of the right one, touch.
     """
 
     holdings: NDArray[np.float64]
@@ -52,6 +53,7 @@ class Given(NamedTuple):
     rows: NDArray[np.float64]
     pegs: NDArray[np.float64]
     right: NDArray[np.int64]
+    parts: NDArray[np.int64]
 
 
 class Obstacles(NamedTuple):
@@ -61,7 +63,7 @@ class Obstacles(NamedTuple):
     ----------
     rows : (N, 10) pieces.
     spans : (N, 2) lowest and highest parameter at which each counts: past a pocket it counts a little further.
-    pegs, right : as of ``Given``.
+    pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
     stop : the smallest jaw separation, in mm.
     """
@@ -70,6 +72,7 @@ class Obstacles(NamedTuple):
     spans: NDArray[np.float64]
     pegs: NDArray[np.float64]
     right: NDArray[np.int64]
+    parts: NDArray[np.int64]
     size: float
     stop: float
 

@@ -43,7 +43,7 @@ def collect_crossings(config: Array, theta: float, y: float, jaw: int, obstacles
             continue
         ahead = obstacles.pegs[k, 0] + obstacles.right[k] * config[3] - config[1]
         level = obstacles.pegs[k, 1] - y
-        for piece in range(obstacles.rows.shape[0]):
+        for piece in range(obstacles.parts[jaw, 0], obstacles.parts[jaw, 1]):
             row = obstacles.rows[piece]
             cx, up = cosine * row[X] - sine * row[Y], level - (sine * row[X] + cosine * row[Y])
             ax, ay = cosine * row[AXIS_X] - sine * row[AXIS_Y], sine * row[AXIS_X] + cosine * row[AXIS_Y]

@@ -181,7 +181,7 @@ def third_of_jaw(cells: Array, given: Given, stack: Array, out: Array) -> int:
         for third in range(4):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
-            for piece in range(given.rows.shape[0]):
+            for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:
                     return -1

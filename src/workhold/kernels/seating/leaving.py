@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.pieces import angle_from_middle
 
 Array = NDArray[np.float64]
@@ -38,14 +39,15 @@ def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
 
 
 @compiled
-def leaves(points: Array, rows: Array, ways: int) -> bool:
+def leaves(points: Array, obstacles: Obstacles, ways: int) -> bool:
     """Whether four pegs (4, 2) seen from the part can all move away in one of some directions without entering it."""
     for k in range(ways):
         wx, wy = cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)
         blocked = False
         for p in range(points.shape[0]):
-            for piece in range(rows.shape[0]):
-                blocked = blocked or meets(rows[piece], points[p, 0], points[p, 1], wx, wy)
+            side = obstacles.right[p]
+            for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
+                blocked = blocked or meets(obstacles.rows[piece], points[p, 0], points[p, 1], wx, wy)
             if blocked:
                 break
         if not blocked:

@@ -87,10 +87,10 @@ def distance_to(row: Array, x: float, y: float) -> float:
 
 
 @inner
-def clearance(x: float, y: float, rows: Array) -> float:
-    """Distance in mm of a peg's centre from the boundary, negative where the peg is in the part."""
+def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
+    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part."""
     best = inf
-    for k in range(rows.shape[0]):
+    for k in range(first, end):
         row = rows[k]
         # What cannot be nearer: its carrier is not.
         dx, dy = x - row[X], y - row[Y]
@@ -103,7 +103,7 @@ def clearance(x: float, y: float, rows: Array) -> float:
 
 
 @compiled
-def clearances(points: Array, rows: Array, out: Array) -> None:
-    """Distances in mm (M,) of peg centres (M, 2) from the boundary of (N, 10) pieces, written to ``out``."""
+def clearances(points: Array, rows: Array, first: int, end: int, out: Array) -> None:
+    """Distances in mm (M,) of peg centres (M, 2) from the boundary of pieces ``first`` to ``end``, written to ``out``."""
     for k in range(points.shape[0]):
-        out[k] = clearance(points[k, 0], points[k, 1], rows)
+        out[k] = clearance(points[k, 0], points[k, 1], rows, first, end)

@@ -229,7 +229,7 @@ def three_contacts(cells: Array, given: Given, stack: Array, out: Array) -> int:
         for third in range(4):
             if given.right[third] == given.right[int(holding[FIRST_PEG])]:
                 continue
-            for piece in range(given.rows.shape[0]):
+            for piece in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
                 c = given.rows[piece]
                 # Where its normal is that of another contact throughout, the one that is left has no force.
                 if share_normals(a, c) or share_normals(b, c):
