@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import copy
+import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import workhold
 from workhold import Result, Workpiece
+from workhold.completeness import verify as verify_completely
+from workhold.verification import Verification, verify_file
 
 TESTS = Path(__file__).parent
 # A mouth wide enough for the clamp and a locator behind it.
@@ -44,3 +50,24 @@ def check_and_read_back(result: Result, folder: Path) -> None:
     workhold.save(workhold.open(folder / "result.npz"), folder / "columns.json")
     text = (folder / "result.json").read_bytes()
     assert (folder / "again.json").read_bytes() == text == (folder / "columns.json").read_bytes()
+
+
+def assert_all_proven(result: Result, folder: Path, search_files: bool = False) -> None:
+    """Everything that a search lists is proven, as a result and in files of both forms, which say the same; and so it is
+    when it is searched again, for the files if asked for."""
+    for source in (result, folder / "r.json", folder / "r.npz"):
+        searched = search_files or isinstance(source, Result)
+        if isinstance(source, Path):
+            workhold.save(result, source)
+        outcome = verify_completely(source, complete=searched)
+        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
+        assert outcome.faults == () and outcome.bits == 128 and outcome.is_compared == searched
+
+
+def verify_edited(data: dict[str, Any], edit: Callable[[dict[str, Any]], object], folder: Path) -> Verification:
+    """Verify a result file of some JSON after an edit of it."""
+    content = copy.deepcopy(data)
+    edit(content)
+    path = folder / "edited.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    return verify_file(path)

@@ -106,41 +106,13 @@ def plant(seed: int) -> Plant | None:
     corners = half_plane_polygon(normals, (touches * normals).sum(axis=1))
     if corners is None:
         return None
-    order = np.argsort(np.arctan2(normals[:, 1], normals[:, 0]))
-    vertices: list[list[float]] = []
-    names = {}
-    for k, peg in enumerate(order):
-        start, end = corners[k - 1], corners[k]
-        tangent = np.array([-normals[peg, 1], normals[peg, 0]])
-        if (touches[peg] - start) @ tangent < 0.5 or (end - touches[peg]) @ tangent < 0.5:
-            return None
-        vertices_of_side = side(random, start, end, touches[peg], normals[peg], vise.peg_radius)
-        names[int(peg)] = len(vertices) + (1 if len(vertices_of_side) == 3 else 0)
-        vertices += vertices_of_side
-    return drawn(random, vise, pegs, separation, np.array(vertices), names, lefts)
-
-
-def drawn(
-    random: np.random.Generator,
-    vise: Vise,
-    pegs: list[dict[str, Any]],
-    separation: float,
-    vertices: Array,
-    names: dict[int, int],
-    lefts: int,
-) -> Plant | None:
-    """Draw the part in a frame of its own and name the touched faces."""
-    theta = float(random.uniform(0, 2 * pi))
-    shift = random.uniform(-50, 50, 2)
-    c, s = cos(theta), sin(theta)
-    # The pose maps q to R(theta) q + shift, so the drawing is R(-theta) (p - shift).
-    moved = (vertices[:, :2] - shift) @ np.array([[c, -s], [s, c]])
-    try:
-        workpiece = Workpiece.from_loops("planted", [np.column_stack([moved, vertices[:, 2]])])
-    except InputError:
+    sides = all_sides(random, normals, touches, corners, vise.peg_radius)
+    part = None if sides is None else drawn(random, sides[0])
+    if sides is None or part is None:
         return None
+    workpiece, theta, shift = part
     for k, peg in enumerate(pegs):
-        peg["segment"] = names[k]
+        peg["segment"] = sides[1][k]
     fixture = {
         "type": "I" if lefts == 2 else "II",
         "pegs": pegs,
@@ -148,3 +120,36 @@ def drawn(
         "jaw_separation": separation,
     }
     return Plant(workpiece, vise, fixture)
+
+
+def all_sides(
+    random: np.random.Generator, normals: Array, touches: Array, corners: Array, radius: float, plain: int = -1
+) -> tuple[Array, dict[int, int]] | None:
+    """Vertices of a part within the corners of half planes, and the segment that touches at each of the touches; that of the
+    number ``plain`` is the whole line. None where a touch is at a corner."""
+    vertices: list[list[float]] = []
+    names = {}
+    for k, number in enumerate(np.argsort(np.arctan2(normals[:, 1], normals[:, 0])).tolist()):
+        start, end, touch, normal = corners[k - 1], corners[k], touches[number], normals[number]
+        if number == plain:
+            vertices.append([*start, 0.0])
+            continue
+        tangent = np.array([-normal[1], normal[0]])
+        if (touch - start) @ tangent < 0.5 or (end - touch) @ tangent < 0.5:
+            return None
+        of_side = side(random, start, end, touch, normal, radius)
+        names[number] = len(vertices) + (1 if len(of_side) == 3 else 0)
+        vertices += of_side
+    return np.array(vertices), names
+
+
+def drawn(random: np.random.Generator, vertices: Array) -> tuple[Workpiece, float, Array] | None:
+    """The part in a frame of its own, with the orientation in radians and the place at which it lies as it was; or None."""
+    theta, shift = float(random.uniform(0, 2 * pi)), random.uniform(-50, 50, 2)
+    c, s = cos(theta), sin(theta)
+    # The pose maps q to R(theta) q + shift, so the drawing is R(-theta) (p - shift).
+    moved = (vertices[:, :2] - shift) @ np.array([[c, -s], [s, c]])
+    try:
+        return Workpiece.from_loops("planted", [np.column_stack([moved, vertices[:, 2]])]), theta, shift
+    except InputError:
+        return None

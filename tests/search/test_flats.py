@@ -14,9 +14,9 @@ import pytest
 from attrs import evolve
 
 import workhold
-from workhold import Fence, Fixture, InputError, Plate, Query, Result, Vise, Workpiece, design
+from toolkit_results import NOTCHED, assert_all_proven, part
+from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
 from workhold.algebra.engine import answer_by_algebra
-from workhold.completeness import verify as verify_completely
 from workhold.contact.features import contact_features
 from workhold.files.toolkit.presets import load_vise
 from workhold.geometry.offset import trimmed_offsets
@@ -30,14 +30,8 @@ from workhold.verification import verify_file, verify_fixture
 TRIANGLE = [[0, 0, 0], [60, 0, 0], [20, 45, 0]]
 # An acute tooth: behind it the body of a peg whose flat lies on one side comes near to the other.
 TOOTH = [[0, 0, 0], [64, 4, 0], [30, 18, 0], [36, 44, 0], [2, 40, 0]]
-NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
 EAR = [[0, 0, 0], [50, 0, 0], [50, 30, 1], [0, 30, 0]]
 RADIUS, DISTANCE = 3.0, 1.5
-
-
-def part(loop: Any) -> Workpiece:
-    """A part of one loop."""
-    return Workpiece.from_loops("part", [loop])
 
 
 def key(fixture: Fixture) -> tuple[Any, ...]:
@@ -123,14 +117,9 @@ TOOLKITS = [
 def test_everything_listed_is_proven_and_written(toolkit: Toolkit, tmp_path: Path) -> None:
     """In files of both forms; the angles in the file are those at which the flats lie on their faces."""
     result = design(part(NOTCHED), toolkit, best=25)
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-            again = workhold.open(source)
-            assert [key(one) for one in again] == [key(one) for one in result] and again.toolkit == toolkit
-        outcome = verify_completely(source, complete=isinstance(source, Result))
-        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
-        assert outcome.faults == ()
+    assert_all_proven(result, tmp_path)
+    for again in map(workhold.open, (tmp_path / "r.json", tmp_path / "r.npz")):
+        assert [key(one) for one in again] == [key(one) for one in result] and again.toolkit == toolkit
     data = json.loads((tmp_path / "r.json").read_text())
     standing = [peg for peg in result[0].pegs if peg.carrier != "wall"]
     assert data["fixtures"][0]["flats"] == [peg.flat_deg for peg in standing]

@@ -9,10 +9,10 @@ from math import pi
 import numpy as np
 import pytest
 from attrs import frozen
-from planting import Array, half_plane_polygon, plant, side
+from planting import Array, all_sides, drawn, half_plane_polygon, plant
 
 from fixture_sets import Judge
-from workhold import Fence, Fixture, InputError, Plate, Workpiece, design
+from workhold import Fence, Fixture, Plate, Workpiece, design
 
 # How far a place may be off that is the planted one, in mm and degrees.
 NEAR = 1e-6
@@ -78,32 +78,15 @@ def plant_on_fence(seed: int) -> OnFence | None:
     corners = half_plane_polygon(normals, (touches * normals).sum(axis=1))
     if corners is None or not presses(normals, touches, corners):
         return None
-    order = np.argsort(np.arctan2(normals[:, 1], normals[:, 0]))
-    vertices: list[list[float]] = []
-    names = {}
-    for k, which in enumerate(order):
-        start, end = corners[k - 1], corners[k]
-        tangent = np.array([-normals[which, 1], normals[which, 0]])
-        if which == 0:
-            vertices.append([*start, 0.0])
-            continue
-        if (touches[which] - start) @ tangent < 0.5 or (end - touches[which]) @ tangent < 0.5:
-            return None
-        drawn = side(random, start, end, touches[which], normals[which], radius)
-        names[int(which)] = len(vertices) + (1 if len(drawn) == 3 else 0)
-        vertices += drawn
+    sides = all_sides(random, normals, touches, corners, radius, plain=0)
     # Around a peg in a hollow the part reaches out, and may reach below the fence.
-    if min(y for _, y, _ in vertices) < -1e-9:
+    if sides is None or sides[0][:, 1].min() < -1e-9:
         return None
-    theta, shift = float(random.uniform(0, 2 * pi)), random.uniform(-50, 50, 2)
-    moved = (np.array(vertices)[:, :2] - shift) @ np.array(
-        [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
-    )
-    try:
-        workpiece = Workpiece.from_loops("planted", [np.column_stack([moved, np.array(vertices)[:, 2]])])
-    except InputError:
+    part = drawn(random, sides[0])
+    if part is None:
         return None
-    return OnFence(workpiece, fence, (names[1], names[2]), rows, ahead, float(np.degrees(theta)))
+    workpiece, theta, _ = part
+    return OnFence(workpiece, fence, (sides[1][1], sides[1][2]), rows, ahead, float(np.degrees(theta)))
 
 
 def presses(normals: Array, touches: Array, corners: Array) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import io
 import json
 from collections.abc import Callable
@@ -13,10 +12,11 @@ import attrs
 import numpy as np
 import pytest
 
+from toolkit_results import verify_edited
 from workhold import Result, Vise, design, load
 from workhold.files.result.writer import write_result_to
 from workhold.model.quality import TILT
-from workhold.verification import Verification, verify_file
+from workhold.verification import Verification
 
 Data = dict[str, Any]
 
@@ -48,11 +48,4 @@ def widget_data(widget_result: Result) -> Data:
 def verified(widget_data: Data, tmp_path: Path) -> Callable[[Callable[[Data], object]], Verification]:
     """Verify that file after an edit of its JSON."""
 
-    def edited(edit: Callable[[Data], object]) -> Verification:
-        data = copy.deepcopy(widget_data)
-        edit(data)
-        path = tmp_path / "edited.json"
-        path.write_text(json.dumps(data), encoding="utf-8")
-        return verify_file(path)
-
-    return edited
+    return lambda edit: verify_edited(widget_data, edit, tmp_path)

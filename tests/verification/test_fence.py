@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +12,7 @@ import pytest
 from attrs import evolve
 
 import workhold
+from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, Query, Result, Workpiece, answer, design
 from workhold.completeness import verify as verify_completely
 from workhold.model.load import Load
@@ -20,7 +20,7 @@ from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.search.fence_places import Places
 from workhold.search.fence_search import FenceSearch
-from workhold.verification import Verification, verify, verify_file, verify_fixture
+from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -32,11 +32,6 @@ NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 4
 CUT = [[50, 0, 0], [58, 40, 0], [-6, 36, 0], [0, 0, 0], [25, 12, 0]]
 ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
 LIMITED = Fence((10, 8), 3, columns=7, rows=7, clamp_radius=2.5, travel=(4, 26), wall_offset=6)
-
-
-def part(loop: list[list[float]]) -> Workpiece:
-    """A part of one loop."""
-    return Workpiece.from_loops("part", [loop])
 
 
 @pytest.fixture(scope="module")
@@ -51,14 +46,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     workhold.save(result, tmp_path / "r.json")
     data = json.loads((tmp_path / "r.json").read_text())
 
-    def verified(edit: Edit) -> Verification:
-        content = copy.deepcopy(data)
-        edit(content)
-        path = tmp_path / "edited.json"
-        path.write_text(json.dumps(content))
-        return verify_file(path)
-
-    return verified
+    return lambda edit: verify_edited(data, edit, tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -81,12 +69,7 @@ def test_everything_a_search_lists_is_proven(loop: Any, fields: Data, asked: Dat
     """As a result and in files of both forms, which say the same; and so it is when it is searched again."""
     result = design(part(loop), Fence(peg_radius=3, wall_offset=5, **fields), **asked)
     assert len(result) >= 5
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-        outcome = verify_completely(source, complete=True)
-        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
-        assert outcome.faults == () and outcome.is_compared and outcome.bits == 128
+    assert_all_proven(result, tmp_path, search_files=True)
 
 
 def clamp(data: Data) -> Data:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -13,13 +12,13 @@ import pytest
 from attrs import evolve
 
 import workhold
-from workhold import Fence, InputError, Result, Workpiece, design
-from workhold.completeness import verify as verify_completely
+from toolkit_results import assert_all_proven, part, verify_edited
+from workhold import Fence, InputError, Result, design
 from workhold.listing.paired import PairedFixtures
 from workhold.model.load import Load
 from workhold.model.proof import Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.verification import Verification, verify, verify_file, verify_fixture
+from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.kinds import hardware_of
 from workhold.verification.repeats import Seen
 from workhold.verification.undecided import undecided_faults
@@ -31,11 +30,6 @@ BLOCK = [[0, 0, 0], [46, 0, 0], [46, 30, 0], [0, 30, 0]]
 ANGLE = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [22, 20, 0], [22, 58, 0], [0, 58, 0]]
 EAR = [[0, 0, 0], [50, 0, 0], [50, 30, 1], [0, 30, 0]]
 ALL = [("-x", "-y"), ("+x", "-y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y")]
-
-
-def part(loop: Any) -> Workpiece:
-    """A part of one loop."""
-    return Workpiece.from_loops("part", [loop])
 
 
 def fence(**fields: Any) -> Fence:
@@ -63,13 +57,7 @@ def test_everything_a_search_lists_is_proven(loop: Any, toolkit: Fence, asked: D
     """With how many pairs there are at each seat and that none is better; in files of both forms, and searched again."""
     result = design(part(loop), toolkit, **asked)
     assert len(result) >= 8
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-        outcome = verify_completely(source, complete=isinstance(source, Result))
-        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
-        assert outcome.faults == () and outcome.bits == 128
-        assert outcome.is_compared == isinstance(source, Result)
+    assert_all_proven(result, tmp_path)
 
 
 @pytest.fixture(scope="module")
@@ -92,14 +80,7 @@ def data(results: dict[str, Result], tmp_path_factory: pytest.TempPathFactory) -
 def edited(data: Data, tmp_path: Path) -> Callable[[Edit], Verification]:
     """Verify the file after an edit of its JSON."""
 
-    def verified(edit: Edit) -> Verification:
-        content = copy.deepcopy(data)
-        edit(content)
-        path = tmp_path / "edited.json"
-        path.write_text(json.dumps(content))
-        return verify_file(path)
-
-    return verified
+    return lambda edit: verify_edited(data, edit, tmp_path)
 
 
 def plus(values: Any, place: Any, by: float) -> None:

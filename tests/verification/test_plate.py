@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -16,9 +15,9 @@ from flint import arb
 import check_toolkit
 import workhold
 from strategies import random_outline
+from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
-from workhold import Fixture, InputError, Plate, Pose, Query, Result, Workpiece, answer, design
-from workhold.completeness import verify as verify_completely
+from workhold import Fixture, InputError, Plate, Pose, Query, Result, answer, design
 from workhold.listing.ways import joined_ways
 from workhold.model.load import Load
 from workhold.model.notes import no_fixture_notes, undecided_note
@@ -37,11 +36,6 @@ Edit = Callable[[Data], object]
 NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
 POCKETED = [[0, 0, 0], [70, 0, 0], [76, 44, 0], [52, 44, 0], [52, 20, 0], [24, 20, 0], [20, 44, 0], [-3, 44, 0]]
 LIMITED = Plate((20, 16), 3, columns=7, rows=7, clamp_radius=4, travel=(4, 26), directions=("-x", "+y"))
-
-
-def part(loop: list[list[float]]) -> Workpiece:
-    """A part of one loop."""
-    return Workpiece.from_loops("part", [loop])
 
 
 @pytest.fixture(scope="module")
@@ -67,14 +61,7 @@ def written(result: Result, path: Path) -> Data:
 def edited(data: Data, tmp_path: Path) -> Callable[[Edit], Verification]:
     """Verify that file after an edit of its JSON."""
 
-    def verified(edit: Edit) -> Verification:
-        content = copy.deepcopy(data)
-        edit(content)
-        path = tmp_path / "edited.json"
-        path.write_text(json.dumps(content))
-        return verify_file(path)
-
-    return verified
+    return lambda edit: verify_edited(data, edit, tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -97,12 +84,7 @@ def test_everything_a_search_lists_is_proven(loop: Any, fields: Data, asked: Dat
     """As a result and in files of both forms, which say the same; and so it is when it is searched again."""
     result = design(part(loop), Plate(peg_radius=3, **fields), **asked)
     assert len(result) >= 10
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-        outcome = verify_completely(source, complete=True)
-        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
-        assert outcome.faults == () and outcome.is_compared and outcome.bits == 128
+    assert_all_proven(result, tmp_path, search_files=True)
 
 
 def fixture_with(data: Data, direction: str) -> Data:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Callable
 from itertools import pairwise
@@ -16,15 +15,15 @@ import pytest
 from flint import arb
 
 import workhold
+from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
-from workhold.completeness import verify as verify_completely
 from workhold.listing.paired import PairedFixtures
 from workhold.model.fixture import Pair, Peg
 from workhold.model.load import Load
 from workhold.model.notes import no_pair_note
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.verification import Verification, verify, verify_file, verify_fixture
+from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.contacts import Pose as Balls
 from workhold.verification.kinds import hardware_of
 from workhold.verification.outline import Outline
@@ -42,11 +41,6 @@ BLOCK = [[0, 0, 0], [46, 0, 0], [46, 30, 0], [0, 30, 0]]
 ANGLE = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [22, 20, 0], [22, 58, 0], [0, 58, 0]]
 EAR = [[0, 0, 0], [50, 0, 0], [50, 30, 1], [0, 30, 0]]
 SMALL: Data = {"pitch": (20, 16), "peg_radius": 3, "columns": 4, "rows": 4}
-
-
-def part(loop: Any) -> Workpiece:
-    """A part of one loop."""
-    return Workpiece.from_loops("part", [loop])
 
 
 def plate(**fields: Any) -> Plate:
@@ -74,13 +68,7 @@ def test_everything_a_search_lists_is_proven(loop: Any, toolkit: Plate, asked: D
     """With how many pairs there are at each seat and that none is better; in files of both forms, and searched again."""
     result = design(part(loop), toolkit, **asked)
     assert len(result) >= 10
-    for source in (result, tmp_path / "r.json", tmp_path / "r.npz"):
-        if isinstance(source, Path):
-            workhold.save(result, source)
-        outcome = verify_completely(source, complete=isinstance(source, Result))
-        assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
-        assert outcome.faults == () and outcome.bits == 128
-        assert outcome.is_compared == isinstance(source, Result)
+    assert_all_proven(result, tmp_path)
 
 
 def test_a_part_that_is_never_held_has_a_note() -> None:
@@ -120,11 +108,7 @@ def edited(data: dict[str, Data], tmp_path: Path) -> Callable[..., Verification]
     """Verify such a file after an edit of its JSON."""
 
     def verified(edit: Edit, listing: str = "best") -> Verification:
-        content = copy.deepcopy(data[listing])
-        edit(content)
-        path = tmp_path / "edited.json"
-        path.write_text(json.dumps(content))
-        return verify_file(path)
+        return verify_edited(data[listing], edit, tmp_path)
 
     return verified
 
