@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
 from math import pi, tau
+from queue import Empty, SimpleQueue
 from threading import Event
 
 import numpy as np
@@ -153,6 +154,8 @@ def finished_blocks(
     margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
+    # Told by the threads themselves: asking each future what has become of it takes longer than a small block.
+    ended = SimpleQueue[Future[Records]]()
     with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:
         try:
             while True:
@@ -166,13 +169,17 @@ def finished_blocks(
                     if margins is not None and known >= len(margins):
                         break
                     margin = 0.0 if margins is None else margins[known]
-                    running[workers.submit(blocks[first].work, margin)] = first
+                    future = workers.submit(blocks[first].work, margin)
+                    running[future] = first
+                    future.add_done_callback(ended.put)
                     first += 1
                 if not running:
                     return
-                done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
-                for future in done:
-                    yield running.pop(future), future.result(), whole
+                try:
+                    future = ended.get(timeout=0.1)
+                except Empty:
+                    continue
+                yield running.pop(future), future.result(), whole
         finally:
             # The pool waits for its threads, also when this is left by a signal.
             for future in running:
