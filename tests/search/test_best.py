@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import Event
+from time import sleep
 
 import numpy as np
 import pytest
 
-from workhold import Vise, Workpiece, count_contacts, design, load
+from workhold import Query, Vise, Workpiece, count_contacts, design, load
+from workhold.contact.problem import Problem
 from workhold.files.result.writer import write_result
 from workhold.listing.best import BestFixtures
+from workhold.listing.ranking import measured
+from workhold.model.result import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
 
 # Parts with ties, equal holes in two places, sliding pairs and coincidences; how many to keep.
@@ -108,6 +112,52 @@ def test_a_cancelled_search_keeps_the_best_so_far() -> None:
     assert not best.complete
     every = {(f.type, f.pegs) for f in design(part, vise)}
     assert all((f.type, f.pegs) in every for f in best)
+
+
+def waiting_records(part: str, vise: Vise) -> tuple[Problem, list[np.ndarray]]:
+    """A problem of the best five, and what its search hands over, in two shares."""
+    problem = Problem.of(Query(load(part), vise, best=5))
+    search = ToolkitSearch.of(problem, threads=1)
+    records = np.concatenate([block.work(0.0) for block in search.blocks(problem.query.arrangements)])
+    return problem, np.array_split(records, 2)
+
+
+def test_nothing_is_decided_long_after_somebody_asked_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is one time of grace for all that waits: what comes after it is left, and said to be."""
+    monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.01)
+    problem, (first, second) = waiting_records("oblongPart", Vise(pitch=8, columns=4, peg_radius=3))
+    cancel = Event()
+    cancel.set()
+    best = BestFixtures(problem, cancel)
+    best.waiting.append(first)
+    best.decide()
+    sleep(0.02)
+    best.waiting.append(second)
+    before = sum(account.records for account in best.accounts)
+    _, account = best.finished()
+    assert account.records == before and account.left >= len(second) > 0
+
+
+def test_what_waits_is_measured_a_share_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However much waits, and the best are those of all at once."""
+    problem, records = waiting_records("oblongPart", Vise(pitch=8, columns=4, peg_radius=3))
+    at_once = BestFixtures(problem)
+    at_once.waiting.extend(records)
+    together, _ = at_once.finished()
+    for module in ("best", "finish"):
+        monkeypatch.setattr(f"workhold.listing.{module}.BLOCK", 64)
+    seen: list[int] = []
+
+    def watched(table: FixtureTable, problem: Problem) -> FixtureTable:
+        seen.append(len(table))
+        return measured(table, problem)
+
+    monkeypatch.setattr("workhold.listing.best.measured", watched)
+    in_shares = BestFixtures(problem)
+    in_shares.waiting.extend(records)
+    best, _ = in_shares.finished()
+    assert len(seen) > 3 and max(seen) < 3 * 64
+    assert np.array_equal(best.theta, together.theta) and np.array_equal(best.point, together.point)
 
 
 def test_contacts_are_counted_before_closure_gap_and_clamping() -> None:

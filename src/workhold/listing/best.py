@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import MARGIN_SLACK
 from workhold.listing.canonical_form import Candidates, joined, listed_once
-from workhold.listing.finish import finish
+from workhold.listing.finish import BLOCK, blocks_of, listed_form
 from workhold.listing.placing import placed
 from workhold.listing.ranking import best_marked, measured
 from workhold.model.quality import CLOSURE_MARGIN
-from workhold.proof.deciding import Account
+from workhold.proof.deciding import Account, Course
 from workhold.statics.judging import unfit
 
 __all__ = ["BestFixtures"]
@@ -32,7 +32,7 @@ class BestFixtures:
     Parameters
     ----------
     problem : what is searched.
-    cancel : see ``listing.finish.finish``.
+    cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
     """
 
     problem: Problem
@@ -42,6 +42,10 @@ class BestFixtures:
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
     kept: Candidates | None = field(default=None, init=False)
     accounts: list[Account] = field(factory=list, init=False)
+    course: Course = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.course = Course(0, cancel=self.cancel)
 
     @property
     def most(self) -> int:
@@ -59,11 +63,18 @@ class BestFixtures:
 
     def decide(self) -> None:
         """Decide the records that wait, and keep the best."""
-        fresh, account = finish(self.waiting, self.problem, self.cancel)
-        self.waiting = []
-        self.accounts.append(account)
-        everything = fresh if self.kept is None else listed_once(joined([self.kept, fresh]))
-        self.kept = self.cut(everything, ties=True)
+        waiting, self.waiting = self.waiting, []
+        parts = [] if self.kept is None else [self.kept]
+        fresh = 0
+        for block in blocks_of(waiting):
+            part, account = listed_form(block, self.problem, self.course)
+            self.accounts.append(account)
+            parts.append(part)
+            fresh += len(part.standing)
+            # Measured a share at a time, so that one who asks to stop does not wait for all.
+            if fresh >= max(BLOCK, self.most):
+                parts, fresh = [self.cut(listed_once(joined(parts)), ties=True)], 0
+        self.kept = self.cut(listed_once(joined(parts)), ties=True)
 
     def cut(self, everything: Candidates, ties: bool) -> Candidates:
         """The best ``most`` of fixtures that are listed once, and those that tie with the last."""

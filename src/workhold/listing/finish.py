@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from threading import Event
 
 import numpy as np
@@ -14,7 +15,7 @@ from workhold.listing.canonical_form import Candidates, candidates_of, canonical
 from workhold.listing.placing import placeable
 from workhold.proof.deciding import Account, Course, decided
 
-__all__ = ["Batches", "finish", "listed_form"]
+__all__ = ["BLOCK", "Batches", "blocks_of", "finish", "listed_form"]
 
 Array = NDArray[np.float64]
 
@@ -35,10 +36,16 @@ def finish(records: list[Array], problem: Problem, cancel: Event | None = None) 
     (the fixtures, an account of all records)
     """
     course = Course(sum(map(len, records)), cancel=cancel)
-    batches = Batches()
-    blocks = [*(block for array in records for block in batches.add(array)), batches.rest()]
-    parts, accounts = zip(*(listed_form(block, problem, course) for block in blocks), strict=True)
+    parts, accounts = zip(*(listed_form(block, problem, course) for block in blocks_of(records)), strict=True)
     return listed_once(joined(list(parts))), Account.together(list(accounts))
+
+
+def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
+    """Records (N, 19) in blocks, of which there is at least one."""
+    batches = Batches()
+    for array in records:
+        yield from batches.add(array)
+    yield batches.rest()
 
 
 def listed_form(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
