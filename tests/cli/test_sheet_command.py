@@ -169,6 +169,16 @@ def test_fixtures_in_the_same_holes_are_warned_of(run: Any, folder: Path) -> Non
     assert "The same four holes hold this part in one other way" in words_in(folder / "a.pdf")
 
 
+def test_where_the_part_ends_up_is_told_when_asked(run: Any, folder: Path) -> None:
+    """How far to open, and the reading when it is right, which is what a diamond on four sides always gives."""
+    run("sheet", "r.json", 1, "-o", "plain.pdf")
+    assert run("sheet", "r.json", 1, "-o", "a.pdf", "--seating").exit_code == 0
+    plain, asked = words_in(folder / "plain.pdf"), words_in(folder / "a.pdf")
+    right = f"S = {diamond()[0].jaw_separation:.3f} mm is right"
+    assert "Will it end up there?" in asked and right in asked and "What it looks like" in asked
+    assert "Will it end up there?" not in plain and right not in plain
+
+
 def test_part_zero_is_where_it_was_asked_for(run: Any, folder: Path) -> None:
     """The diamond's centre is the middle of its pegs; from the machine's position over L-A1 come the control's lines."""
     options = ("--zero", "centre", "--machine-position", "-300,-200")

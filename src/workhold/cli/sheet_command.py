@@ -59,6 +59,14 @@ def sheet(
     clearance: str = option(
         BODIES, "LENGTH", "How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf.", default="1mm"
     ),
+    seating: Annotated[
+        bool,
+        typer.Option(
+            "--seating",
+            rich_help_panel=ON_PAPER,
+            help="Tell whether the part ends up there: how far to open, and how it looks where it does not.",
+        ),
+    ] = False,
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
     jaw_force: str | None = JAW_FORCE,
@@ -99,6 +107,7 @@ def sheet(
         "peg_length": optional_positive_length("--peg-length", peg_length, shown_unit),
         "peg_height": optional_positive_length("--peg-height", peg_height, shown_unit),
         "dowel": dowel,
+        "seating": seating or None,
         "machine_position": None if machine_position is None else position(machine_position, shown_unit),
     }
     keep_off = length("--clearance", clearance, shown_unit)

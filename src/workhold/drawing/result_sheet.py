@@ -10,12 +10,14 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances
+from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.part_zero import part_zero
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.seating.seating import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
 from workhold.version import __version__
@@ -66,6 +68,7 @@ def result_details(
     others: int | None = None,
     number: int | None = None,
     count: int | None = None,
+    seating: bool | None = None,
 ) -> tuple[Fixture, SheetDetails]:
     """One fixture with all figures of quality, and what its setup sheet tells besides.
 
@@ -77,6 +80,7 @@ def result_details(
     zero : part zero, see :func:`workhold.model.part_zero.part_zero`; its numbers are in ``unit``.
     others : how many other fixtures use the same holes; counted in the result if None.
     number, count : the rank in a larger result and how many that lists, of a fixture that was taken out of it.
+    seating : whether to tell what else the pegs can do with the part; None tells it where the result has it.
     result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position, thickness, peg_length, peg_height,
         dowel : see :class:`SheetDetails`.
 
@@ -88,6 +92,12 @@ def result_details(
     asked = result.query.loads if loads is None else loads
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
     fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
+    told, not_seated = None, ""
+    if seating:
+        try:
+            told = Solver(workpiece, toolkit).of(fixture)
+        except InputError as error:
+            not_seated = f"{str(error)[:1].upper()}{str(error)[1:]}"
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -108,5 +118,7 @@ def result_details(
         peg_height=peg_height,
         dowel=dowel,
         others=result.table.same_holes(rank - 1) if others is None else others,
+        seating=told,
+        not_seated=not_seated,
     )
     return fixture, details

@@ -16,7 +16,7 @@ from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.figures import Seat
 
-__all__ = ["draw_seats"]
+__all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats"]
 
 # The right seat, and one that no reading tells from it.
 RIGHT, ALIKE = "#2e7d32", "#8a6d00"
@@ -99,15 +99,20 @@ class Placed:
         return cls(seat, [list(loop) for loop in lying.loop_segments], pegs, extent)
 
 
+def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
+    """Draw the part as it lies and the pegs, those that touch filled; ``weight`` is the width of lines in page units."""
+    fill = OVER_FILL if placed.seat.mirrored else PART_FILL
+    scene.path(outline_path(placed.loops, view), BLACK, weight, fill, fill_rule="evenodd")
+    for place, radius, touches in placed.pegs:
+        scene.circle(view(place), max(radius * view.scale, 2.0), PEG_FILL if touches else "#ffffff", PEG_FILL, weight)
+
+
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
     """Draw one seat with its number, what the jaws read, and how that differs."""
     seat = placed.seat
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
-    fill = OVER_FILL if seat.mirrored else PART_FILL
-    scene.path(outline_path(placed.loops, view), BLACK, 1.2, fill, fill_rule="evenodd")
-    for place, radius, touches in placed.pegs:
-        scene.circle(view(place), max(radius * view.scale, 2.0), PEG_FILL if touches else "#ffffff", PEG_FILL, 1.2)
+    draw_lying(scene, placed, view)
     side = ", turned over" if seat.mirrored else ""
     words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
     scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)

@@ -1,7 +1,7 @@
 """The setup sheet: one fixture on paper, to a standard scale, with all that is needed to build it without asking.
 
-One page when that costs the drawing nothing, else two: the first with the plan and what is set at the machine, the second
-with the rest.
+One page when that costs the drawing nothing, else two or more: the first with the plan and what is set at the machine, the
+others with the rest.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ NEAR = 2
 
 
 def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails) -> tuple[str, ...]:
-    """Draw the setup sheet of a fixture on one page or two, lying or upright, whichever shows the part largest.
+    """Draw the setup sheet of a fixture on one page or more, lying or upright, whichever shows the part largest.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their attribute
     ``data-model-to-page``, written as an SVG matrix; on paper it is a standard scale.
@@ -73,9 +73,9 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details
     scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     pages = [scene]
     write_columns(scene, arrangement.columns)
-    if arrangement.second:
+    for columns in arrangement.more:
         pages.append(new_page(arrangement, sheet))
-        write_columns(pages[1], arrangement.second)
+        write_columns(pages[-1], columns)
     for number, page in enumerate(pages, 1):
         draw_foot(page, arrangement, sheet, f"{number} of {len(pages)}")
     return tuple(page.svg() for page in pages)

@@ -5,7 +5,7 @@ Glossary
 lying, upright : a page wider than high, or higher than wide.
 panel : columns of words at the right of a lying page, beside the plan.
 strip : two columns of words below the plan of an upright page.
-needed blocks : those that have to be on the page of the plan; the others may go to a second page.
+needed blocks : those that have to be on the page of the plan; the others may go to further pages.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ class Arrangement:
     page : width and height, page units.
     plan : the box of the drawing.
     columns : columns of words beside or below the plan, each with its blocks.
-    second : columns of the second page, if there is one.
+    more : columns of each further page, if there are some.
     scale : what the plan is drawn to.
     """
 
     page: Page
     plan: Box
     columns: tuple[Filled, ...]
-    second: tuple[Filled, ...]
+    more: tuple[tuple[Filled, ...], ...]
     scale: StandardScale
 
 
@@ -74,7 +74,7 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
     if not found and needed:
         return arranged(paper, extent, needed[:-1], [needed[-1], *others])
     best = max(found, key=lambda choice: choice.scale.factor)
-    single = [choice for choice in found if not choice.second]
+    single = [choice for choice in found if not choice.more]
     if single:
         largest = max(single, key=lambda choice: choice.scale.factor)
         drawn = largest.scale.factor * UNITS_PER_MM * max(extent.width, extent.height)
@@ -91,12 +91,12 @@ def plan_room(plan: Box) -> Box:
 def arrangement_of(
     page: Page, extent: Box, plan: Box, columns: Sequence[Filled], rest: Sequence[Block]
 ) -> Arrangement | None:
-    """An arrangement with the rest of the blocks on a second page; None when no room is left for the plan."""
+    """An arrangement with the rest of the blocks on further pages; None when no room is left for the plan."""
     room = plan_room(plan)
     if min(room.width, room.height) < SMALLEST_PLAN:
         return None
     largest = min(room.width / extent.width, room.height / extent.height)
-    return Arrangement(page, plan, tuple(columns), second_page(page, rest), standard_scale(largest / UNITS_PER_MM))
+    return Arrangement(page, plan, tuple(columns), pages_of_words(page, rest), standard_scale(largest / UNITS_PER_MM))
 
 
 def beside(page: Page, extent: Box, blocks: Sequence[Block], least: int, count: int) -> Arrangement | None:
@@ -127,14 +127,17 @@ def below(page: Page, extent: Box, blocks: Sequence[Block], first: int) -> Arran
     return arrangement_of(page, extent, Box(inner.x0, inner.y0, inner.x1, top - GUTTER), columns, blocks[first:])
 
 
-def second_page(page: Page, blocks: Sequence[Block]) -> tuple[Filled, ...]:
-    """The columns of a page of words only: three on a lying page, two on an upright one."""
+def pages_of_words(page: Page, blocks: Sequence[Block]) -> tuple[tuple[Filled, ...], ...]:
+    """The columns of as few pages of words only as hold the blocks: three on a lying page, two on an upright one."""
     if not blocks:
         return ()
     inner, count = inner_box(page), 3 if page[0] > page[1] else 2
     width = (inner.width - (count - 1) * GUTTER) / count
-    runs, _ = level_runs(blocks, [height_of(block, width) for block in blocks], count)
-    return tuple(side_by_side(inner, runs))
+    heights = [height_of(block, width) for block in blocks]
+    fits = (last for last in range(len(blocks), 1, -1) if level_runs(blocks[:last], heights, count)[1] <= inner.height)
+    last = next(fits, 1)
+    runs, _ = level_runs(blocks[:last], heights, count)
+    return (tuple(side_by_side(inner, runs)), *pages_of_words(page, blocks[last:]))
 
 
 def side_by_side(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:

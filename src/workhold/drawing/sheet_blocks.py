@@ -10,6 +10,7 @@ from workhold.drawing.scene import BLACK
 from workhold.drawing.sheet_clamp import clamp_steps, clamp_writers, write_locators, write_plate
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_figures import write_loads, write_quality
+from workhold.drawing.sheet_seating import write_seating, write_wrong_seats
 from workhold.drawing.sheet_side import write_part, write_side
 from workhold.drawing.sheet_writing import (
     BODY,
@@ -41,6 +42,10 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     needed, others = [write_title, *held, write_zero], [write_side, write_part, write_steps]
     if sheet.cautions:
         needed.append(write_cautions)
+    if sheet.seating is not None:
+        others += [write_seating, write_wrong_seats]
+    elif sheet.details.not_seated:
+        others.append(write_seating)
     if sheet.details.loads:
         others.append(write_loads)
     others += [write_quality, write_plate if clamped else write_counting, write_legend]

@@ -9,6 +9,7 @@ from attrs import field, frozen
 from workhold.model.part_zero import PartZero
 from workhold.model.tolerance import Tolerance
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.seating.figures import Seating
 from workhold.statics.loads import LoadCase
 
 __all__ = ["PAPERS", "SheetDetails"]
@@ -40,6 +41,8 @@ class SheetDetails:
     peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
     dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
     others : how many other fixtures of the result use the same holes.
+    seating : what else the pegs can do with the part; None where the sheet does not tell.
+    not_seated : why it is not told though it was asked for, in a sentence.
     """
 
     number: int
@@ -61,3 +64,5 @@ class SheetDetails:
     peg_height: float | None = None
     dowel: str | None = None
     others: int = 0
+    seating: Seating | None = None
+    not_seated: str = ""

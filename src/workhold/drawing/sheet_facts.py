@@ -8,6 +8,7 @@ from math import dist, inf
 from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.fixture import Fixture
 from workhold.model.toolkit import Toolkit
@@ -32,7 +33,7 @@ class Caution:
 
     Parameters
     ----------
-    kind : "unfit", "edge", "closure", "amplification", "location", "load" or "pose".
+    kind : "unfit", "edge", "closure", "amplification", "location", "load", "capture", "reading" or "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -93,7 +94,8 @@ def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 def cautions_of(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """What to beware of, the contacts first; those of ``statics.judging``, and other ways to lie in the same holes.
+    """What to beware of, the contacts first; those of ``statics.judging``, and other ways to lie in the same holes: as its
+    seating tells, where that is known.
 
     Parameters
     ----------
@@ -129,6 +131,9 @@ def cautions_of(
             more = lengths.unit.force_above(case.needed.value)
             words = f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
+    if details.seating is not None:
+        told = SeatingWords(details.seating, fixture, toolkit, lengths)
+        return found + [Caution(kind, sentence) for kind, sentence in told.cautions()]
     if details.others:
         holes = "four holes" if fixture.direction is None else "holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"

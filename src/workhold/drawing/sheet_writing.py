@@ -11,6 +11,7 @@ from workhold.drawing.fonts import text_width
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import FACT_NAME, Column, pegs_words
 from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution
 from workhold.geometry.segment import Point
@@ -75,6 +76,12 @@ class Sheet:
         """Where part zero lies in the vise frame, in mm."""
         x, y = self.fixture.pose.apply(*self.zero.point)
         return float(x), float(y)
+
+    @property
+    def seating(self) -> SeatingWords | None:
+        """What else the pegs can do with the part, in words; None where it is not told."""
+        told = self.details.seating
+        return None if told is None else SeatingWords(told, self.fixture, self.toolkit, self.lengths)
 
     @property
     def origin(self) -> str:

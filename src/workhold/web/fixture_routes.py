@@ -111,6 +111,7 @@ async def paper(
     peg_length: Size = None,
     peg_height: Size = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e6)] = None,
+    seating: Annotated[bool | None, Query(description="whether the sheet tells where else the part can rest")] = None,
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,
 ) -> Response:
@@ -131,6 +132,7 @@ async def paper(
         "zero": zero,
         "dowel": dowel,
         "machine_position": machine,
+        "seating": seating,
         **{name: None if size is None else given.length(size) for name, size in sizes.items()},
     }
     order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), wishes, job.result_hash)

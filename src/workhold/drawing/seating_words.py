@@ -1,0 +1,188 @@
+"""What a fixture's seating means for who sets it up, in words: for the sheet and the page alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from math import asin, degrees, floor, inf, log10
+
+from attrs import frozen
+
+from workhold.drawing.length_unit import LengthUnit
+from workhold.model.fixture import Fixture
+from workhold.model.setting import settings_of
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+from workhold.seating.figures import Seat, Seating
+from workhold.seating.place import Silhouette
+
+__all__ = ["SeatingWords", "down"]
+
+# mm. Jaws are opened by hand to about a millimetre; what catches from less hardly catches.
+SMALL_CAPTURE = 1.0
+# mm. Two readings of a caliper, each off by up to 0.03, and tolerances of the contacts make as much of a difference.
+CLOSE_READING = 0.1
+# What the friction of dry steel reaches.
+DRY_STEEL = 0.2
+# More than this is told without a bound, in degrees.
+ANY_TURN = 180.0
+
+
+def down(value: float, digits: int = 2) -> str:
+    """A bound that what is below it must not pass, rounded down to so many significant digits.
+
+    >>> down(0.4475), down(12.99), down(123.4), down(0.02999), down(0.0)
+    ('0.44', '12', '120', '0.029', '0')
+    """
+    if value <= 0.0:
+        return "0"
+    places = digits - 1 - floor(log10(value))
+    step = 10.0**-places
+    return f"{floor(value / step * (1.0 + 1e-12)) * step:.{max(places, 0)}f}"
+
+
+@frozen(slots=False)
+class SeatingWords:
+    """The words of one fixture.
+
+    Parameters
+    ----------
+    told : its seating.
+    lengths : how lengths are written.
+    """
+
+    told: Seating
+    fixture: Fixture
+    toolkit: Toolkit
+    lengths: LengthUnit
+
+    @property
+    def sign(self) -> str:
+        """What is read, such as S."""
+        return settings_of(self.fixture, self.toolkit)[0].sign
+
+    def reading(self, seat: Seat) -> float:
+        """What is read in a seat, in mm."""
+        return settings_of(self.fixture, self.toolkit)[0].length + seat.difference
+
+    def reads(self, length: float) -> str:
+        """A reading in words."""
+        return f"{self.sign} = {self.lengths.words(length)}"
+
+    def bound(self, length: float) -> str:
+        """A length in mm that must not be passed, in words."""
+        unit = self.lengths.unit
+        return f"{down(length / unit.millimetres)} {unit.abbreviation}"
+
+    def lowered(self, length: float) -> float:
+        """A length in mm rounded down to the decimals that are written."""
+        step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
+        return floor(length / step) * step
+
+    @cached_property
+    def own(self) -> Seat:
+        """The fixture's own seat."""
+        return next(seat for seat in self.told.seats if seat.is_own)
+
+    @cached_property
+    def wrong(self) -> list[Seat]:
+        """The wrong seats that the jaws open far enough for, those first that could be taken for right by their reading."""
+        travel = self.toolkit.moving.travel
+        wrong = self.told.wrong_within(most=None if travel is None else travel.most)
+        return sorted(wrong, key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg))
+
+    @property
+    def alike(self) -> int:
+        """In how many seats but its own the part covers its place."""
+        return sum(seat.same_place and not seat.is_own for seat in self.told.seats)
+
+    def within(self, workpiece: Workpiece) -> tuple[float, float] | None:
+        """By how much in mm, and in degrees at the same time, the part may lie off and is sure to come home; None where
+        nothing bounds it.
+
+        Half of ``placing`` is for the shift, half for 2 R sin(turn / 2), R the farthest point of the part from its middle.
+        """
+        if self.told.placing is None:
+            return None
+        half = self.told.placing / 2.0
+        arm = Silhouette.of(workpiece).arm
+        return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
+
+    def difference(self, seat: Seat) -> str:
+        """How the reading of a seat differs from the right one."""
+        if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
+            return "the same"
+        return f"{self.lengths.words(abs(seat.difference))} {'more' if seat.difference > 0.0 else 'less'}"
+
+    def steps(self, workpiece: Workpiece) -> list[str]:
+        """What to do and what to read, one step each."""
+        told, right = self.told, self.reads(self.reading(self.own))
+        noun = self.toolkit.moving.noun
+        capture, room, travel = told.capture_opening, told.drop_room, self.toolkit.moving.travel
+        widest = inf if travel is None or travel.most is None else travel.most
+        if capture is None or room is None:
+            steps = [f"Open the {noun}s as far as you like: the part cannot get to another place on these pegs."]
+        elif self.own.jaw_separation + capture > widest:
+            steps = [f"Open the {noun}s as far as they go: nowhere on the way can the part get to another place."]
+        else:
+            wide = self.reads(self.lowered(self.reading(self.own) + capture))
+            steps = [
+                f"Open the {noun}s to {wide} at most, {self.bound(capture)} wider than they close to. That leaves about "
+                f"{self.bound(room)} of room at every peg."
+            ]
+        within = self.within(workpiece)
+        if within is not None:
+            shift, turn = within
+            steps.append(
+                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as the pegs let it: "
+                "from there it comes home."
+            )
+        steps.append(f"Close. {right} is right. While more is read, the part is stuck short of its place: tap it home.")
+        least = f"{told.sticking_friction:.2f}"
+        if told.sticking_friction < DRY_STEEL:
+            steps.append(
+                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home while closing."
+            )
+        return steps
+
+    def wrong_words(self) -> list[str]:
+        """How many wrong seats there are, and what no reading tells."""
+        wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
+        turned = "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
+        places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
+        words = ["The same pegs hold the part in no wrong place."]
+        if wrong:
+            plain = abs(wrong[0].difference) >= CLOSE_READING
+            tells = "the reading tells" if plain else "see how the part lies, the reading alone does not tell"
+            words = [f"The same pegs can hold the part in {places}{turned}: {tells}."]
+        if self.alike:
+            words.append(
+                f"In {self.alike} more it lies turned round or over and covers its place all the same, which no reading "
+                "tells: mark the part."
+            )
+        return [*words, *told_in_sentences(self.told.unsettled)]
+
+    def cautions(self) -> list[tuple[str, str]]:
+        """What to beware of: a word for it, "capture" or "reading", and a sentence."""
+        told, found = self.told, list[tuple[str, str]]()
+        if told.capture_opening is not None and told.capture_opening < SMALL_CAPTURE:
+            found.append(
+                (
+                    "capture",
+                    f"The part is caught from next to nothing: with the {self.toolkit.moving.noun}s "
+                    f"{self.bound(told.capture_opening)} wider it may come to rest elsewhere. Hold it in its place while "
+                    "they close, and compare the reading.",
+                )
+            )
+        near = self.wrong[0] if self.wrong else None
+        if near is not None and abs(near.difference) < CLOSE_READING:
+            off = "no different" if self.difference(near) == "the same" else f"only {self.difference(near)}"
+            found.append(
+                ("reading", f"In a wrong place the reading is {off}: see by the picture that the part lies right.")
+            )
+        return found
+
+
+def told_in_sentences(words: Sequence[str]) -> list[str]:
+    """Sentences that begin with a capital letter."""
+    return [f"{sentence[:1].upper()}{sentence[1:]}" for sentence in words]

@@ -1,0 +1,174 @@
+"""What the sheet says of where the part ends up: bounds that hold, readings of the seats, pages that can be read."""
+
+from __future__ import annotations
+
+from datetime import date
+from math import hypot, radians, sin
+
+import pytest
+from attrs import evolve
+from sheet_reading import collisions, page_of, words_of
+from svg_reading import by_class, texts
+
+import workhold
+from workhold import Plate, Vise, Workpiece
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.result_sheet import result_cautions, result_sheet
+from workhold.drawing.scene import UNITS_PER_MM
+from workhold.drawing.seating_words import CLOSE_READING, SMALL_CAPTURE, SeatingWords
+from workhold.drawing.sheet import draw_sheet
+from workhold.drawing.sheet_details import SheetDetails
+from workhold.model.result import Result
+from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.seating.figures import Seating
+
+WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
+DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="", version="1.2.3")
+# Printers leave at least this blank, mm.
+PRINTABLE = 5.0
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    """The best fixtures of a wedge."""
+    return workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=4)
+
+
+@pytest.fixture(scope="module")
+def told(result: Result) -> list[Seating]:
+    """What else their pegs can do."""
+    return workhold.seatings(result, 4)
+
+
+def words_for(result: Result, told: Seating, number: int = 0, unit: Unit = MILLIMETRE) -> SeatingWords:
+    """The words of a fixture."""
+    return SeatingWords(told, result[number], result.toolkit, LengthUnit.suiting(unit, 20.0))
+
+
+def with_seats(told: Seating, wrong: int) -> Seating:
+    """The same with its own seat and so many wrong ones."""
+    own = [seat for seat in told.seats if not seat.is_wrong]
+    return evolve(told, seats=tuple(own + [seat for seat in told.seats if seat.is_wrong][:wrong]))
+
+
+@pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
+@pytest.mark.parametrize("wrong", [0, 1, 2, 23])
+def test_nothing_is_covered_or_cut_off(result: Result, told: list[Seating], paper: str, unit: Unit, wrong: int) -> None:
+    """Whatever the number of pictures: no word lies on another and all lie within what a printer prints, on as many pages as
+    it takes, and there is a picture for the right seat and up to five wrong ones."""
+    details = evolve(DETAILS, paper=paper, unit=unit, seating=with_seats(told[0], wrong), jaw_force=2000.0)
+    pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
+    for page in pages:
+        assert collisions(page) == []
+        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        assert [word for word, place in words_of(page) if not inside.contains(place)] == []
+    drawn = sum(
+        element.tag.endswith("rect") for page in pages for group in by_class(page, "seats") for element in group
+    )
+    assert drawn == min(wrong + 1, 6)
+    words = " ".join(word for page in pages for word in texts(page))
+    assert ("18 more are off by more" in words) == (wrong == 23)
+    assert ("in one wrong place" in words) == (wrong == 1) and ("in no wrong place" in words) == (wrong == 0)
+    assert f"{len(pages)} of {len(pages)}" in words
+
+
+def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seating]) -> None:
+    """A name and sentences that fill pages: everything still stands on one, and on paper."""
+    long = evolve(
+        told[0], unsettled=tuple(f"place {k} where the part may rest could not be settled." for k in range(30))
+    )
+    details = evolve(DETAILS, seating=long, part_name="bracket, first operation " * 8)
+    pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
+    foot = page_of(pages[0]).y1 - 44
+    for page in pages:
+        assert collisions(page) == [] and max(box.y1 for _, box in words_of(page)) < foot
+    assert len(pages) > 2
+    words = " ".join(word for page in pages for word in texts(page))
+    assert all(f"Place {k} where" in words for k in range(30))
+
+
+@pytest.mark.parametrize("unit", [MILLIMETRE, INCH])
+@pytest.mark.parametrize("number", range(4))
+def test_bounds_are_never_told_too_wide(result: Result, told: list[Seating], unit: Unit, number: int) -> None:
+    """Jaws opened as told are open by less than the capture opening, and a part put in as told lies nearer than placing."""
+    one, words = told[number], words_for(result, told[number], number, unit)
+    first, second = words.steps(WEDGE)[:2]
+    number_of = [float(word) * unit.millimetres for word in first.split() if word.replace(".", "").isdigit()]
+    wide, more, room = number_of
+    assert one.capture_opening is not None and one.placing is not None and one.drop_room is not None
+    right = result[number].jaw_separation
+    assert right < wide <= right + one.capture_opening and 0.9 * one.capture_opening < more <= one.capture_opening
+    assert room <= one.drop_room
+    shift, turn = (float(word.rstrip("°")) for word in second.split() if word.rstrip("°").replace(".", "").isdigit())
+    (x0, y0), corners = WEDGE.center, WEDGE.loops[0][:, :2]
+    arm = max(hypot(x - x0, y - y0) for x, y in corners)
+    reached = shift * unit.millimetres + 2.0 * arm * sin(radians(turn) / 2.0)
+    assert 0.85 * one.placing < reached <= one.placing
+
+
+def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) -> None:
+    """Each with its reading and how it differs; those that the jaws cannot open to are left out."""
+    words = words_for(result, told[1], 1)
+    off = [abs(seat.difference) for seat in words.wrong]
+    assert off == sorted(off) and len(off) == len(told[1].wrong_within())
+    near = words.wrong[0]
+    pages = draw_sheet(result[1], WEDGE, result.toolkit, evolve(DETAILS, seating=told[1]))
+    written = [word for page in pages for word in texts(page)]
+    assert f"S = {near.jaw_separation:.3f} mm" in written
+    assert f"{abs(near.difference):.3f} mm {'more' if near.difference > 0 else 'less'}" in written
+    assert f"S = {result[1].jaw_separation:.3f} mm" in written and "right" in written
+    most = sorted(seat.jaw_separation for seat in told[1].seats if seat.is_wrong)[2] + 1e-6
+    narrow = evolve(result.toolkit, max_opening=most)
+    assert len(SeatingWords(told[1], result[1], narrow, words.lengths).wrong) == 3
+
+
+def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
+    for friction, sticks in ((0.19, True), (0.21, False)):
+        steps = words_for(result, evolve(told[0], sticking_friction=friction)).steps(WEDGE)
+        assert any("tap it home while closing" in step for step in steps) == sticks
+
+
+def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, told: list[Seating]) -> None:
+    """And what gets out only where the jaws do not reach, as far as they go."""
+    free = words_for(result, evolve(told[0], capture_opening=None, placing=None)).steps(WEDGE)
+    assert "as far as you like" in free[0] and not any("Put the part in" in step for step in free)
+    most = result[0].jaw_separation + 0.5 * (told[0].capture_opening or 0.0)
+    narrow = SeatingWords(told[0], result[0], evolve(result.toolkit, max_opening=most), LengthUnit.mm())
+    assert "as far as they go" in narrow.steps(WEDGE)[0]
+
+
+def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Seating]) -> None:
+    """Just below each threshold and not above; a reading that is no different is told as that."""
+
+    def kinds(capture: float, off: float) -> list[str]:
+        wrong = next(seat for seat in told[0].seats if seat.is_wrong)
+        own = next(seat for seat in told[0].seats if seat.is_own)
+        seats = (own, evolve(wrong, difference=off))
+        return [kind for kind, _ in words_for(result, evolve(told[0], capture_opening=capture, seats=seats)).cautions()]
+
+    assert kinds(1.01 * SMALL_CAPTURE, -1.01 * CLOSE_READING) == []
+    assert kinds(0.99 * SMALL_CAPTURE, 1.01 * CLOSE_READING) == ["capture"]
+    assert kinds(1.01 * SMALL_CAPTURE, -0.99 * CLOSE_READING) == ["reading"]
+    (caution,) = words_for(result, told[0]).cautions()
+    assert caution[0] == "reading" and "no different" in caution[1]
+
+
+def test_it_is_told_when_asked_for_only(result: Result) -> None:
+    """The page warns of what the sheet warns of; without being asked for neither tells anything of it."""
+    asked, plain = (
+        " ".join(word for page in result_sheet(result, 1, seating=seating) for word in texts(page))
+        for seating in (True, None)
+    )
+    assert "Will it end up there?" in asked and "no different" in asked
+    assert "Will it end up there?" not in plain
+    assert [c.kind for c in result_cautions(result, 1, seating=True)] == ["reading"]
+    assert "reading" not in [c.kind for c in result_cautions(result, 1)]
+
+
+def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
+    plate = workhold.design(WEDGE, Plate(pitch=20, peg_radius=0.0), best=1)
+    words = " ".join(word for page in result_sheet(plate, 1, seating=True) for word in texts(page))
+    assert "Will it end up there?" in words and "What it looks like" not in words
+    with pytest.raises(workhold.InputError) as refusal:
+        workhold.seatings(plate)
+    assert str(refusal.value)[1:] in words
