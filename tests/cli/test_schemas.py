@@ -42,7 +42,9 @@ def results() -> Iterator[Any]:
     plate = {"pitch": 20, "peg_radius": 3, "columns": 6, "rows": 5}
     clamped = [workhold.Plate(**plate), workhold.Plate(**plate, travel=(10, 60)), workhold.Plate(**plate, clamps=2)]
     fences = [workhold.Fence(**plate, wall_offset=10), workhold.Fence(**plate, wall_offset=10, clamps=2)]
-    for toolkit in (*clamped, *fences):
+    flat = {"half_width": 2.0, "distance": 2.0}
+    flats = [workhold.Plate(**plate, flat=flat), workhold.Fence(**plate, wall_offset=10, clamps=2, flat=flat)]
+    for toolkit in (*clamped, *fences, *flats):
         result = workhold.design(bar, toolkit, best=3)
         assert len(result)
         yield json.loads("".join(result_text(result)))
@@ -145,3 +147,10 @@ def test_the_command_prints_them(run: Any) -> None:
         assert name in run("schema").stdout
     outcome = run("schema", "nothing")
     assert outcome.exit_code == 2 and "give part, toolkit, loads, query or result" in outcome.stderr
+
+
+@pytest.mark.parametrize("content", RESULTS)
+def test_every_key_of_a_fixture_is_told(content: dict[str, Any]) -> None:
+    """The schema describes all that is written of a fixture, whatever the toolkit."""
+    told = schema_of("result")["$defs"]["FixturePart"]["properties"]
+    assert not {key for fixture in content["fixtures"] for key in fixture} - set(told)

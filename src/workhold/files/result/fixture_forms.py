@@ -79,6 +79,7 @@ class FixturePart(Part):
     pegs: list[JawPegPart | LocatorPart | ClampPart] = Field(min_length=2, max_length=5)
     pose: PosePart
     jaw_separation: float | None = None
+    flats: list[float | None] | None = Field(None, description="which way the flat of each peg looks, in degrees")
     pairs: Whole | None = None
     quality: dict[str, float] = Field(default_factory=dict)
 
