@@ -43,6 +43,23 @@ def solved(number: int) -> tuple[Solver, Fixture, Seating]:
     return solver, fixture, solver.of(fixture)
 
 
+def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[float, float]) -> Fixture:
+    """The same fixture with its pegs named otherwise, turned by half a turn, or moved."""
+    sign = -1.0 if half_turn else 1.0
+    pegs = []
+    for k in order:
+        peg = fixture.pegs[k]
+        carrier = peg.carrier if not half_turn else (LEFT if peg.carrier == RIGHT else RIGHT)
+        pegs.append(Peg(carrier, 0, 0, sign * peg.x + shift[0], sign * peg.y + shift[1], 0, 0.0))
+    pose = Pose(
+        fixture.pose.theta_deg + (180.0 if half_turn else 0.0),
+        sign * fixture.pose.x + shift[0],
+        sign * fixture.pose.y + shift[1],
+    )
+    # The pegs at separation 0 stand where they stood: the separation stays as it is told.
+    return Fixture("I", tuple(pegs), pose, fixture.jaw_separation, {})
+
+
 class Obstacle:
     """A part and pegs whose clearances and their slopes are told from the outline by elementary geometry."""
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import workhold
-from seating_examples import LEFT, RIGHT, SAMPLED, Obstacle, case_fixture, closed, held, solved
+from seating_examples import LEFT, RIGHT, SAMPLED, Obstacle, case_fixture, closed, held, moved, solved
 from workhold import Fixture, InputError, Peg, Plate, Pose, Vise, Workpiece
 from workhold.seating.equilibria import equilibria
 from workhold.seating.figures import Seating
@@ -152,23 +152,6 @@ def test_beyond_the_pass_lies_another_place(number):
     # No pass below it leads from the seat to elsewhere.
     lower = [one for one in tree.joins if one.separation < join.separation and place in one.places]
     assert all(one.places == (place, place) for one in lower)
-
-
-def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[float, float]) -> Fixture:
-    """The same fixture with its pegs named otherwise, turned by half a turn, or moved."""
-    sign = -1.0 if half_turn else 1.0
-    pegs = []
-    for k in order:
-        peg = fixture.pegs[k]
-        carrier = peg.carrier if not half_turn else (LEFT if peg.carrier == RIGHT else RIGHT)
-        pegs.append(Peg(carrier, 0, 0, sign * peg.x + shift[0], sign * peg.y + shift[1], 0, 0.0))
-    pose = Pose(
-        fixture.pose.theta_deg + (180.0 if half_turn else 0.0),
-        sign * fixture.pose.x + shift[0],
-        sign * fixture.pose.y + shift[1],
-    )
-    # The pegs at separation 0 stand where they stood: the separation stays as it is told.
-    return Fixture("I", tuple(pegs), pose, fixture.jaw_separation, {})
 
 
 @pytest.mark.parametrize(

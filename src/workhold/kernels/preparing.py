@@ -129,9 +129,9 @@ def seats_and_passes() -> Calls:
     yield clearances, (points, rows, 0, 0, one)
     yield make_cells, (given, np.zeros((0, STRETCH_LENGTH)), cells)
     yield held_at, (none, np.zeros(0), given, np.zeros((0, 4)))
-    yield three_contacts, (cells, given, stack, roots)
+    yield three_contacts, (cells, given, np.zeros((0, 3)), 0.0, stack, roots)
     yield two_holdings, (cells, cells, given, stack, roots)
-    yield third_of_jaw, (cells, given, stack, roots)
+    yield third_of_jaw, (cells, given, np.zeros((0, 3)), stack, roots)
     for complete in (complete_three, complete_two):
         yield complete, (roots, given, pockets, many)
     yield complete_third, (roots, given, pockets, np.zeros(CANDIDATE_LENGTH), many)

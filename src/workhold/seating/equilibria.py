@@ -72,9 +72,9 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     # Curves run past the ends of pieces by a hair, and so do the pieces that their roots are sought on.
     given, sought = holdings.given, holdings.given._replace(rows=np.array(locus.loose))
     stack, pockets = np.empty((DEPTH, 2)), locus.pocket_pieces
-    three = filled(ROOT_LENGTH, 1024, three_contacts, holdings.cells, sought, stack)
+    three = filled(ROOT_LENGTH, 1024, three_contacts, holdings.cells, sought, locus.discs, pattern.stop, stack)
     two = filled(ROOT_LENGTH, 1024, two_holdings, holdings.of_jaw(0), holdings.of_jaw(1), sought, stack)
-    third = filled(ROOT_LENGTH, 1024, third_of_jaw, holdings.cells, sought, stack)
+    third = filled(ROOT_LENGTH, 1024, third_of_jaw, holdings.cells, sought, locus.discs, stack)
     candidates = np.concatenate(
         [
             filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, given, pockets),

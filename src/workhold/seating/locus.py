@@ -102,6 +102,19 @@ class Locus:
         return loosened(self.rows)
 
     @cached_property
+    def discs(self) -> Array:
+        """Discs (N, 3) in which the pieces lie: middle and radius in mm."""
+        rows, whole = self.loose, self.loose[:, HALF_EXTENT] >= pi / 2.0
+        is_arc = rows[:, IS_ARC] != 0.0
+        out = np.array(rows[:, [X, Y, HALF_EXTENT]])
+        out[is_arc, 2] = rows[is_arc, RADIUS]
+        # Shorter arcs about their own middle, from which the ends are farthest.
+        short = is_arc & ~whole
+        out[short, :2] += rows[short, RADIUS, None] * rows[short][:, [AXIS_X, AXIS_Y]]
+        out[short, 2] = 2.0 * rows[short, RADIUS] * np.sin(rows[short, HALF_EXTENT] / 2.0)
+        return out
+
+    @cached_property
     def spans(self) -> Array:
         """Lowest and highest parameter (N, 2) of the pieces, past pockets by half their other extent's reach.
 

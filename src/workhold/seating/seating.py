@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from math import cos, pi, radians, sin, tau
 
 import numpy as np
@@ -25,6 +26,7 @@ from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.search.cells import thread_count
 from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
@@ -49,7 +51,7 @@ KINDS = {2: "curved", 3: "curved", 4: "fixture"}
 
 @define(eq=False)
 class Solver:
-    """Solves patterns of pegs on a part, each once.
+    """Solves patterns of pegs on a part, each once: of one fixture with :meth:`of`, of many with :meth:`of_all`.
 
     Parameters
     ----------
@@ -94,12 +96,51 @@ class Solver:
         WorkholdError
             When the fixture is not found among the seats of its own pegs, which is a mistake of the program.
         """
-        pattern = Pattern.of(fixture, self.toolkit)
+        return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
+
+    def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
+        """The seating of a fixture of a pattern."""
         key = pattern.key()
         if key not in self.solved:
             self.solved[key] = pattern, self.trees(pattern)
         known, trees = self.solved[key]
         return Reading(self, fixture, pattern, known, trees).seating(with_cage)
+
+    def of_all(self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None) -> list[Seating]:
+        """The seatings of many fixtures, in their order; patterns are shared out among threads.
+
+        Parameters
+        ----------
+        with_cage : see :meth:`of`.
+        threads : how many; None for one on each processor. The seatings do not depend on it.
+
+        Raises
+        ------
+        InputError
+            As ``Pattern.of``, and for a number of threads that is too large.
+        WorkholdError
+            As :meth:`of`.
+        """
+        given = [(fixture, Pattern.of(fixture, self.toolkit)) for fixture in fixtures]
+        groups: dict[tuple[object, ...], list[int]] = {}
+        for number, (_, pattern) in enumerate(given):
+            groups.setdefault(pattern.key(), []).append(number)
+
+        def of_group(numbers: list[int]) -> list[Seating]:
+            return [self.read(*given[number], with_cage) for number in numbers]
+
+        count = min(thread_count(threads), len(groups))
+        if count > 1:
+            with ThreadPoolExecutor(max_workers=count) as pool:
+                told = list(pool.map(of_group, groups.values()))
+        else:
+            told = [of_group(numbers) for numbers in groups.values()]
+        by_number = {
+            n: one
+            for numbers, many in zip(groups.values(), told, strict=True)
+            for n, one in zip(numbers, many, strict=True)
+        }
+        return [by_number[number] for number in range(len(given))]
 
 
 @define(frozen=True, eq=False)
@@ -295,6 +336,5 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     >>> round(told.capture_opening, 3), round(told.sticking_friction, 3)
     (0.03, 0.083)
     """
-    solver = Solver(result.workpiece, result.toolkit)
     chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
-    return [solver.of(fixture, with_cage) for fixture in chosen]
+    return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)

@@ -171,17 +171,30 @@ def two_holdings(left: Array, right: Array, given: Given, stack: Array, out: Arr
 
 
 @compiled
-def third_of_jaw(cells: Array, given: Given, stack: Array, out: Array) -> int:
-    """Orientations at which a third peg of a holding's own jaw touches a piece; how many, or -1. See ``two_holdings``."""
+def third_of_jaw(cells: Array, given: Given, discs: Array, stack: Array, out: Array) -> int:
+    """Orientations at which a third peg of a holding's own jaw touches a piece; how many, or -1. See ``two_holdings``.
+
+    Parameters
+    ----------
+    discs : (N, 3) around the pieces: middle and radius in mm.
+    """
     count = 0
     for number in range(cells.shape[0]):
         cell = cells[number]
         holding = given.holdings[int(cell[HOLDING])]
         tail, head = int(holding[FIRST_PEG]), int(holding[SECOND_PEG])
+        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
+        s = held(holding, given, psi)
+        cosine, sine = cos(psi), sin(psi)
         for third in range(4):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
+            ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
+            x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
+            play = (hypot(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach + END + ROUNDING
             for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
+                if cell[VAGUE] == 0.0 and hypot(x - discs[piece, 0], y - discs[piece, 1]) > discs[piece, 2] + play:
+                    continue
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:
                     return -1

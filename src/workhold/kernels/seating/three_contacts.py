@@ -1,10 +1,11 @@
 """Where the normal of a third peg, of the other jaw, goes through the instant centre of a holding: three forces in balance.
 
-Over a range of orientations the instant centre P moves no faster than the speed V of its cell, which bounds the foot of P on
-a piece, the directions of all three forces and the height missed (``roots.MISS``). A range is dropped where the foot is off
-the piece, the forces cannot all press, or the height cannot vanish. Where the derivative keeps its sign, by an enclosure of
-P' (``chord.center_speeds``), there is one root at most; else the range is halved. What is too narrow to be halved is told as
-in doubt, but for ranges beside a tangency, where V tells nothing, in which three values hardly differ.
+Over a range of orientations the instant centre P moves no faster than the speed V of its cell, which bounds the foot of P
+on a piece, the directions of all three forces and the height missed (``roots.MISS``). A range is dropped where the foot is
+off the piece, the forces cannot all press, or the height cannot vanish; before that, whole pieces by the discs around them.
+Where the derivative keeps its sign, by an enclosure of P' (``chord.center_speeds``), there is one root at most; else the
+range is halved. What is too narrow to be halved is told as in doubt, but for ranges beside a tangency, where V tells
+nothing, in which three values hardly differ.
 """
 
 from __future__ import annotations
@@ -63,6 +64,38 @@ def may_balance(
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
     first, second = sign * (f[3] * s[4] - f[2] * s[5]), sign * (s[3] * f[2] - s[2] * f[3])
     return first >= -(turn + turn_b) - 1e-9 and second >= -(turn + turn_a) - 1e-9
+
+
+@inner
+def is_out_of_reach(
+    disc: Array,
+    s: Held,
+    cosine: float,
+    sine: float,
+    speed: float,
+    reach: float,
+    above: float,
+    beyond: float,
+    push: float,
+) -> bool:
+    """Whether no point in a disc of the part comes level with the third peg over a range, at a separation above the stop.
+
+    Seen from the first peg, a point c of the part rises by x . (P - c) per radian and goes along x by y . (c - P); P moves
+    no faster than ``speed``.
+
+    Parameters
+    ----------
+    disc : (3,) middle and radius in mm.
+    above, beyond : height of the third peg over the first, and its place along x from the first at the stop, in mm.
+    push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
+    """
+    gx, gy = disc[0] - s[6], disc[1] - s[7]
+    dx, dy = disc[0] - s[0], disc[1] - s[1]
+    bend = reach * reach / 2.0 * (abs(gx) + abs(gy) + speed * (1.0 + reach))
+    slack = disc[2] + bend + END + ROUNDING
+    if abs(cosine * dy - sine * dx - above) > slack + reach * abs(cosine * gx + sine * gy):
+        return True
+    return push * (cosine * dx + sine * dy - beyond) < -slack - reach * abs(cosine * gy - sine * gx)
 
 
 @inner
@@ -206,12 +239,14 @@ def write_root(
 
 
 @compiled
-def three_contacts(cells: Array, given: Given, stack: Array, out: Array) -> int:
+def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack: Array, out: Array) -> int:
     """All orientations at which two pegs of one jaw and one of the other may balance; how many, or -1 where they do not fit.
 
     Parameters
     ----------
     cells : (C, 7) of the holdings.
+    discs : (N, 3) around the pieces.
+    stop : the smallest jaw separation in mm.
     stack : (DEPTH, 2) work space.
     out : (N, 6) roots, written here.
     """
@@ -221,19 +256,29 @@ def three_contacts(cells: Array, given: Given, stack: Array, out: Array) -> int:
         holding = given.holdings[int(cell[HOLDING])]
         if cell[VAGUE] != 0.0 or holding[KIND] == 1.0:
             continue
-        k = int(holding[SOURCE])
+        k, tail = int(holding[SOURCE]), int(holding[FIRST_PEG])
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-        middle = held(holding, given, (cell[LOW] + cell[HIGH]) / 2.0)
+        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
+        middle = held(holding, given, psi)
+        cosine, sine = cos(psi), sin(psi)
         sign = 1.0 if middle[2] * middle[5] - middle[3] * middle[4] >= 0.0 else -1.0
-        whole = center_velocity(a, b, given.reals[k], cell[LOW] + holding[ANGLE], cell[HIGH] + holding[ANGLE], sign)
+        whole, is_known = ((0.0, 0.0), (0.0, 0.0)), False
         for third in range(4):
-            if given.right[third] == given.right[int(holding[FIRST_PEG])]:
+            if given.right[third] == given.right[tail]:
                 continue
+            push = 1.0 if given.right[third] == 1 else -1.0
+            above = given.pegs[third, 1] - given.pegs[tail, 1]
+            beyond = given.pegs[third, 0] - given.pegs[tail, 0] + push * stop
             for piece in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
+                if is_out_of_reach(discs[piece], middle, cosine, sine, cell[SPEED], reach, above, beyond, push):
+                    continue
                 c = given.rows[piece]
                 # Where its normal is that of another contact throughout, the one that is left has no force.
                 if share_normals(a, c) or share_normals(b, c):
                     continue
+                if not is_known:
+                    low, high = cell[LOW] + holding[ANGLE], cell[HIGH] + holding[ANGLE]
+                    whole, is_known = center_velocity(a, b, given.reals[k], low, high, sign), True
                 for sides in range(1 if c[IS_ARC] == 0.0 else 2):
                     side = 1.0 - 2.0 * sides
                     count = roots_of_cell(cell, third, piece, side, middle, whole, given, stack, out, count)

@@ -1,0 +1,56 @@
+"""What is left out before it is looked at is nothing, and many fixtures at once are told as one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from seating_examples import moved, solved
+from workhold.kernels.seating.candidates import complete_third, complete_three
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, DEPTH, SEPARATION
+from workhold.kernels.seating.four_contacts import third_of_jaw
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.seating.holdings import Holdings, filled
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+
+
+def told_by(holdings, locus, pattern, discs, stop):
+    """Candidates of three contacts, and of four with three on one jaw, above the stop."""
+    sought, stack = holdings.given._replace(rows=np.array(locus.loose)), np.empty((DEPTH, 2))
+    three = filled(ROOT_LENGTH, 4096, three_contacts, holdings.cells, sought, discs, stop, stack)
+    third = filled(ROOT_LENGTH, 4096, third_of_jaw, holdings.cells, sought, discs, stack)
+    found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, locus.pocket_pieces)
+    room, fixed = 8 * len(third) + 16, np.empty(CANDIDATE_LENGTH)
+    four = filled(CANDIDATE_LENGTH, room, complete_third, third, holdings.given, locus.pocket_pieces, fixed)
+    return found[found[:, SEPARATION] > pattern.stop], four
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_pieces_left_out_have_no_roots(number):
+    """Discs as large as the table and no stop let every piece be looked at: no more balances are found."""
+    solver, fixture, _ = solved(number)
+    pattern = Pattern.of(fixture, solver.toolkit)
+    locus = solver.closing(pattern, False).locus
+    holdings = Holdings.of(locus, pattern)
+    everywhere = np.array(locus.discs)
+    everywhere[:, 2] += 1e4
+    few, fours = told_by(holdings, locus, pattern, locus.discs, pattern.stop)
+    all_of_them, every_four = told_by(holdings, locus, pattern, everywhere, -1e4)
+    assert len(few) > 20
+    assert np.array_equal(few, all_of_them)
+    assert np.array_equal(fours, every_four)
+
+
+def test_many_fixtures_are_told_as_one_by_one():
+    """In their order, two of one pattern among them, with any number of threads."""
+    solver, fixture, told = solved(1)
+    again = moved(fixture, [1, 2, 3, 0], False, (16.0, 8.0))
+    turned = moved(fixture, [0, 1, 2, 3], True, (0.0, 0.0))
+    for threads in (1, 2):
+        one, two, three = Solver(solver.workpiece, solver.toolkit).of_all([again, turned, fixture], False, threads)
+        for other, given in ((one, again), (two, turned), (three, fixture)):
+            own = next(seat for seat in other.seats if seat.is_own)
+            assert own.pose.theta_deg == pytest.approx(given.pose.theta_deg % 360.0, abs=1e-9)
+            assert own.pose.x == pytest.approx(given.pose.x, abs=1e-9)
+            assert other.capture_opening == pytest.approx(told.capture_opening, abs=1e-9)

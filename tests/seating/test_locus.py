@@ -1,0 +1,43 @@
+"""The boundary on which the centres of pegs lie, and the discs by which its pieces are left out."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+import workhold
+from seating_examples import solved
+from workhold import Workpiece
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
+from workhold.seating.locus import Locus
+
+OCTAGON = Workpiece.from_points("octagon", [(30 * cos(k * pi / 4), 30 * sin(k * pi / 4)) for k in range(8)])
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_pieces_lie_in_their_discs_and_reach_their_edges(number):
+    locus = next(iter(solved(number)[0].loci.values()))
+    for row, (x, y, radius) in zip(locus.rows, locus.discs, strict=True):
+        ts = np.linspace(-row[HALF_EXTENT], row[HALF_EXTENT], 41)
+        if row[IS_ARC] == 0.0:
+            points = row[1:3] + ts[:, None] * row[3:5]
+        else:
+            turned = np.stack(
+                [row[3] * np.cos(ts) - row[4] * np.sin(ts), row[4] * np.cos(ts) + row[3] * np.sin(ts)], axis=1
+            )
+            points = row[1:3] + row[RADIUS] * turned
+        away = np.hypot(*(points - [x, y]).T).max()
+        assert radius - 1e-3 <= away <= radius + 1e-9
+
+
+def test_rolled_corners_make_up_a_turn():
+    """Around a convex part the pegs' boundary is its outline and one circle (J. Steiner, 1840), blunt corners included."""
+    for part in (OCTAGON, workhold.load("oblongPart")):
+        rows = Locus.of(part, (2.5, 2.5)).rows
+        outer = sum(2.0 * row[HALF_EXTENT] * (row[RADIUS] if row[IS_ARC] != 0.0 else 1.0) for row in rows)
+        around = sum(2.0 * s.half_extent * getattr(s, "radius", 1.0) for s in (face.segment for face in part.faces))
+        assert outer == pytest.approx(around + 2.0 * pi * 2.5, abs=1e-9)
+    corners = [row[HALF_EXTENT] for row in Locus.of(OCTAGON, (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
+    assert corners == pytest.approx([pi / 8.0] * 8)
