@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
-from workhold.seating.figures import Seating
+from workhold.model.seating import Seating
 from workhold.seating.seating import Solver
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ import pytest
 import workhold
 from seating_examples import LEFT, RIGHT, SAMPLED, Obstacle, case_fixture, closed, held, moved, solved
 from workhold import Fixture, InputError, Peg, Plate, Pose, Vise, Workpiece
+from workhold.model.seating import Seating
 from workhold.seating.equilibria import equilibria
-from workhold.seating.figures import Seating
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 from workhold.seating.tree import Tree

@@ -37,6 +37,7 @@ from workhold.listing.listed import Work, listed_result
 from workhold.listing.ways import joined_ways
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.seating.first import seated_answer
 
 __all__ = ["answer_by_algebra"]
 
@@ -222,6 +223,12 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
     InputError
         As ``workhold.answer``, and for a toolkit whose carriers are not alike.
     """
+    if query.seating is not None:
+
+        def search(asked: Query, share: Progress | None) -> Result:
+            return answer_by_algebra(asked, progress=share, cancel=cancel)
+
+        return seated_answer(query, search, progress=progress, cancel=cancel)
     ways = query.toolkit.ways
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from workhold.cli.table import Table
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.seating import Seat, Seating
     from workhold.model.units import Unit
-    from workhold.seating.figures import Seat, Seating
 
 __all__ = ["seat"]
 

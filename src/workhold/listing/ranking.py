@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, figure_number
+from workhold.model.quality import CLOSURE_MARGIN, RANKED, ranked_number
 from workhold.model.result import FixtureTable
 from workhold.model.tolerance import Tolerance
 from workhold.statics.contact_matrix import Touched
@@ -48,13 +48,13 @@ def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[ND
     """The same without regard to what is no fixture for a workshop."""
     keys = []
     for place, key in enumerate(ranking):
-        number = figure_number(key)
+        number = ranked_number(key)
         assert number is not None
         # Rounding must not tell fixtures apart that are equal, so what is coarse is rounded finely first.
         values = np.round(quality[:, number], FIGURE_DECIMALS)
         if place < len(ranking) - 1:
             values = coarse(values)
-        keys.append(-values if FIGURES[number].more_is_better else values)
+        keys.append(-values if RANKED[number].more_is_better else values)
     return keys
 
 

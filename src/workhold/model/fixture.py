@@ -7,7 +7,7 @@ from math import atan, radians, tan
 from pathlib import Path
 from typing import Any
 
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
@@ -161,7 +161,7 @@ class Listed:
         return int(self.result.table.same_holes(self.row)) if self.in_same_holes is None else self.in_same_holes
 
     def __reduce__(self) -> tuple[Any, ...]:
-        alone = evolve(self.result, table=self.result.table.take(slice(self.row, self.row + 1)))
+        alone = self.result.part(slice(self.row, self.row + 1))
         return Listed, (alone, 0, self.rank, self.count, self.others)
 
 
@@ -181,6 +181,7 @@ class Fixture:
     pair : what is particular to two clamps; None of other fixtures.
     listed : where it is listed, so that it can be drawn; None of one that was put together otherwise. It makes no difference
         between fixtures.
+    seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not asked.
     """
 
     type: str
@@ -191,11 +192,18 @@ class Fixture:
     direction: str | None = None
     pair: Pair | None = None
     listed: Listed | None = field(default=None, eq=False)
+    seating: Any = field(default=None, eq=False)
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
         kind = self.type if self.direction is None else f"{self.type} {self.direction}"
-        return f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees>"
+        caught = ""
+        if self.seating is not None:
+            opening = self.seating.capture_opening
+            caught = ", never lost" if opening is None else f", caught below {opening:.3f} mm"
+        return (
+            f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees{caught}>"
+        )
 
     def _repr_svg_(self) -> str | None:
         return None if self.listed is None else str(self.draw())

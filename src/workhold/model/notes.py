@@ -14,6 +14,7 @@ __all__ = [
     "no_fixture_notes",
     "no_pair_note",
     "no_place_note",
+    "seated_note",
     "stopped_note",
     "undecided_note",
 ]
@@ -69,6 +70,14 @@ def fitted_note(departure: float) -> str:
 def kept_note(found: int, kept: int) -> str:
     """Of a server that keeps only some of the fixtures found, the best."""
     return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
+
+
+def seated_note(looked_at: int, kept: int) -> str:
+    """Of a search that lists only fixtures whose seating is as asked: of so many looked at so many are."""
+    return (
+        f"The seating of the first {looked_at:,} fixtures was worked out: {kept:,} of them are as asked, and no other is "
+        "listed. Of fixtures beyond these nothing is known, and some may be as asked: look at more of them to see."
+    )
 
 
 def stopped_note(seconds: float) -> str:

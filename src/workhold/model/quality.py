@@ -18,12 +18,15 @@ __all__ = [
     "LOAD_REACTION",
     "LOCATION_ERROR",
     "PENALTY",
+    "RANKED",
+    "SEATING_FIGURES",
     "SMALLEST_FACE",
     "TILT",
     "WARNINGS",
     "WRENCH_RADIUS",
     "Figure",
     "figure_number",
+    "ranked_number",
 ]
 
 
@@ -99,6 +102,21 @@ FIGURES = (
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
 EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM = range(6, 13)
 
+# Of the fixtures whose seating is asked for (docs/seating.md).
+SEATING_FIGURES = (
+    Figure(
+        "capture_opening", "mm", True, "How far the jaws may stand open when the part is let go, and it comes home."
+    ),
+    Figure("drop_room", "mm", True, "The room at every peg when the jaws are open so far."),
+    Figure("way_out", "mm", True, "How far the jaws open before the part can leave all pegs."),
+    Figure("placing", "mm", True, "How near to its place every point must be put for the part to come home."),
+    Figure("sticking_friction", "", True, "The friction below which the part cannot stick near its seat."),
+    Figure("wrong_seats", "", False, "In how many other places the same pegs can hold the part.", 0),
+    Figure("reading", "mm", True, "What a measurement of the opening must resolve to tell a wrong seat."),
+)
+# All figures that fixtures can be ranked by.
+RANKED = FIGURES + SEATING_FIGURES
+
 
 def figure_number(name: str) -> int | None:
     """The place in :data:`FIGURES` of a figure named with hyphens, underscores or spaces; None when there is none.
@@ -106,5 +124,15 @@ def figure_number(name: str) -> int | None:
     >>> figure_number("location-error")
     3
     """
+    number = ranked_number(name)
+    return None if number is None or number >= len(FIGURES) else number
+
+
+def ranked_number(name: str) -> int | None:
+    """The same in :data:`RANKED`.
+
+    >>> RANKED[ranked_number("capture opening")].option
+    'capture-opening'
+    """
     key = name.strip().lower().replace("-", "_").replace(" ", "_")
-    return next((number for number, figure in enumerate(FIGURES) if figure.key == key), None)
+    return next((number for number, figure in enumerate(RANKED) if figure.key == key), None)

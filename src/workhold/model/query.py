@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import Any, TypeVar
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long, refuse_strong
@@ -18,7 +18,8 @@ from workhold.model.quality import (
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
-    figure_number,
+    RANKED,
+    ranked_number,
 )
 from workhold.model.real import counting_number, real
 from workhold.model.restrictions import Restrictions
@@ -35,6 +36,7 @@ DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
 PAIR_RANKING = ("warnings", "penalty", "clamp_freedom", "clamp_amplification", "closure_margin", "edge_distance")
 LISTINGS = ("best", "all")
+SEATING_KEYS = {figure.key for figure in RANKED[len(FIGURES) :]}
 # Orders by what a user wants most.
 PREFERENCES = {
     "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
@@ -123,11 +125,17 @@ class Query:
     jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where it is open.
     listing : of a toolkit with two clamps "best", one fixture for each seat and pair of directions with the number of pairs
         of clamps there, or "all" of them; None is "best", and of other toolkits nothing.
+    seating : of so many of the first fixtures tell what else their pegs can do with the part, and order them anew (see
+        ``workhold.seating``); None of none.
+    opening : with seating, list only fixtures that catch the part with the jaws open by so much more than they close to, in
+        mm; wrong seats beyond it do not count.
+    foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right one.
 
     Raises
     ------
     InputError
-        For an unknown arrangement or figure, one named twice, numbers out of range, and a figure of loads without loads.
+        For an unknown arrangement or figure, one named twice, numbers out of range, a figure of loads without loads, and
+        what needs seating without it.
     """
 
     workpiece: Workpiece
@@ -141,6 +149,9 @@ class Query:
     best: int | None = None
     jaw_force: float | None = None
     listing: str | None = None
+    seating: int | None = None
+    opening: float | None = None
+    foolproof: bool = False
 
     def __attrs_post_init__(self) -> None:
         refuse_other_kinds(self)
@@ -148,7 +159,8 @@ class Query:
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         pairs = self.toolkit.needs_pairs
-        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads, pairs))
+        object.__setattr__(self, "seating", counting_number("seating", self.seating))
+        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None))
         if self.listing is not None and (not pairs or self.listing not in LISTINGS):
             remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
             raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
@@ -166,6 +178,38 @@ class Query:
                 raise InputError(f"jaw force {force:g} cannot be used: give 0 or more, in N.")
             refuse_strong("jaw force", force)
             object.__setattr__(self, "jaw_force", force)
+        if self.opening is not None:
+            opening = real(self.opening)
+            if not (isfinite(opening) and opening > 0):
+                raise InputError(f"opening {opening:g} is not a length: give more than 0, in mm.")
+            refuse_long("opening", opening)
+            object.__setattr__(self, "opening", opening)
+        if self.has_seating_rules and self.seating is None:
+            raise InputError(
+                "which fixtures catch the part at an opening, or are foolproof, their seating tells, and that is worked out "
+                "for the first ones only: give of how many, such as seating 100."
+            )
+
+    @property
+    def has_seating_rules(self) -> bool:
+        """Whether fixtures are ruled out by their seating."""
+        return self.foolproof or self.opening is not None
+
+    @property
+    def without_seating(self) -> Query:
+        """What is to be found before any seating is worked out: as many as that needs, in an order that does without."""
+        if self.seating is None:
+            return self
+        known = [key for key in self.ranking if key not in SEATING_KEYS]
+        needed = len(known) < len(self.ranking)
+        return evolve(
+            self,
+            ranking=[*dict.fromkeys((*known, *for_loads(DEFAULT_RANKING, self.loads)))] if needed else known,
+            best=None if self.best is None else max(self.best, self.seating),
+            seating=None,
+            opening=None,
+            foolproof=False,
+        )
 
     @property
     def by_margin_alone(self) -> bool:
@@ -189,27 +233,35 @@ def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tu
     return tuple(name for name in known if names is None or name in names)
 
 
-def chosen_ranking(names: Sequence[str] | None, loads: Sequence[Load], pairs: bool = False) -> tuple[str, ...]:
+def chosen_ranking(
+    names: Sequence[str] | None, loads: Sequence[Load], pairs: bool = False, seated: bool = False
+) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
     Raises
     ------
     InputError
-        For a name that is no figure, one given twice, none at all, a figure of loads without loads, and one of two clamps
-        where there is one.
+        For a name that is no figure, one given twice, none at all, a figure of loads without loads, one of two clamps where
+        there is one, and one of seating where that is not asked for.
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loads)
     keys = []
     for name in names:
-        number = figure_number(name)
+        number = ranked_number(name)
         if number is None:
-            raise InputError(f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in FIGURES)}.")
+            known = RANKED if seated else FIGURES
+            raise InputError(f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in known)}.")
+        if number >= len(FIGURES) and not seated:
+            raise InputError(
+                f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how many, such as "
+                "seating 100."
+            )
         if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
             raise InputError(f"there is no load to rank by the {FIGURES[number].words}: give at least one load.")
         if number == CLAMP_FREEDOM and not pairs:
             raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
-        keys.append(FIGURES[number].key)
+        keys.append(RANKED[number].key)
     if not keys:
         raise InputError("there is no figure to rank by: name at least one, such as closure-margin.")
     if len(set(keys)) < len(keys):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
-from attrs import define, field, fields
+from attrs import define, evolve, field, fields
 from numpy.typing import NDArray
 
 from workhold.geometry.segment import Line
@@ -18,6 +18,7 @@ from workhold.model.notes import fitted_note
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
+from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.wall import ENDS, ON_WALL
 from workhold.model.workpiece import Workpiece
@@ -164,6 +165,7 @@ class Result:
     proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
     pairs, seats : of a toolkit with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions; None of others.
+    seating : of the first fixtures, as many as there are of these, what else their pegs can do with the part.
     """
 
     query: Query
@@ -176,6 +178,7 @@ class Result:
     proof: Proof | None = None
     pairs: int | None = None
     seats: int | None = None
+    seating: tuple[Seating, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
         if self.workpiece.departure > 0:
@@ -208,7 +211,7 @@ class Result:
         for start in range(0, len(self), BLOCK):
             block = self.table.take(slice(start, start + BLOCK))
             for index in range(len(block)):
-                yield fixture_at(block, self.toolkit, index, self.workpiece, self.listed(start + index))
+                yield self.made(block, index, start + index)
 
     @overload
     def __getitem__(self, index: int) -> Fixture: ...
@@ -223,7 +226,16 @@ class Result:
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
         row = self.table.take(slice(index, index + 1))
-        return fixture_at(row, self.toolkit, 0, self.workpiece, self.listed(index))
+        return self.made(row, 0, index)
+
+    def made(self, table: FixtureTable, row: int, index: int) -> Fixture:
+        """The fixture of an index, which is in a row of a table."""
+        made = fixture_at(table, self.toolkit, row, self.workpiece, self.listed(index))
+        return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
+
+    def part(self, rows: slice) -> Result:
+        """The same with fewer fixtures, those of a slice."""
+        return evolve(self, table=self.table.take(rows), seating=self.seating[rows])
 
     def listed(self, index: int) -> Listed:
         """Where the fixture of an index stands."""
@@ -235,7 +247,8 @@ class Result:
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
         count = f"{only}{len(self):,} fixture{'s' * (len(self) != 1)}"
         where = f"{self.toolkit.wording.inside.partition(' ')[0]} a {self.toolkit.noun}"
-        return f"<Result: {count} of {self.workpiece.name} {where} ({kinds}){whole}>"
+        seated = f", with the seating of the first {len(self.seating):,}" if self.seating else ""
+        return f"<Result: {count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}>"
 
     def _repr_svg_(self) -> str | None:
         return str(self.draw()) if len(self) else None

@@ -105,6 +105,7 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
             else {"pairs": pair.count, "ratio": [finite(one) for one in pair.ratio], "order": order_words(fixture)}
         ),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
+        **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
     }
 
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from workhold.errors import InputError
-from workhold.files.result.csv import column_names
+from workhold.files.result.csv import column_names, seating_values
 from workhold.files.result.writer import fixture_rows
+from workhold.model.quality import SEATING_FIGURES
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
@@ -68,8 +69,11 @@ def columns_of(result: Result) -> dict[str, Any]:
             block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
         block += looks
         blocks.append(block)
-    joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (len(names) - 1)
+    told = len(SEATING_FIGURES) if result.seating else 0
+    joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (len(names) - 1 - told)
     columns = [np.arange(1, len(result) + 1), *joined]
+    if result.seating:
+        columns += list(np.array(seating_values(result)).T)
     return {
         name: column.tolist() if column.dtype.kind == "U" else column
         for name, column in zip(names, columns, strict=True)

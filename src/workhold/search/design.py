@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from threading import Event
-from typing import Protocol
 
 from attrs import evolve
 
@@ -23,7 +21,7 @@ from workhold.model.notes import no_fixture_notes, no_place_note
 from workhold.model.query import Query, asked_ranking
 from workhold.model.real import counting_number
 from workhold.model.restrictions import Restrictions
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
@@ -34,26 +32,12 @@ from workhold.search.fence import answer_on_fence
 from workhold.search.fence_pairs import answer_of_pairs_on_fence
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
+from workhold.seating.first import Receiver, receive_seated, seated_answer
 
 __all__ = ["Receiver", "answer", "design"]
 
 # The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
 SEARCH = 0.9
-
-
-class Receiver(Protocol):
-    """What takes a result too large for memory.
-
-    Attributes
-    ----------
-    folder : where there is room for what is being sorted.
-    """
-
-    @property
-    def folder(self) -> Path: ...
-
-    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other."""
 
 
 def design(
@@ -70,6 +54,9 @@ def design(
     best: int | None = None,
     jaw_force: float | None = None,
     listing: str | None = None,
+    seating: int | None = None,
+    opening: float | None = None,
+    foolproof: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -81,6 +68,7 @@ def design(
     ----------
     workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, listing : see
         :class:`workhold.model.query.Query`.
+    seating, opening, foolproof : the same.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None is all.
     rank_by : the query's ranking.
     prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
@@ -109,7 +97,7 @@ def design(
     """
     ranking = asked_ranking(rank_by, prefer, loads)
     asked = types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force, listing
-    query = Query(workpiece, toolkit, *asked)
+    query = Query(workpiece, toolkit, *asked, seating, opening, foolproof)
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
 
 
@@ -153,6 +141,8 @@ def answer(
     (3, True)
     """
     workers = thread_count(counting_number("threads", threads))
+    if query.seating is not None:
+        return answer_with_seating(query, workers, progress, cancel, preview, receiver)
     if query.toolkit.needs_pairs:
         if query.toolkit.wall is not None:
             return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
@@ -165,6 +155,24 @@ def answer(
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
     return handed_over(joined_ways(results, query), receiver)
+
+
+def answer_with_seating(
+    query: Query,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    preview: Preview | None,
+    receiver: Receiver | None,
+) -> Result:
+    """The answer with the seating of the first fixtures, see :func:`answer`."""
+
+    def search(asked: Query, share: Progress | None, receiver: Receiver | None = None) -> Result:
+        return answer(asked, threads=threads, progress=share, cancel=cancel, preview=preview, receiver=receiver)
+
+    if receiver is None:
+        return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
+    return receive_seated(query, search, receiver, threads=threads, progress=progress, cancel=cancel)
 
 
 def answer_of_a_way(

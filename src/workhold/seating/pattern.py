@@ -11,7 +11,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import OpeningVise, Vise
 
-__all__ = ["Pattern"]
+__all__ = ["Pattern", "refuse_unseated"]
 
 Array = NDArray[np.float64]
 # mm. Peg patterns that agree to this are one: places are whole steps of a lattice.
@@ -44,12 +44,8 @@ class Pattern:
         InputError
             In another toolkit, and for pegs without a radius.
         """
-        if not isinstance(toolkit, Vise) or isinstance(toolkit, OpeningVise):
-            raise InputError(
-                "what a part does while it is clamped is told for a vise that closes: this result has another toolkit."
-            )
-        if toolkit.peg_radius <= 0.0:
-            raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")
+        refuse_unseated(toolkit)
+        assert isinstance(toolkit, Vise)
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs], dtype=np.int64)
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs], dtype=np.float64)
         places[:, 0] -= right * fixture.jaw_separation
@@ -73,3 +69,19 @@ class Pattern:
         y = self.pegs[:, 1] - configs[:, 2:3]
         cosine, sine = np.cos(configs[:, :1]), np.sin(configs[:, :1])
         return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=2)
+
+
+def refuse_unseated(toolkit: Toolkit) -> None:
+    """Refuse a toolkit of which no seating is worked out.
+
+    Raises
+    ------
+    InputError
+        For another one than a vise that closes, and for pegs without a radius.
+    """
+    if not isinstance(toolkit, Vise) or isinstance(toolkit, OpeningVise):
+        raise InputError(
+            "what a part does while it is clamped is told for a vise that closes: this result has another toolkit."
+        )
+    if toolkit.peg_radius <= 0.0:
+        raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")

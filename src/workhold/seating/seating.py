@@ -24,13 +24,13 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
+from workhold.model.seating import Cage, Contact, Pass, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import thread_count
 from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
-from workhold.seating.figures import Cage, Contact, Pass, Seat, Seating
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
@@ -276,6 +276,7 @@ class Reading:
             stop=self.pattern.stop,
             seats=seats,
             unsettled=() if not unsettled else (f"{unsettled} places where the part may rest could not be settled.",),
+            most=travel.most if (travel := self.solver.toolkit.moving.travel) else None,
         )
 
     def lowest_pass(self, join: Join) -> Pass:

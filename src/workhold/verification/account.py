@@ -15,6 +15,8 @@ The identities, for each type apart where a number is told for each:
 - of a fence: cells = hull_edges, candidates = contacts_examined;
 - features >= faces touched;
 - of two clamps see ``verification.pair_account``;
+- where fixtures are ruled out by their seating, a note says how many of how many are listed, and each that is listed has
+  its seating told; without such rules as many have it as were asked for;
 - the notes are those that follow from these numbers.
 
 What became of the candidates, and how much work that was, is otherwise known to the search alone.
@@ -31,6 +33,7 @@ from workhold.model.notes import (
     kept_note,
     no_fixture_notes,
     no_place_note,
+    seated_note,
     stopped_note,
     undecided_note,
 )
@@ -51,6 +54,7 @@ MOST_NAMED = 20
 def account_faults(listing: Listing) -> Iterator[str]:
     """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each."""
     yield from count_faults(listing)
+    yield from seating_faults(listing)
     if listing.query.toolkit.needs_pairs:
         yield from pair_count_faults(listing)
     if listing.proof is None:
@@ -78,8 +82,22 @@ def count_faults(listing: Listing) -> Iterator[str]:
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
         yield f"the best {best} are asked for, but {listed} are listed"
-    if found > listed != best and kept_note(found, listed) not in listing.notes:
+    said = kept_note(found, listed) in listing.notes or listing.query.has_seating_rules
+    if found > listed != best and not said:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
+
+
+def seating_faults(listing: Listing) -> Iterator[str]:
+    """Contradictions between how many fixtures have their seating told and how many should."""
+    query, listed = listing.query, len(listing.fixtures)
+    first = listing.fixtures[: query.seating or 0]
+    told = sum(fixture.seating is not None for fixture in first)
+    if query.has_seating_rules and (told < listed or listed > len(first)):
+        yield f"{listed} fixtures are listed for their seating, but it is told of {told}"
+    elif listing.complete and told < len(first):
+        yield f"the seating of {len(first)} fixtures is asked for, but it is told of {told}"
+    if any(fixture.seating is not None for fixture in listing.fixtures[len(first) :]):
+        yield f"the seating of more fixtures is told than of the {query.seating or 0} that it is asked of"
 
 
 def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
@@ -158,6 +176,8 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
     undecided = 0 if proof is None else len(proof.undecided)
     if undecided:
         yield (undecided_note(undecided),)
+    if found and listing.query.has_seating_rules:
+        yield tuple(seated_notes(listing))
     systems = listing.statistics.get("undecided", 0)
     yield from (tuple(n for n in listing.notes if n.startswith("Undecided: ")) or ("Undecided: ",),) * min(
         systems, MOST_NAMED + 1
@@ -176,9 +196,21 @@ def may_be_said(note: str, listing: Listing) -> bool:
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and note == best_note(best):
         return found >= best
+    if listing.query.has_seating_rules and note in seated_notes(listing):
+        return True
     if note == kept_note(found, listed):
         return found > listed
     return not listing.complete and note in stopped_notes(note)
+
+
+def seated_notes(listing: Listing) -> Iterator[str]:
+    """The notes that may say how many fixtures had their seating worked out, and of how many it is as asked."""
+    listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
+    most = min(query.seating or 0, found)
+    for looked_at in range(listed if not listing.complete else most, most + 1):
+        # Of those that are as asked no more than the best are listed.
+        for kept in range(listed, (looked_at if listed == query.best else listed) + 1):
+            yield seated_note(looked_at, kept)
 
 
 def stopped_notes(note: str) -> Iterator[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import mapped_archive
@@ -18,6 +18,7 @@ from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
 from workhold.model.toolkit import Toolkit
+from workhold.verification.claims import Claim
 from workhold.verification.plate import LOCATORS
 from workhold.verification.reading import with_working_forces
 
@@ -57,6 +58,7 @@ class FixturesInColumns(Sequence[Fixture]):
 
     columns: Columns
     toolkit: Toolkit
+    claims: tuple[Claim, ...] = ()
 
     def __attrs_post_init__(self) -> None:
         for start in range(0, len(self), BLOCK):
@@ -84,6 +86,13 @@ class FixturesInColumns(Sequence[Fixture]):
     def __getitem__(self, place: int | slice) -> Fixture | list[Fixture]:
         if isinstance(place, slice):
             return [self[k] for k in range(len(self))[place]]
+        made = self.made(place)
+        # A place from the end is one from the start.
+        place %= len(self)
+        return evolve(made, seating=self.claims[place]) if place < len(self.claims) else made
+
+    def made(self, place: int) -> Fixture:
+        """The fixture of a place, without its seating."""
         numbers = {name: values[place].tolist() for name, values in self.columns.items()}
         arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
         pegs, pairs = [], isinstance(travelled, list)

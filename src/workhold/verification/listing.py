@@ -11,18 +11,20 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.archive import is_archive
 from workhold.errors import InputError
 from workhold.files.result.forms import Head
 from workhold.files.result.head import checked_head
 from workhold.files.result.parts import read_parts
+from workhold.files.result.seating_forms import seatings_told
 from workhold.files.text import json_value
 from workhold.model.fixture import Fixture
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.verification.claims import claim_of, with_claims
 from workhold.verification.columns import Columns, FixturesInColumns, columns_of
 from workhold.verification.hardware import Hardware
 from workhold.verification.kinds import hardware_of
@@ -67,7 +69,7 @@ def listing_of(result: Result) -> Listing:
     """What a result claims that is not in a file."""
     return Listing(
         result.query,
-        list(result),
+        with_claims(list(result), result.query),
         result.counts,
         result.found,
         result.distinct,
@@ -89,13 +91,13 @@ def read_listing(path: str | Path) -> Listing:
         When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
     """
     path = Path(path)
-    head, taken = head_and_fixtures(path)
+    head, taken, seatings = head_and_fixtures(path)
     try:
         query = head.query()
         types = query.toolkit.types
         return Listing(
             query,
-            taken_in(taken, hardware_of(query.toolkit, query.listing)),
+            taken_in(taken, seatings, hardware_of(query.toolkit, query.listing), query, path),
             numbers_of(head.counts, "counts", types),
             numbers_of(head.found, "found", types, head.counts),
             numbers_of(head.distinct, "distinct", types, head.counts),
@@ -111,8 +113,8 @@ def read_listing(path: str | Path) -> Listing:
         raise InputError(f"{path} cannot be verified: {error}") from error
 
 
-def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns]:
-    """The head of a file, and its fixtures, or their numbers where it is one in columns.
+def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[Any]]:
+    """The head of a file, and its fixtures, or their numbers and the seating of the first where it is one in columns.
 
     Raises
     ------
@@ -122,29 +124,38 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns]:
     try:
         if is_archive(path):
             text, columns = columns_of(path)
-            return checked_head(json_value(text), path), columns
+            data = json_value(text)
+            head = checked_head(data, path)
+            return head, columns, seatings_told(data, path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    return read_parts(path, fixtures_of)
+    return *read_parts(path, fixtures_of), []
 
 
-def taken_in(fixtures: list[Fixture] | Columns, hardware: Hardware) -> Sequence[Fixture]:
-    """Fixtures as they are read, of a kind of toolkit.
+def taken_in(
+    fixtures: list[Fixture] | Columns, seatings: Sequence[Any], hardware: Hardware, query: Query, path: Path
+) -> Sequence[Fixture]:
+    """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it is told apart from them.
 
     Raises
     ------
     InputError
-        Naming the first one that is of another kind.
+        Naming the first one that is of another kind, or whose seating cannot be used.
     """
     if not isinstance(fixtures, list):
-        return FixturesInColumns(fixtures, hardware.toolkit)
+        listed = FixturesInColumns(fixtures, hardware.toolkit)
+        if len(seatings) > len(listed):
+            raise InputError(f"the seating of {len(seatings)} fixtures is told, but {len(listed)} are listed.")
+        poses = [fixture.pose for fixture in listed[: len(seatings)]]
+        told = enumerate(zip(seatings, poses, strict=True), 1)
+        return evolve(listed, claims=tuple(claim_of(one, pose, query, path, k) for k, (one, pose) in told))
     out = []
     for number, fixture in enumerate(fixtures, 1):
         try:
             out.append(hardware.taken(fixture))
         except InputError as error:
             raise InputError(f"fixture {number} cannot be used: {error}.") from error
-    return out
+    return with_claims(out, query, path)
 
 
 def keys_missing(head: Head) -> list[str]:
@@ -153,6 +164,8 @@ def keys_missing(head: Head) -> list[str]:
     # departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat"}
+    if head.seating is None:
+        spared |= {"seating", "opening", "foolproof"}
     if getattr(head.toolkit, "clamps", 1) == 1:
         spared |= {"listing", "pairs", "seats", "toolkit.clamps"}
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]

@@ -1,20 +1,31 @@
 """Whether fixtures are listed in the order that was asked for (docs/quality.md, "Which comes first").
 
 Fixtures that are none for a workshop come last. Every figure but the last counts to two significant digits, the last to nine
-decimals; what is equal stands in the order of types, holes, orientations and faces. A figure is written rounded, and that
-rounding may carry it over the edge between two counts, so each is looked at a little to either side. The order of
-``listing`` is not used.
+decimals; what is equal stands in the order of types, holes, orientations and faces. Fixtures whose seating is told come
+first, its warnings counting as those of quality do; those of them that are equal stand as they would without it. A figure
+is written rounded, and that rounding may carry it over the edge between two counts, so each is looked at a little to either
+side. The order of ``listing`` is not used.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from math import isinf
 
 from workhold.model.fixture import Fixture
-from workhold.model.quality import FIGURES
+from workhold.model.quality import RANKED
 from workhold.model.query import Query
+from workhold.model.seating import Seating
+from workhold.verification.claims import Claim
 from workhold.verification.hardware import Hardware
-from workhold.verification.rules import HAIR, SAME, UNFIT_CLOSURE, UNFIT_LOCATION_ERROR
+from workhold.verification.rules import (
+    CLOSE_READING,
+    HAIR,
+    SAME,
+    SMALL_CAPTURE,
+    UNFIT_CLOSURE,
+    UNFIT_LOCATION_ERROR,
+)
 
 __all__ = ["order_faults"]
 
@@ -24,17 +35,35 @@ DIGITS = 1e-12
 LEAST = 1e-15
 # What a number is counted as at least and at most.
 Range = tuple[float, float]
-MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in FIGURES}
+MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 
 def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: Hardware) -> Iterator[str]:
     """A fault when a fixture belongs before the one before it; none where the figures ranked by are not written."""
-    ranking, off = query.ranking, query.tolerance.peg + query.tolerance.face
-    if any(key not in fixture.quality for fixture in fixtures for key in ranking):
+    off, usual = query.tolerance.peg + query.tolerance.face, query.without_seating.ranking
+    if any(key not in fixture.quality for fixture in fixtures for key in usual):
         return
-    rows = [[unfit(fixture, off), *ranges(fixture, ranking)] for fixture in fixtures]
+    rows = [[unfit(fixture, off), *ranges(fixture.quality, usual)] for fixture in fixtures]
+    told = [figures_told(fixture) for fixture in fixtures]
+    seated = [
+        None if figures is None else [row[0], *ranges(figures, query.ranking), *row[1:]]
+        for row, figures in zip(rows, told, strict=True)
+    ]
+    count = sum(one is not None for one in seated)
+    if any(one is None for one in seated[:count]):
+        yield "the seating of a fixture is told, but not that of all before it"
+        return
+    # Of a search that was interrupted those come first whose seating was worked out by then.
+    whole = count == query.seating
+    if whole and any(is_better(row, first) for first in rows[:count] for row in rows[count : count + 1]):
+        yield f"fixture {count + 1} has no seating told, but without it is better than one before it that has"
+    ranking = query.ranking
     for place in range(1, len(rows)):
-        better = is_better(rows[place], rows[place - 1])
+        one, before = seated[place], seated[place - 1]
+        if before is not None and one is None:
+            ranking = usual
+            continue
+        better = is_better(one or rows[place], before or rows[place - 1])
         if better:
             yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
             return
@@ -43,10 +72,30 @@ def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: Hardware) 
             return
 
 
-def ranges(fixture: Fixture, ranking: Sequence[str]) -> Iterator[Range]:
+def figures_told(fixture: Fixture) -> dict[str, float] | None:
+    """The figures of a fixture with those of its seating, whose warnings count as well; None where it is not told."""
+    claim: Claim | None = fixture.seating
+    if claim is None:
+        return None
+    figures = {**fixture.quality, **claim.told.figures}
+    return figures | {"warnings": figures.get("warnings", 0.0) + warning_count(claim.told)}
+
+
+def warning_count(told: Seating) -> int:
+    """As how many warnings of quality a seating counts: two for a small opening, one for a close reading, and one where
+    something is unsettled."""
+    opening, reading = told.capture_opening, told.reading_of()
+    small = opening is not None and opening < SMALL_CAPTURE
+    return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING) + bool(told.unsettled)
+
+
+def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
     """What the figures of a fixture count as, the first counting most and smaller being better."""
     for place, key in enumerate(ranking, 1):
-        value = -fixture.quality[key] if MORE_IS_BETTER[key] else fixture.quality[key]
+        value = -figures[key] if MORE_IS_BETTER[key] else figures[key]
+        if isinf(value):
+            yield value, value
+            continue
         spare = DIGITS * abs(value) + LEAST
         if place == len(ranking):
             yield round(value - spare, 9), round(value + spare, 9)

@@ -51,7 +51,9 @@ def fixture_from(item: Any) -> Fixture:
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
     fixture = pair_fixture_from(item) if "directions" in item else single_fixture_from(item)
-    return with_flats(fixture, item["flats"]) if "flats" in item else fixture
+    fixture = with_flats(fixture, item["flats"]) if "flats" in item else fixture
+    # What its fields say is looked at where the query is known.
+    return evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
 
 
 def with_flats(fixture: Fixture, flats: Any) -> Fixture:

@@ -15,6 +15,7 @@ from __future__ import annotations
 __all__ = [
     "AGREEMENT",
     "BODY_SLACK",
+    "CLOSE_READING",
     "FIGURE_AGREEMENT",
     "FLAT",
     "FLUSH",
@@ -39,6 +40,7 @@ __all__ = [
     "SMALL_FACE_POINTS",
     "SQUARE_TILT",
     "STRAIGHT",
+    "SMALL_CAPTURE",
     "STRONG_PEG",
     "STRONG_POINTS",
     "TANGENT",
@@ -105,5 +107,6 @@ ROUNDING = 1e-13
 # workshop, and what counts against one (degrees, shares, times the jaw force, points); docs/quality.md.
 NEAR_EDGE, WEAK_CLOSURE, STRONG_PEG, LARGE_LOCATION_ERROR = 1.0, 0.02, 3.0, 5.0
 UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
+SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2

@@ -6,7 +6,6 @@ from datetime import date
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -79,7 +78,7 @@ async def warnings(
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
     others = result.table.same_holes(index)
-    small = evolve(result, table=result.table.take(slice(index, index + 1)))
+    small = result.part(slice(index, index + 1))
     asked = {
         "unit": unit_named(unit),
         "jaw_force": jaw_force,

@@ -8,7 +8,7 @@ from hashlib import sha256
 from importlib.util import find_spec
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
@@ -60,7 +60,7 @@ class PaperOrder:
         """An order that carries no more of a result than is needed."""
         small = result
         if not kind.startswith("sheet"):
-            small = evolve(result, table=result.table.take(slice(rank - 1, rank)))
+            small = result.part(slice(rank - 1, rank))
         return cls(kind, small, rank, len(result), *options)
 
     @property

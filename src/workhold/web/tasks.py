@@ -121,7 +121,7 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
     )
     left_out = max(len(result) - most, 0)
     if left_out:
-        result = evolve(result, table=result.table.take(slice(0, most)))
+        result = result.part(slice(0, most))
     return Found(result, left_out)
 
 

@@ -22,8 +22,9 @@ from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
 from workhold.files.result.checks import refuse_faulty, refuse_unknown_types
-from workhold.files.result.head import checked_head, checked_query, result_with
+from workhold.files.result.head import checked_head, checked_query, result_with, with_seating
 from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degrees, significant
+from workhold.files.result.seating_forms import checked_seating, seatings_told
 from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
 from workhold.model.columns import COLUMNS, HEAD, PAIR_COLUMNS, columns_said
@@ -63,6 +64,8 @@ class ColumnsReceiver:
                 for start in range(0, len(table), BLOCK):
                     archive.add(as_written(table.take(slice(start, start + BLOCK))))
             text = head(result) | {"counts": {name: counts[name] for name in result.toolkit.types}}
+            if result.query.seating is not None:
+                text["seatings"] = [told.as_fields() for told in result.seating]
             archive.close(HEAD, json.dumps(text, ensure_ascii=False), FORMAT)
 
 
@@ -164,4 +167,11 @@ def read_columns(path: Path) -> Result:
     head = checked_head(data, path)
     query = checked_query(head, path)
     refuse_unknown_types(columns["arrangement"], query.toolkit, path)
-    return result_with(MappedTable(**columns, query=query, path=path), head, query, path)
+    result = result_with(MappedTable(**columns, query=query, path=path), head, query, path)
+    told = seatings_told(data, path)
+    if len(told) > len(result):
+        raise InputError(f"{path}: the seating of {len(told)} fixtures is told, but {len(result)} are listed.")
+    # The pose tells which of the seats is the fixture's own.
+    poses = [fixture.pose for fixture in result[: len(told)]]
+    seating = [checked_seating(one, pose, path, k) for k, (one, pose) in enumerate(zip(told, poses, strict=True), 1)]
+    return with_seating(result, seating, path)

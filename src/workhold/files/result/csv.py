@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isnan, nan
 from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
 from workhold.files.result.rounding import known_figures
 from workhold.files.result.writer import fixture_rows
+from workhold.model.quality import SEATING_FIGURES
 from workhold.model.result import Result
+from workhold.model.seating import DECIMALS
 
-__all__ = ["column_names", "result_csv_text", "write_result_csv", "write_result_csv_to"]
+__all__ = ["column_names", "seating_values", "result_csv_text", "write_result_csv", "write_result_csv_to"]
 
 PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
 POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
@@ -46,7 +49,15 @@ def column_names(result: Result) -> list[str]:
     kinds, standing = result.toolkit.carriers, result.toolkit.arrangements[0].carriers
     count = sum(not kinds[k].is_wall for k in standing) if result.toolkit.has_flats else 0
     flats = [f"flat{number}_deg" for number in range(1, 1 + count)]
-    return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs, *flats]
+    seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
+    return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs, *flats, *seating]
+
+
+def seating_values(result: Result) -> list[list[float]]:
+    """The figures of the seating of all fixtures of a result in which it is told: infinite where there is no end, NaN where
+    it was not worked out."""
+    told = [list(one.figures.values()) for one in result.seating]
+    return told + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(told))
 
 
 def result_csv_text(result: Result) -> Iterator[str]:
@@ -56,7 +67,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
     moved = 3 + (2 if toolkit.needs_pairs else 1)
     flats = toolkit.has_flats
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
-    number = 0
+    number, seated = 0, seating_values(result) if result.seating else []
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
@@ -79,5 +90,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
                     f"{force:.12g}",
                 ]
             fields += ["" if angle is None else repr(angle) for angle in looks]
+            if seated:
+                fields += ["" if isnan(value) else repr(round(value, DECIMALS)) for value in seated[number - 1]]
             lines.append(",".join(fields) + "\n")
         yield "".join(lines)

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from workhold.files.result.forms import Head, Pair, Part
+from workhold.files.result.seating_forms import SeatingPart
 
 __all__ = ["FixturePart", "ResultFile"]
 
@@ -82,6 +83,7 @@ class FixturePart(Part):
     flats: list[float | None] | None = Field(None, description="which way the flat of each peg looks, in degrees")
     pairs: Whole | None = None
     quality: dict[str, float] = Field(default_factory=dict)
+    seating: SeatingPart | None = None
 
 
 class ResultFile(Head):

@@ -252,6 +252,9 @@ class Head(Part):
     best: int | None = None
     jaw_force: float | None = None
     listing: str | None = None
+    seating: Annotated[int, Field(ge=1)] | None = None
+    opening: float | None = None
+    foolproof: bool = False
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
 
@@ -291,4 +294,7 @@ class Head(Part):
             best=self.best,
             jaw_force=self.jaw_force,
             listing=self.listing,
+            seating=self.seating,
+            opening=self.opening,
+            foolproof=self.foolproof,
         )

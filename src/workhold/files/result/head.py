@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from attrs import evolve
 from pydantic import ValidationError
 
 from workhold.errors import InputError
@@ -12,9 +14,10 @@ from workhold.files.result.forms import TAGS, Head, ProofPart
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
+from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 
-__all__ = ["checked_head", "checked_query", "result_with"]
+__all__ = ["checked_head", "checked_query", "result_with", "with_seating"]
 
 
 def checked_head(data: Any, path: Path) -> Head:
@@ -91,6 +94,25 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
         pairs=head.pairs,
         seats=head.seats,
     )
+
+
+def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
+    """A result with the seating of its first fixtures.
+
+    Raises
+    ------
+    InputError
+        Where that is told though it was not asked for, or of more fixtures than it was asked of.
+    """
+    query = result.query
+    if len(seating) > (query.seating or 0) or len(seating) > len(result):
+        raise InputError(
+            f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of {query.seating or 0} and "
+            f"{len(result)} are listed."
+        )
+    travel = query.toolkit.moving.travel
+    most = None if travel is None else travel.most
+    return evolve(result, seating=tuple(evolve(one, opening=query.opening, most=most) for one in seating))
 
 
 def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:

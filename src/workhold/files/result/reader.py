@@ -21,12 +21,14 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.checks import LARGEST_LENGTH, LARGEST_NUMBER, refuse_faulty, refuse_unknown_types
 from workhold.files.result.columns import read_columns
-from workhold.files.result.head import checked_query, result_with
+from workhold.files.result.head import checked_query, result_with, with_seating
 from workhold.files.result.parts import read_parts
-from workhold.model.fixture import WALL
+from workhold.files.result.seating_forms import checked_seating
+from workhold.model.fixture import WALL, Pose
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.wall import ON_WALL
 from workhold.model.workpiece import Workpiece
@@ -40,7 +42,8 @@ BLOCK = 4096
 class Columns:
     """The fixtures of a file as arrays: (N,) types and (N, P) jaws by name, (N, P, 3) holes and faces, (N, P, 4) x, y and
     forces (per unit of each of two clamps' forces; the second is 0 where there is one), (N, 5) pose in degrees and mm, jaw
-    separation and number of pairs, (N, Q) figures of quality (NaN where the file gives none)."""
+    separation and number of pairs, (N, Q) figures of quality (NaN where the file gives none), and the seating of the first
+    fixtures."""
 
     types: NDArray[np.str_]
     jaws: NDArray[np.str_]
@@ -48,6 +51,7 @@ class Columns:
     contacts: NDArray[np.float64]
     placing: NDArray[np.float64]
     quality: NDArray[np.float64]
+    seating: tuple[Seating, ...] = ()
 
 
 def read_result(path: str | Path) -> Result:
@@ -66,7 +70,8 @@ def read_result(path: str | Path) -> Result:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
     head, columns = read_parts(path, collected)
     query = checked_query(head, path)
-    return result_with(measured(checked_table(columns, query, path), query), head, query, path)
+    result = result_with(measured(checked_table(columns, query, path), query), head, query, path)
+    return with_seating(result, columns.seating, path)
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:
@@ -79,7 +84,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
     """
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
-    number, pegs = 1, 0
+    number, pegs, seating = 1, 0, list[Seating]()
     while True:
         rows = []
         for fixture in islice(iterator, BLOCK):
@@ -89,6 +94,11 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
                 raise InputError(f"{path}: fixture {number} has no key {error}.") from error
             except (TypeError, ValueError, AttributeError) as error:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
+            if "seating" in fixture:
+                if len(seating) < number - 1:
+                    raise InputError(f"{path}: fixture {number} has its seating told, but not the one before it.")
+                theta, x, y, *_ = rows[-1][4]
+                seating.append(checked_seating(fixture["seating"], Pose(theta, x, y), path, number))
             number += 1
         kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
         pegs = pegs or (len(rows[0][1]) if rows else 4)
@@ -99,7 +109,8 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
-            return Columns(*(np.concatenate(parts) for parts in blocks))
+            types, jaws, holes, contacts, placing, quality = map(np.concatenate, blocks)
+            return Columns(types, jaws, holes, contacts, placing, quality, tuple(seating))
 
 
 def fixture_row(

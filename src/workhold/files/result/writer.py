@@ -31,6 +31,7 @@ from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Arrangement, Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
@@ -116,17 +117,24 @@ def result_text(result: Result) -> Iterator[str]:
     """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
     lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head(result).items()]
     yield "{" + "".join(lines) + '"fixtures": ['
-    yield from fixture_lines(result.table, result.toolkit, result.workpiece)
+    separator, count = "\n", 0
+    for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
+        told = result.seating[count : count + len(lines)]
+        lines[: len(told)] = map(with_seating, lines, told)
+        yield separator + ",\n".join(lines)
+        separator, count = ",\n", count + len(lines)
     yield "\n]}\n"
 
 
-def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[str]:
-    """The lines of a list of fixtures, each after the line break that ends the one before, block by block."""
-    separator = "\n"
+def with_seating(line: str, told: Seating) -> str:
+    """The line of a fixture with its seating."""
+    return f'{line[:-1]}, "seating": {json.dumps(told.as_fields())}}}'
+
+
+def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
+    """The lines of a list of fixtures, block by block."""
     if toolkit.needs_pairs:
-        for lines in pair_lines(table, toolkit, workpiece):
-            yield separator + ",\n".join(lines)
-            separator = ",\n"
+        yield from pair_lines(table, toolkit, workpiece)
         return
     figures = known_figures(table)
     templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
@@ -137,8 +145,7 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -
             numbers = map(with_wall, numbers)
         if toolkit.has_flats:
             numbers = ((*row[:-1], json.dumps(row[-1])) for row in numbers)
-        yield separator + ",\n".join([templates[k] % row for k, row in zip(kind, numbers, strict=True)])
-        separator = ",\n"
+        yield [templates[k] % row for k, row in zip(kind, numbers, strict=True)]
 
 
 def with_place_again(numbers: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -189,6 +196,11 @@ def asked_entry(query: Query) -> dict[str, Any]:
         "best": query.best,
         **({} if query.listing is None else {"listing": query.listing}),
         "jaw_force": query.jaw_force,
+        **(
+            {}
+            if query.seating is None
+            else {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
+        ),
     }
 
 

@@ -1,0 +1,127 @@
+"""The shape of a fixture's seating in a result file, checked by pydantic, and what it is in the model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from workhold.errors import InputError
+from workhold.model.fixture import Pose
+from workhold.model.seating import Seating
+
+__all__ = ["SeatingPart", "checked_seating", "seatings_told"]
+
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Length = Annotated[float, Field(ge=0)]
+Peg = Annotated[int, Field(ge=0, le=3)]
+
+
+class Part(BaseModel):
+    """Keys that must look like this; further keys are allowed."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class SeatPosePart(Part):
+    """Where the part lies, as drawn or turned over."""
+
+    theta_deg: float
+    x: float
+    y: float
+
+
+class SeatContactPart(Part):
+    """A peg, counted from 0, on a face, or on the corner where a face begins."""
+
+    peg: Peg
+    face: Annotated[int, Field(ge=0)] | None = None
+    corner: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def one_of_both(self) -> SeatContactPart:
+        """Refuse a contact with neither or both."""
+        if (self.face is None) == (self.corner is None):
+            raise ValueError("a contact is on a face or on a corner")
+        return self
+
+
+class SeatPart(Part):
+    """Where closing the vise comes to rest."""
+
+    kind: Literal["fixture", "corner", "pocket", "curved", "loose", "unsettled"]
+    pose: SeatPosePart
+    jaw_separation: float
+    difference: float = Field(description="of the jaw separation from the fixture's")
+    mirrored: bool = Field(description="turned over: x to -x in the part's own frame")
+    same_place: bool = Field(description="whether the silhouette is that of the fixture's pose")
+    contacts: list[SeatContactPart] = Field(max_length=4)
+    forces: list[float] = Field(max_length=4)
+    depth: Length | None = Field(default=None, description="how far the jaws open before the part gets elsewhere")
+
+
+class PassPart(Part):
+    """Where the cage opens first."""
+
+    pose: SeatPosePart
+    jaw_separation: float
+    contacts: list[SeatContactPart] = Field(min_length=2, max_length=4)
+
+
+class CagePart(Part):
+    """How far the part may be off and still come home."""
+
+    theta_deg: Pair
+    x: Pair
+    y: Pair
+
+
+class SeatingPart(Part):
+    """What else the pegs of a fixture can do with the part; see docs/seating.md."""
+
+    capture_opening: Length | None
+    drop_room: Length | None
+    room_factor: Annotated[float, Field(gt=0)]
+    pass_: PassPart | None = Field(alias="pass")
+    way_out: Length | None
+    cage: CagePart | None
+    placing: Length | None
+    sticking_friction: Length | None
+    stop: float
+    seats: list[SeatPart]
+    wrong_seats: Annotated[int, Field(ge=0)]
+    reading: Length | None
+    unsettled: list[str]
+
+
+def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
+    """The seating of a fixture, counted from 1, in a pose.
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is missing or cannot be used.
+    """
+    try:
+        SeatingPart.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in ("seating", *first["loc"]))
+        reason = "it is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
+        raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
+    return Seating.of_fields(data, pose)
+
+
+def seatings_told(data: dict[str, Any], path: Path) -> list[Any]:
+    """The seating of the first fixtures as the head of a file in columns has it.
+
+    Raises
+    ------
+    InputError
+        When it is no list.
+    """
+    told = data.get("seatings", [])
+    if not isinstance(told, list):
+        raise InputError(f"{path}: seatings cannot be used: it is no list.")
+    return told

@@ -1,0 +1,315 @@
+"""What is told of a fixture's seating: seats, the pass, the cage, and the figures that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from typing import Any
+
+from attrs import evolve, frozen
+
+from workhold.model.fixture import Pose
+
+__all__ = ["CLOSE_READING", "DECIMALS", "SMALL_CAPTURE", "Cage", "Contact", "Pass", "Seat", "Seating"]
+
+# Of lengths in mm, angles in degrees and forces in files.
+DECIMALS = 9
+# What is warned of (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and a part is put
+# down with about the room that this gives at each peg.
+SMALL_CAPTURE = 1.0
+# mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
+CLOSE_READING = 0.1
+# A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
+IS_OWN = 1e-5
+
+
+@frozen
+class Contact:
+    """A peg on a face or on a corner of the part.
+
+    Parameters
+    ----------
+    peg : its place in the fixture's pegs.
+    face : number of the face, or of the face that begins at the corner.
+    corner : whether it is the corner.
+    """
+
+    peg: int
+    face: int
+    corner: bool
+
+    @property
+    def words(self) -> str:
+        """What the peg touches, in words."""
+        return f"corner {self.face}" if self.corner else f"face {self.face}"
+
+    def as_fields(self) -> dict[str, int]:
+        """The contact as files have it; pegs count from 0."""
+        return {"peg": self.peg, "corner" if self.corner else "face": self.face}
+
+    @classmethod
+    def of_fields(cls, fields: Mapping[str, int]) -> Contact:
+        """The contact that a file tells."""
+        corner = "corner" in fields
+        return cls(fields["peg"], fields["corner" if corner else "face"], corner)
+
+
+@frozen
+class Seat:
+    """Where closing the vise comes to rest.
+
+    Parameters
+    ----------
+    kind : fixture, corner, pocket, curved, loose, or unsettled.
+    pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
+    jaw_separation : S in mm.
+    difference : S less that of the fixture.
+    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the same.
+    contacts, forces : what touches, and each force per unit of jaw force; none of what is loose or not settled.
+    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that was not asked.
+    is_own : whether it is the fixture's own.
+    """
+
+    kind: str
+    pose: Pose
+    jaw_separation: float
+    difference: float
+    mirrored: bool
+    same_place: bool
+    contacts: tuple[Contact, ...]
+    forces: tuple[float, ...]
+    depth: float | None
+    is_own: bool
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether the part in it lies elsewhere."""
+        return not (self.is_own or self.same_place)
+
+    def as_fields(self) -> dict[str, Any]:
+        """The seat as files have it."""
+        return {
+            "kind": self.kind,
+            "pose": pose_fields(self.pose),
+            "jaw_separation": length(self.jaw_separation),
+            "difference": length(self.difference),
+            "mirrored": self.mirrored,
+            "same_place": self.same_place,
+            "contacts": [contact.as_fields() for contact in self.contacts],
+            "forces": [length(force) for force in self.forces],
+            "depth": length(self.depth),
+        }
+
+    @classmethod
+    def of_fields(cls, fields: Mapping[str, Any]) -> Seat:
+        """The seat that a file tells; whose own it is the file's fixture tells."""
+        return cls(
+            fields["kind"],
+            Pose(**fields["pose"]),
+            fields["jaw_separation"],
+            fields["difference"],
+            fields["mirrored"],
+            fields["same_place"],
+            tuple(map(Contact.of_fields, fields["contacts"])),
+            tuple(fields["forces"]),
+            fields["depth"],
+            False,
+        )
+
+    def is_at(self, pose: Pose) -> bool:
+        """Whether the part, as drawn, lies in a pose."""
+        turn = abs((self.pose.theta_deg - pose.theta_deg + 180.0) % 360.0 - 180.0)
+        away = max(turn, abs(self.pose.x - pose.x), abs(self.pose.y - pose.y), abs(self.difference))
+        return not self.mirrored and self.kind != "unsettled" and away < IS_OWN
+
+
+@frozen
+class Pass:
+    """The equilibrium through which a part gets out of its cage first.
+
+    Parameters
+    ----------
+    pose, jaw_separation, contacts : there.
+    """
+
+    pose: Pose
+    jaw_separation: float
+    contacts: tuple[Contact, ...]
+
+
+@frozen
+class Cage:
+    """How far a part may lie off its pose, jaws open by less than the capture opening, and still come home.
+
+    Parameters
+    ----------
+    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm.
+    """
+
+    theta_deg: tuple[float, float]
+    x: tuple[float, float]
+    y: tuple[float, float]
+
+
+@frozen
+class Seating:
+    """What a fixture's pegs can do with its part besides holding it in its pose.
+
+    Parameters
+    ----------
+    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it never gets out.
+    room_factor : sum of the forces: opening by s gives s over this of room at every peg at once.
+    lowest_pass : at which the cage ends; None where it does not.
+    way_out : in mm, how far the jaws open before the part can leave all pegs; None where it never can.
+    cage, placing : how far the part may be off; None where the cage has no end.
+    sticking_friction : the coefficient below which it cannot stick near its seat.
+    stop : the smallest jaw separation in mm.
+    seats : all, by their separations, the fixture's own among them.
+    unsettled : why what was not settled was not, one sentence each.
+    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
+        separation; in mm, without end if None.
+    """
+
+    capture_opening: float | None
+    room_factor: float
+    lowest_pass: Pass | None
+    way_out: float | None
+    cage: Cage | None
+    placing: float | None
+    sticking_friction: float
+    stop: float
+    seats: tuple[Seat, ...]
+    unsettled: tuple[str, ...] = ()
+    opening: float | None = None
+    most: float | None = None
+
+    @property
+    def drop_room(self) -> float | None:
+        """Room in mm at every peg when the jaws are open by the capture opening, to first order."""
+        return None if self.capture_opening is None else self.capture_opening / self.room_factor
+
+    def wrong_within(self, opening: float | None = None) -> list[Seat]:
+        """The seats in which the part lies elsewhere and that can be reached.
+
+        Parameters
+        ----------
+        opening : how far the jaws are opened, in mm; as far as counts if None.
+        """
+        reach = self.opening if opening is None else opening
+        wrong = [seat for seat in self.seats if seat.is_wrong]
+        if reach is not None:
+            wrong = [seat for seat in wrong if seat.difference < reach]
+        return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
+
+    def reading_of(self, opening: float | None = None) -> float | None:
+        """What a measurement of the opening must resolve to tell wrong seats, in mm; None where there are none."""
+        return min((abs(seat.difference) for seat in self.wrong_within(opening)), default=None)
+
+    def catches(self, opening: float) -> bool:
+        """Whether the part comes home from anywhere in its cage with the jaws open by so many mm."""
+        return self.capture_opening is None or opening < self.capture_opening
+
+    @property
+    def is_foolproof(self) -> bool:
+        """Whether there is no wrong seat that counts, or a caliper tells each of them, and nothing is unsettled."""
+        reading = self.reading_of()
+        return not self.unsettled and (reading is None or round(reading, DECIMALS) >= CLOSE_READING)
+
+    @property
+    def is_hardly_caught(self) -> bool:
+        """Whether the part is caught only while the jaws stand open by very little."""
+        return self.capture_opening is not None and round(self.capture_opening, DECIMALS) < SMALL_CAPTURE
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What there is to beware of, one sentence each without a full stop; lengths in mm."""
+        out, reading = list[str](), self.reading_of()
+        if self.is_hardly_caught:
+            opened = f"{self.capture_opening:.3f} mm"
+            out.append(f"the part is caught only while the jaws stand open by less than {opened}")
+        if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
+            out.append(f"a wrong seat reads only {reading:.3f} mm otherwise, which a caliper hardly tells")
+        if self.unsettled:
+            out.append("not every place where the part may rest could be settled")
+        return tuple(out)
+
+    @property
+    def warning_count(self) -> int:
+        """As how many warnings of quality these count: a small capture opening as two, as what is let go in its cage needs
+        no reading."""
+        return len(self.warnings) + self.is_hardly_caught
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """The figures that fixtures may be ranked by (``model.quality.SEATING_FIGURES``); what has no end is infinite."""
+        known = {
+            "capture_opening": self.capture_opening,
+            "drop_room": self.drop_room,
+            "way_out": self.way_out,
+            "placing": self.placing,
+            "sticking_friction": self.sticking_friction,
+            "wrong_seats": float(len(self.wrong_within())),
+            "reading": self.reading_of(),
+        }
+        return {name: inf if value is None else value for name, value in known.items()}
+
+    def as_fields(self) -> dict[str, Any]:
+        """The seating as a result file has it: lengths in mm, angles in degrees."""
+        top, opening = self.lowest_pass, length(self.capture_opening)
+        # Of numbers as they are written, so that reading and writing changes nothing.
+        factor = round(self.room_factor, DECIMALS)
+        return {
+            "capture_opening": opening,
+            "drop_room": None if opening is None else length(opening / factor),
+            "room_factor": factor,
+            "pass": None
+            if top is None
+            else {
+                "pose": pose_fields(top.pose),
+                "jaw_separation": length(top.jaw_separation),
+                "contacts": [contact.as_fields() for contact in top.contacts],
+            },
+            "way_out": length(self.way_out),
+            "cage": None
+            if self.cage is None
+            else {name: [length(end) for end in getattr(self.cage, name)] for name in ("theta_deg", "x", "y")},
+            "placing": length(self.placing),
+            "sticking_friction": length(self.sticking_friction),
+            "stop": length(self.stop),
+            "seats": [seat.as_fields() for seat in self.seats],
+            "wrong_seats": len(self.wrong_within()),
+            "reading": length(self.reading_of()),
+            "unsettled": list(self.unsettled),
+        }
+
+    @classmethod
+    def of_fields(cls, fields: Mapping[str, Any], pose: Pose) -> Seating:
+        """The seating that a file tells of a fixture in a pose. What follows from other fields is not looked at."""
+        top, cage = fields["pass"], fields["cage"]
+        seats = [Seat.of_fields(seat) for seat in fields["seats"]]
+        lowest = None
+        if top is not None:
+            lowest = Pass(Pose(**top["pose"]), top["jaw_separation"], tuple(map(Contact.of_fields, top["contacts"])))
+        friction = fields["sticking_friction"]
+        return cls(
+            fields["capture_opening"],
+            fields["room_factor"],
+            lowest,
+            fields["way_out"],
+            None if cage is None else Cage(*(tuple(cage[name]) for name in ("theta_deg", "x", "y"))),
+            fields["placing"],
+            inf if friction is None else friction,
+            fields["stop"],
+            tuple(evolve(seat, is_own=seat.is_at(pose)) for seat in seats),
+            tuple(fields["unsettled"]),
+        )
+
+
+def length(value: float | None) -> float | None:
+    """A number as files have it; what is infinite is none."""
+    return None if value is None or not isfinite(value) else round(value, DECIMALS) + 0.0
+
+
+def pose_fields(pose: Pose) -> dict[str, float | None]:
+    """A pose as files have it."""
+    return {"theta_deg": length(pose.theta_deg), "x": length(pose.x), "y": length(pose.y)}

@@ -1,0 +1,243 @@
+"""The first fixtures of a list with their seating, ordered anew by it.
+
+A search finds and ranks fixtures by figures that do without seating. Of the first of them, as many as a query asks, the
+seating is worked out, each pattern of pegs once; then they are ordered by the query's ranking, in which the warnings of the
+seating count as those of quality do. What is equal keeps the order that it had. Those whose seating is not as asked are
+left out, and so are then all whose seating was not worked out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from itertools import chain
+from pathlib import Path
+from threading import Event
+from typing import Protocol
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Progress
+from workhold.listing.listed import stage
+from workhold.listing.ranking import rank
+from workhold.model.notes import best_note, seated_note
+from workhold.model.quality import SEATING_FIGURES, WARNINGS
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result
+from workhold.model.seating import Seating
+from workhold.seating.pattern import Pattern, refuse_unseated
+from workhold.seating.seating import Solver
+
+__all__ = ["Receiver", "receive_seated", "seated_answer"]
+
+# The part of the work, as progress tells it, that is the search.
+SEARCHED = 0.3
+
+
+class Receiver(Protocol):
+    """What takes a result too large for memory.
+
+    Attributes
+    ----------
+    folder : where there is room for what is being sorted.
+    """
+
+    @property
+    def folder(self) -> Path: ...
+
+    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
+        """Take a result and its fixtures, so many, best first, in tables one after the other."""
+
+
+@frozen
+class Seats:
+    """How seating is worked out.
+
+    Parameters
+    ----------
+    query : what is asked, with seating.
+    threads : how many share the work.
+    progress : called as ``progress(fraction done, fixtures)``.
+    cancel : when set, no further pattern is begun.
+    """
+
+    query: Query
+    threads: int
+    progress: Progress | None
+    cancel: Event | None
+
+
+def seated_answer(
+    query: Query,
+    search: Callable[[Query, Progress | None], Result],
+    *,
+    threads: int = 1,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+) -> Result:
+    """What a query with seating asks for.
+
+    Parameters
+    ----------
+    search : answers a query without seating.
+    threads, progress, cancel : see ``search.design.answer``.
+
+    Raises
+    ------
+    InputError
+        For a toolkit of which no seating is worked out, and what the search raises.
+    """
+    refuse_unseated(query.toolkit)
+    result = search(query.without_seating, stage(progress, 0.0, SEARCHED))
+    return seated(result, Seats(query, threads, stage(progress, SEARCHED, 1.0), cancel))
+
+
+def receive_seated(
+    query: Query,
+    search: Callable[[Query, Progress | None, Receiver], Result],
+    receiver: Receiver,
+    *,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+) -> Result:
+    """Hand over what a query with seating asks for, as :func:`seated_answer` finds it; the result comes without fixtures.
+
+    Parameters
+    ----------
+    search : answers a query without seating, handing over its fixtures.
+
+    Raises
+    ------
+    InputError
+        As :func:`seated_answer`.
+    """
+    refuse_unseated(query.toolkit)
+    told = None if progress is None else rising(progress)
+    work = Seats(query, threads, stage(told, SEARCHED, 1.0), cancel)
+    result = search(query.without_seating, stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work))
+    return evolve(result, query=query)
+
+
+def rising(progress: Progress) -> Progress:
+    """A progress that never goes back."""
+    highest = 0.0
+
+    def told(fraction: float, found: int) -> None:
+        nonlocal highest
+        highest = max(highest, fraction)
+        progress(highest, found)
+
+    return told
+
+
+def seated(result: Result, work: Seats) -> Result:
+    """A result of a query without seating as that of the query with it."""
+    query, count = work.query, min(work.query.seating or 0, len(result))
+    told = seatings_of(result.part(slice(0, count)), work)
+    looked_at = np.flatnonzero([one is not None for one in told])
+    known = [one for one in told if one is not None]
+    order = order_of(result.table.take(looked_at), known, query)
+    kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
+    notes = tuple(best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons)
+    first = looked_at[kept]
+    if query.has_seating_rules:
+        # Why there is no fixture at all is said already.
+        rows, notes = first, (*notes, seated_note(len(known), len(kept))) if len(result) else notes
+    else:
+        rows = np.concatenate([first, np.delete(np.arange(len(result)), first)])
+    return evolve(
+        result,
+        query=query,
+        table=result.table.take(rows[: query.best]),
+        seating=tuple(known[place] for place in kept[: query.best]),
+        complete=result.complete and len(known) == count,
+        notes=notes,
+    )
+
+
+def is_best(note: str, result: Result) -> bool:
+    """Whether a note says that only the best were sought."""
+    return result.query.best is not None and note == best_note(result.query.best)
+
+
+def is_as_asked(told: Seating, query: Query) -> bool:
+    """Whether a seating keeps the rules of a query."""
+    return (query.opening is None or told.catches(query.opening)) and (told.is_foolproof or not query.foolproof)
+
+
+def order_of(table: FixtureTable, told: Sequence[Seating], query: Query) -> NDArray[np.intp]:
+    """The order of fixtures with their seating, best first; equal ones as they are."""
+    further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in told]
+    quality = np.hstack([table.quality, np.array(further).reshape(len(told), len(SEATING_FIGURES))])
+    quality[:, WARNINGS] += [one.warning_count for one in told]
+    return rank(quality, query.ranking, query.tolerance)
+
+
+def seatings_of(result: Result, work: Seats) -> list[Seating | None]:
+    """The seating of all fixtures of a result, each pattern of pegs solved once; None of those that were left undone."""
+    solver, fixtures = Solver(result.workpiece, result.toolkit), list(result)
+    patterns: dict[tuple[object, ...], list[int]] = {}
+    for place, fixture in enumerate(fixtures):
+        patterns.setdefault(Pattern.of(fixture, result.toolkit).key(), []).append(place)
+    told: list[Seating | None] = [None] * len(fixtures)
+    opening = work.query.opening
+
+    def solve(key: tuple[object, ...], places: Sequence[int]) -> None:
+        if work.cancel is not None and work.cancel.is_set():
+            return
+        found = [evolve(solver.of(fixtures[place]), opening=opening) for place in places]
+        solver.solved.pop(key)
+        for place, one in zip(places, found, strict=True):
+            told[place] = one
+
+    with ThreadPoolExecutor(max_workers=work.threads) as pool:
+        running = {pool.submit(solve, key, places) for key, places in patterns.items()}
+        try:
+            while running:
+                done, running = wait(running, return_when=FIRST_COMPLETED)
+                for one in done:
+                    one.result()
+                if work.progress is not None:
+                    work.progress(sum(one is not None for one in told) / len(told), sum(result.found.values()))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return told
+
+
+@frozen
+class SeatedReceiver:
+    """Hands over results with the seating of their first fixtures.
+
+    Parameters
+    ----------
+    receiver : takes them.
+    work : how the seating is worked out.
+    """
+
+    receiver: Receiver
+    work: Seats
+
+    @property
+    def folder(self) -> Path:
+        """Where there is room for what is being sorted."""
+        return self.receiver.folder
+
+    def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
+        """Take a result and its fixtures, so many, best first, in tables one after the other."""
+        rest = iter(tables)
+        held = list(taken(rest, self.work.query.seating or 0)) or [result.table]
+        made = seated(evolve(result, table=FixtureTable.joined(held)), self.work)
+        further = () if self.work.query.has_seating_rules else rest
+        count = len(made) + (0 if self.work.query.has_seating_rules else listed - sum(map(len, held)))
+        self.receiver.receive(made, count, chain([made.table], further))
+
+
+def taken(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:
+    """Tables, until they have so many fixtures or there are no more."""
+    while count > 0 and (table := next(tables, None)) is not None:
+        count -= len(table)
+        yield table

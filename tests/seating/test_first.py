@@ -1,0 +1,200 @@
+"""The seating of the first fixtures in a result: their order, rules, files of every form, what an interruption leaves."""
+
+from __future__ import annotations
+
+import csv
+import pickle
+from itertools import pairwise
+from math import inf
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import attrs
+import pytest
+
+import workhold
+from workhold import InputError, Plate, Query, Result, Vise, Workpiece
+from workhold.model.quality import SEATING_FIGURES
+from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
+from workhold.seating.seating import Solver
+
+WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
+VISE = Vise(pitch=20, columns=2, peg_radius=3)
+LOOKED_AT = 8
+
+
+@pytest.fixture(scope="module")
+def plain() -> Result:
+    """All fixtures, whose seating nobody asked for."""
+    return workhold.design(WEDGE, VISE)
+
+
+@pytest.fixture(scope="module")
+def seated() -> Result:
+    """The same with the seating of the first."""
+    return workhold.design(WEDGE, VISE, seating=LOOKED_AT)
+
+
+def warned(result: Result) -> list[float]:
+    """How much there is to beware of in each fixture whose seating is told."""
+    return [result[k].quality["warnings"] + told.warning_count for k, told in enumerate(result.seating)]
+
+
+def test_the_first_fixtures_are_ordered_anew_and_all_others_stay(plain: Result, seated: Result) -> None:
+    assert len(seated.seating) == LOOKED_AT and seated.complete
+    before, after = ([(f.pegs, f.pose) for f in one[:LOOKED_AT]] for one in (plain, seated))
+    assert before != after and sorted(before, key=repr) == sorted(after, key=repr)
+    assert plain[LOOKED_AT:] == seated[LOOKED_AT:]
+    counts = warned(seated)
+    assert counts == sorted(counts) and counts[0] < counts[-1]
+    # Equal ones stand as they stood.
+    for one, other in pairwise(range(LOOKED_AT)):
+        if counts[one] == counts[other]:
+            assert before.index(after[one]) < before.index(after[other])
+
+
+def test_each_seating_is_that_of_its_fixture(seated: Result) -> None:
+    [alone] = workhold.seatings(seated, seated[3:4])
+    told = seated[3].seating
+    assert told is seated.seating[3]
+    # The pattern was solved for another of its fixtures.
+    assert list(alone.figures.values()) == pytest.approx(list(told.figures.values()), abs=1e-9)
+    assert [seat.kind for seat in alone.seats] == [seat.kind for seat in told.seats]
+    assert seated[LOOKED_AT].seating is None
+    assert "with the seating of the first 8" in repr(seated) and "caught below" in repr(seated[0])
+    again = pickle.loads(pickle.dumps(seated[3]))
+    assert again.listing.result[0].seating == told
+
+
+def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> None:
+    for told in seated.seating:
+        reading = told.reading_of()
+        assert reading is not None and told.capture_opening is not None
+        assert len(told.warnings) == (told.capture_opening < SMALL_CAPTURE) + (reading < CLOSE_READING)
+        assert told.is_foolproof == (reading >= CLOSE_READING)
+    one = seated.seating[0]
+    small = attrs.evolve(one, capture_opening=0.5)
+    assert [words.partition("less than ")[2] for words in small.warnings] == ["0.500 mm"]
+    lost = attrs.evolve(one, unsettled=("one place.",))
+    assert (small.warning_count, lost.warning_count, one.warning_count) == (2, 1, 0)
+    assert len(lost.warnings) == 1 and not lost.is_foolproof
+    free = attrs.evolve(one, capture_opening=None)
+    assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
+    assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))
+
+
+def test_the_result_is_the_same_on_any_number_of_threads(seated: Result, tmp_path: Path) -> None:
+    other = workhold.design(WEDGE, VISE, seating=LOOKED_AT, threads=1)
+    for number, result in enumerate((seated, other)):
+        workhold.save(result, tmp_path / f"{number}.json")
+    assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
+
+
+def test_every_form_says_the_same(seated: Result, tmp_path: Path) -> None:
+    for name in ("a.json", "a.npz", "a.csv"):
+        workhold.save(seated, tmp_path / name)
+    workhold.save(workhold.open(tmp_path / "a.npz"), tmp_path / "b.json")
+    workhold.save(workhold.open(tmp_path / "a.json"), tmp_path / "b.npz")
+    workhold.answer_to_file(seated.query, tmp_path / "c.npz")
+    for name, other in (("a.json", "b.json"), ("a.npz", "b.npz"), ("a.npz", "c.npz")):
+        assert (tmp_path / name).read_bytes() == (tmp_path / other).read_bytes()
+    read = workhold.open(tmp_path / "a.json")
+    assert [one.as_fields() for one in read.seating] == [one.as_fields() for one in seated.seating]
+    assert [one.warnings for one in read.seating] == [one.warnings for one in seated.seating]
+    assert all(sum(seat.is_own for seat in one.seats) == 1 for one in read.seating)
+    rows = list(csv.DictReader((tmp_path / "a.csv").open()))
+    for k, row in enumerate(rows):
+        told = [row[figure.key] for figure in SEATING_FIGURES]
+        if k >= LOOKED_AT:
+            assert set(told) == {""}
+        else:
+            assert list(map(float, told)) == pytest.approx(list(seated.seating[k].figures.values()), abs=1e-9)
+    frame = pytest.importorskip("pandas") and seated.to_pandas()
+    assert frame["wrong_seats"].notna().sum() == LOOKED_AT
+    assert list(frame.columns) == list(rows[0])
+
+
+def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    workhold.save(seated, path)
+    text = path.read_text()
+    for old, new, words in (
+        ('"room_factor"', '"factor"', "fixture 1 cannot be used: seating.room_factor: it is missing"),
+        ('"kind": "fixture"', '"kind": "chair"', r"seating\.seats\.8\.kind"),
+        ('"seating": 8', '"seating": 3', "seating of 8 fixtures is told, but it is asked of 3"),
+        (', "seating": {', ', "sitting": {', "its seating told, but not the one before it"),
+    ):
+        path.write_text(text.replace(old, new, 1))
+        with pytest.raises(InputError, match=words):
+            workhold.open(path)
+
+
+def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None:
+    kept = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True)
+    wanted = [told for told in seated.seating if told.is_foolproof]
+    assert 0 < len(wanted) < LOOKED_AT and [t.as_fields() for t in kept.seating] == [t.as_fields() for t in wanted]
+    assert len(kept) == len(wanted) and sum(kept.found.values()) == len(seated)
+    assert f"The seating of the first 8 fixtures was worked out: {len(wanted)} of them" in kept.notes[-1]
+    # The more the jaws open, the fewer fixtures catch the part, and the more wrong seats count.
+    level = sorted(told.capture_opening or inf for told in seated.seating)[4]
+    opened = workhold.design(WEDGE, VISE, seating=LOOKED_AT, opening=level)
+    assert len(opened) == sum(told.catches(level) for told in seated.seating) < LOOKED_AT
+    assert all(told.opening == level for told in opened.seating)
+    assert all(len(told.wrong_within()) <= len(told.wrong_within(1e9)) for told in opened.seating)
+    first = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True, best=2)
+    assert first[:] == kept[:2]
+
+
+def test_seating_is_a_figure_to_rank_by(seated: Result) -> None:
+    ranked = workhold.design(WEDGE, VISE, seating=LOOKED_AT, rank_by="capture-opening")
+    openings = [round(told.capture_opening or inf, 9) for told in ranked.seating]
+    assert openings == sorted(openings, reverse=True)
+    assert sorted(openings) == sorted(round(told.capture_opening or inf, 9) for told in seated.seating)
+    assert seated.query.without_seating.ranking == ranked.query.without_seating.ranking
+
+
+def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
+    best = workhold.design(WEDGE, VISE, seating=LOOKED_AT, best=3)
+    assert best[:] == seated[:3] and best.seating == seated.seating[:3]
+    assert "Only the best 3 were sought" in best.notes[0]
+
+
+def test_an_interruption_leaves_what_was_worked_out(plain: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those whose seating is told come first, the others as they were."""
+    cancel, solve = Event(), Solver.of
+
+    def until_three(self: Solver, *asked: Any) -> Any:
+        if len(seen) == 3:
+            cancel.set()
+        seen.append(asked)
+        return solve(self, *asked)
+
+    seen: list[Any] = []
+    monkeypatch.setattr(Solver, "of", until_three)
+    result = workhold.design(WEDGE, VISE, seating=LOOKED_AT, threads=1, cancel=cancel)
+    assert 3 < len(result.seating) == len(seen) < LOOKED_AT and not result.complete
+    assert len(result) == len(plain) and warned(result) == sorted(warned(result))
+    ranks = [plain[:].index(fixture) for fixture in result[len(seen) :]]
+    assert ranks == sorted(ranks)
+    assert workhold.verify(result).holds
+
+
+def test_progress_goes_forward_to_the_end(tmp_path: Path) -> None:
+    heard: list[tuple[int, float]] = []
+    query = Query(WEDGE, VISE, seating=3)
+    workhold.answer(query, progress=lambda done, _: heard.append((0, done)))
+    workhold.answer_to_file(query, tmp_path / "a.npz", progress=lambda done, _: heard.append((1, done)))
+    assert heard == sorted(heard) and (0, 1.0) in heard and heard[-1] == (1, 1.0)
+
+
+def test_what_needs_seating_is_refused_without_it() -> None:
+    for asked in ({"foolproof": True}, {"opening": 1.0}, {"rank_by": "reading"}):
+        with pytest.raises(InputError, match="such as seating 100"):
+            workhold.design(WEDGE, VISE, **asked)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="opening -1 is not a length"):
+        workhold.design(WEDGE, VISE, seating=2, opening=-1.0)
+    with pytest.raises(InputError, match=r"choose among .*capture-opening"):
+        workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
+    with pytest.raises(InputError, match="a vise that closes"):
+        workhold.design(WEDGE, Plate(pitch=20, peg_radius=3), seating=2)
