@@ -21,11 +21,10 @@ from workhold import Vise, Workpiece, answer, load
 from workhold.cli.values import optional_force
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.limits import lacks_memory
+from workhold.limits import lacks_memory, thread_count
 from workhold.model.load import Load
 from workhold.model.query import Query
 from workhold.model.tolerance import Tolerance
-from workhold.search.cells import thread_count
 from workhold.statics.loads import load_cases
 from workhold.web.worker import said_of
 
@@ -60,7 +59,7 @@ from workhold.errors import InputError
 from workhold.model.load import Load
 from workhold.model.query import Query
 from workhold.model.tolerance import Tolerance
-from workhold.search.cells import thread_count
+from workhold.limits import thread_count
 from workhold.statics.loads import load_cases
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.reader import described_vise

@@ -7,6 +7,7 @@ these are read (``files.part.load``, ``web.limits``).
 from __future__ import annotations
 
 import errno
+import os
 
 from workhold.errors import InputError
 
@@ -27,6 +28,7 @@ __all__ = [
     "refuse_long",
     "refuse_many_steps",
     "refuse_strong",
+    "thread_count",
 ]
 
 # Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's edge.
@@ -143,3 +145,20 @@ def lacks_memory(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
+
+
+def thread_count(threads: int | None) -> int:
+    """The number of threads to use: as asked for, or one for each processor this process may use.
+
+    Raises
+    ------
+    InputError
+        For more than ``MOST_THREADS``.
+    """
+    if threads is not None:
+        if threads > MOST_THREADS:
+            raise InputError(
+                f"{threads:,} threads are more than the {MOST_THREADS:,} this program starts: leave them out."
+            )
+        return threads
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -19,8 +19,8 @@ from workhold.drawing.seating_words import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.result import Result
+from workhold.model.seating import Seating
 from workhold.model.units import INCH, MILLIMETRE, Unit
-from workhold.seating.figures import Seating
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="", version="1.2.3")
@@ -118,8 +118,8 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     assert f"{abs(near.difference):.3f} mm {'more' if near.difference > 0 else 'less'}" in written
     assert f"S = {result[1].jaw_separation:.3f} mm" in written and "right" in written
     most = sorted(seat.jaw_separation for seat in told[1].seats if seat.is_wrong)[2] + 1e-6
-    narrow = evolve(result.toolkit, max_opening=most)
-    assert len(SeatingWords(told[1], result[1], narrow, words.lengths).wrong) == 3
+    within = evolve(told[1], most=most)
+    assert len(SeatingWords(within, result[1], result.toolkit, words.lengths).wrong) == 3
 
 
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:

@@ -162,7 +162,7 @@ def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
 
 def test_an_interruption_leaves_what_was_worked_out(plain: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those whose seating is told come first, the others as they were."""
-    cancel, solve = Event(), Solver.of
+    cancel, solve = Event(), Solver.read
 
     def until_three(self: Solver, *asked: Any) -> Any:
         if len(seen) == 3:
@@ -171,7 +171,7 @@ def test_an_interruption_leaves_what_was_worked_out(plain: Result, monkeypatch: 
         return solve(self, *asked)
 
     seen: list[Any] = []
-    monkeypatch.setattr(Solver, "of", until_three)
+    monkeypatch.setattr(Solver, "read", until_three)
     result = workhold.design(WEDGE, VISE, seating=LOOKED_AT, threads=1, cancel=cancel)
     assert 3 < len(result.seating) == len(seen) < LOOKED_AT and not result.complete
     assert len(result) == len(plain) and warned(result) == sorted(warned(result))

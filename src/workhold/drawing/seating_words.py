@@ -10,10 +10,10 @@ from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
 from workhold.model.fixture import Fixture
+from workhold.model.seating import Seat, Seating
 from workhold.model.setting import settings_of
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.seating.figures import Seat, Seating
 from workhold.seating.place import Silhouette
 
 __all__ = ["SeatingWords", "down"]
@@ -87,9 +87,9 @@ class SeatingWords:
     @cached_property
     def wrong(self) -> list[Seat]:
         """The wrong seats that the jaws open far enough for, those first that could be taken for right by their reading."""
-        travel = self.toolkit.moving.travel
-        wrong = self.told.wrong_within(most=None if travel is None else travel.most)
-        return sorted(wrong, key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg))
+        return sorted(
+            self.told.wrong_within(), key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg)
+        )
 
     @property
     def alike(self) -> int:

@@ -7,9 +7,9 @@ from datetime import date
 from attrs import field, frozen
 
 from workhold.model.part_zero import PartZero
+from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
 from workhold.model.units import MILLIMETRE, Unit
-from workhold.seating.figures import Seating
 from workhold.statics.loads import LoadCase
 
 __all__ = ["PAPERS", "SheetDetails"]

@@ -8,7 +8,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, View
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.seats_picture import RIGHT, Placed, draw_lying
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
-from workhold.seating.figures import Seat
+from workhold.model.seating import Seat
 
 __all__ = ["write_seating", "write_wrong_seats"]
 

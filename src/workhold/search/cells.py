@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
@@ -16,10 +15,8 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
-from workhold.errors import InputError
-from workhold.limits import MOST_THREADS
 
-__all__ = ["Block", "cell_edges", "member_counts", "members_of_cell", "run_blocks", "thread_count"]
+__all__ = ["Block", "cell_edges", "member_counts", "members_of_cell", "run_blocks"]
 
 Records = NDArray[np.float64]
 
@@ -66,23 +63,6 @@ def member_counts(table: CurveTable, low: NDArray[np.float64], high: NDArray[np.
     turns = [-tau, 0.0, tau]
     begun = sum(np.searchsorted(first, high + turn, "right") for turn in turns)
     return np.asarray(begun - sum(np.searchsorted(last, low + turn, "left") for turn in turns))
-
-
-def thread_count(threads: int | None) -> int:
-    """The number of threads to use: as asked for, or one for each processor this process may use.
-
-    Raises
-    ------
-    InputError
-        For more than ``MOST_THREADS``.
-    """
-    if threads is not None:
-        if threads > MOST_THREADS:
-            raise InputError(
-                f"{threads:,} threads are more than the {MOST_THREADS:,} this program starts: leave them out."
-            )
-        return threads
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def run_blocks(

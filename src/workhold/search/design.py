@@ -12,6 +12,7 @@ from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
+from workhold.limits import thread_count
 from workhold.listing.best import BestFixtures
 from workhold.listing.gathering import Gathering
 from workhold.listing.listed import MEASURED, Work, best_result, gathered_result, listed_result, stage
@@ -25,7 +26,7 @@ from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.search.cells import Block, run_blocks, thread_count
+from workhold.search.cells import Block, run_blocks
 from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
 from workhold.search.fence import answer_on_fence

@@ -23,6 +23,7 @@ from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.kernels.contact import record
+from workhold.limits import thread_count
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
 from workhold.model.explanation import Explanation, Help, NearestMiss, Removal
@@ -33,7 +34,7 @@ from workhold.model.result import Result, fixture_at
 from workhold.model.toolkit import Change, Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.proof.deciding import is_standing
-from workhold.search.cells import run_blocks, thread_count
+from workhold.search.cells import run_blocks
 from workhold.search.contacts import contacts_of
 from workhold.search.design import answer
 from workhold.search.explaining_fence import removals_on_fence

@@ -9,7 +9,6 @@ left out, and so are then all whose seating was not worked out.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from itertools import chain
 from pathlib import Path
 from threading import Event
@@ -27,7 +26,7 @@ from workhold.model.quality import SEATING_FIGURES, WARNINGS
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
-from workhold.seating.pattern import Pattern, refuse_unseated
+from workhold.seating.pattern import refuse_unseated
 from workhold.seating.seating import Solver
 
 __all__ = ["Receiver", "receive_seated", "seated_answer"]
@@ -177,35 +176,15 @@ def order_of(table: FixtureTable, told: Sequence[Seating], query: Query) -> NDAr
 
 
 def seatings_of(result: Result, work: Seats) -> list[Seating | None]:
-    """The seating of all fixtures of a result, each pattern of pegs solved once; None of those that were left undone."""
-    solver, fixtures = Solver(result.workpiece, result.toolkit), list(result)
-    patterns: dict[tuple[object, ...], list[int]] = {}
-    for place, fixture in enumerate(fixtures):
-        patterns.setdefault(Pattern.of(fixture, result.toolkit).key(), []).append(place)
-    told: list[Seating | None] = [None] * len(fixtures)
-    opening = work.query.opening
-
-    def solve(key: tuple[object, ...], places: Sequence[int]) -> None:
-        if work.cancel is not None and work.cancel.is_set():
-            return
-        found = [evolve(solver.of(fixtures[place]), opening=opening) for place in places]
-        solver.solved.pop(key)
-        for place, one in zip(places, found, strict=True):
-            told[place] = one
-
-    with ThreadPoolExecutor(max_workers=work.threads) as pool:
-        running = {pool.submit(solve, key, places) for key, places in patterns.items()}
-        try:
-            while running:
-                done, running = wait(running, return_when=FIRST_COMPLETED)
-                for one in done:
-                    one.result()
-                if work.progress is not None:
-                    work.progress(sum(one is not None for one in told) / len(told), sum(result.found.values()))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return told
+    """The seating of all fixtures of a result; None of those that were left undone."""
+    progress, count = work.progress, sum(result.found.values())
+    told = Solver(result.workpiece, result.toolkit).as_many(
+        result,
+        threads=work.threads,
+        progress=None if progress is None else lambda done: progress(done, count),
+        cancel=work.cancel,
+    )
+    return [None if one is None else evolve(one, opening=work.query.opening) for one in told]
 
 
 @frozen

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from math import cos, pi, radians, sin, tau
+from threading import Event
 
 import numpy as np
 from attrs import define, field
@@ -22,12 +23,12 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
+from workhold.limits import thread_count
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
 from workhold.model.seating import Cage, Contact, Pass, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.search.cells import thread_count
 from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
@@ -121,26 +122,54 @@ class Solver:
         WorkholdError
             As :meth:`of`.
         """
+        return [told for told in self.as_many(fixtures, with_cage, thread_count(threads)) if told is not None]
+
+    def as_many(
+        self,
+        fixtures: Iterable[Fixture],
+        with_cage: bool = True,
+        threads: int = 1,
+        progress: Callable[[float], None] | None = None,
+        cancel: Event | None = None,
+    ) -> list[Seating | None]:
+        """The seatings of fixtures until somebody cancels, in their order; None of those that were left.
+
+        Parameters
+        ----------
+        progress : called from this thread with the fraction done.
+        cancel : when set, no further pattern is begun.
+
+        Raises
+        ------
+        InputError, WorkholdError
+            As :meth:`of`.
+        """
         given = [(fixture, Pattern.of(fixture, self.toolkit)) for fixture in fixtures]
         groups: dict[tuple[object, ...], list[int]] = {}
         for number, (_, pattern) in enumerate(given):
             groups.setdefault(pattern.key(), []).append(number)
 
-        def of_group(numbers: list[int]) -> list[Seating]:
-            return [self.read(*given[number], with_cage) for number in numbers]
+        told: list[Seating | None] = [None] * len(given)
 
-        count = min(thread_count(threads), len(groups))
-        if count > 1:
-            with ThreadPoolExecutor(max_workers=count) as pool:
-                told = list(pool.map(of_group, groups.values()))
-        else:
-            told = [of_group(numbers) for numbers in groups.values()]
-        by_number = {
-            n: one
-            for numbers, many in zip(groups.values(), told, strict=True)
-            for n, one in zip(numbers, many, strict=True)
-        }
-        return [by_number[number] for number in range(len(given))]
+        def tell(numbers: list[int]) -> int:
+            if cancel is not None and cancel.is_set():
+                return 0
+            for number, one in [(number, self.read(*given[number], with_cage)) for number in numbers]:
+                told[number] = one
+            return len(numbers)
+
+        done = 0
+        with ThreadPoolExecutor(max_workers=max(min(threads, len(groups)), 1)) as pool:
+            running = [pool.submit(tell, numbers) for numbers in groups.values()]
+            try:
+                for one in as_completed(running):
+                    done += one.result()
+                    if progress is not None:
+                        progress(done / len(given))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+        return told
 
 
 @define(frozen=True, eq=False)
@@ -230,7 +259,7 @@ class Reading:
 
             def depth(place: int, level: float, tree: Tree = tree) -> float | None:
                 join = tree.join_of(place)
-                return None if join is None else join.separation - level
+                return None if join is None else float(join.separation - level)
 
             for place, row in enumerate(tree.seats):
                 kind = KINDS[int(row[CONTACTS])]
