@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
 from workhold.model.seating import Seating
+from workhold.model.toolkit import Toolkit
 from workhold.seating.seating import Solver
 
 Array = NDArray[np.float64]
@@ -65,10 +66,22 @@ class Obstacle:
 
     def __init__(self, part: Workpiece, fixture: Fixture, radius: float) -> None:
         self.faces = [face.segment for face in part.faces]
-        self.radius, self.center = radius, np.array(part.center)
+        self.radii, self.center = np.full(len(fixture.pegs), radius), np.array(part.center)
         self.right = np.array([float(peg.carrier == RIGHT) for peg in fixture.pegs])
-        self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs])
-        self.pegs[:, 0] -= self.right * fixture.jaw_separation
+        # Which way each peg moves as S grows, and whether a smaller S clamps.
+        self.ways, self.clamping = np.outer(self.right, [1.0, 0.0]), 1
+        self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - self.ways * fixture.jaw_separation
+
+    @classmethod
+    def about(cls, part: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Obstacle:
+        """The same in any toolkit: S is the travel, along whichever way that goes."""
+        out = cls(part, fixture, 0.0)
+        carriers = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
+        out.radii = np.array([carrier.peg_radius for carrier in carriers])
+        out.ways = np.array([carrier.travel.unit if carrier.travel else (0.0, 0.0) for carrier in carriers])
+        out.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - out.ways * fixture.jaw_separation
+        out.clamping = toolkit.clamping
+        return out
 
     def start(self, fixture: Fixture) -> Array:
         """theta, x and y of the middle of the part's box, and S."""
@@ -80,17 +93,18 @@ class Obstacle:
         theta, x, y, s = config
         c, d = cos(theta), sin(theta)
         out = []
-        for right, (px, py) in zip(self.right, self.pegs, strict=True):
-            qx, qy = px + right * s - x, py - y
+        for radius, (wx, wy), (px, py) in zip(self.radii, self.ways, self.pegs, strict=True):
+            qx, qy = px + wx * s - x, py + wy * s - y
             at = np.array([c * qx + d * qy, c * qy - d * qx])
             for face in self.faces:
                 for touch in touched(face, at + self.center):
                     away = at + self.center - touch
                     size = hypot(*away)
-                    if size - self.radius < reach:
+                    if size - radius < reach:
                         n = away / max(size, 1e-12)
                         vx, vy = c * n[0] - d * n[1], d * n[0] + c * n[1]
-                        out.append((size - self.radius, np.array([n[0] * at[1] - n[1] * at[0], -vx, -vy, vx * right])))
+                        slope = np.array([n[0] * at[1] - n[1] * at[0], -vx, -vy, vx * wx + vy * wy])
+                        out.append((size - radius, slope))
         return out
 
     def free(self, config: Array) -> float:
@@ -111,29 +125,32 @@ def touched(face: Any, point: Array) -> list[Array]:
 
 
 def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array:
-    """Where closing ends by small linear programs of scipy: each step lowers S most within a box."""
+    """Where closing, or opening, ends by small linear programs of scipy: each step lowers S most within a box."""
     from scipy.optimize import linprog
 
-    trust = 0.05
+    trust, sign = 0.05, obstacle.clamping
     scale = np.array([1.0 / size, 1.0, 1.0, 1.0])
     for _ in range(600):
         near = obstacle.near(config, 8.0 * trust)
         slopes = np.array([g * scale for _, g in near]).reshape(-1, 4)
         room = np.array([max(d, 0.0) for d, _ in near])
         told = linprog(
-            [0, 0, 0, 1], -slopes if len(near) else None, room if len(near) else None, bounds=[(-trust, trust)] * 4
+            [0, 0, 0, sign], -slopes if len(near) else None, room if len(near) else None, bounds=[(-trust, trust)] * 4
         )
         step = told.x * scale
-        gain = -told.x[3]
+        gain = -sign * told.x[3]
         after = config + step
         # Out again of what was entered to second order.
-        for _ in range(8):
-            for d, g in obstacle.near(after, 1e-12):
+        for _ in range(80):
+            entered = obstacle.near(after, -1e-12)
+            if not entered:
+                break
+            for d, g in entered:
                 after = after - g * scale**2 * (d - 1e-12) / ((g * scale) @ (g * scale))
-        if gain > 1e-9 and after[3] < config[3] - 0.1 * gain and obstacle.free(after) > -1e-7:
+        if gain > 1e-9 and sign * after[3] < sign * config[3] - 0.1 * gain and obstacle.free(after) > -1e-7:
             config, trust = after, min(2.0 * trust, 0.4)
         else:
             trust *= 0.3
-            if trust < 1e-6 or config[3] < stop + 1e-6:
+            if trust < 1e-6 or sign * config[3] < sign * stop + 1e-6:
                 return config
     return config

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import workhold
-from workhold import Plate, Vise, Workpiece
+from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.seating.seating import Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -34,8 +34,8 @@ def test_it_tells_what_to_do_and_what_to_read(run: Any, result_file: Path, monke
     [told] = workhold.seatings(result)
     text = " ".join(outcome.stdout.split())
     right = f"{result[0].jaw_separation:.3f} mm"
-    assert f"When it has come home the jaws read {right}." in text
-    assert f"which is {told.capture_opening:.3f} mm more than they close to" in text
+    assert f"When it has come home the opening S is {right}. While that is more" in text
+    assert f"which is {told.capture_opening:.3f} mm from where they hold the part" in text
     assert f"With a friction below {told.sticking_friction:.3f}" in text
     reads = [line.split()[1] for line in lines if line.split()[:1] and line.split()[0].isdigit()]
     assert reads[0] == right.split()[0]
@@ -92,6 +92,50 @@ def test_refusals_are_one_sentence(run: Any, result_file: Path, arguments: tuple
 
 
 def test_another_toolkit_is_refused(run: Any, tmp_path: Path) -> None:
-    workhold.save(workhold.design(WEDGE, Plate(pitch=20, peg_radius=3), best=1), tmp_path / "p.json")
+    workhold.save(workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, clamps=2), best=1), tmp_path / "p.json")
     outcome = run("seat", tmp_path / "p.json", 1)
-    assert outcome.exit_code == 2 and "a vise that closes" in outcome.stderr
+    assert outcome.exit_code == 2 and "neither of the two clamps" in outcome.stderr
+
+
+@pytest.mark.parametrize(
+    ("travel", "words"),
+    [
+        (None, "Draw the clamp back to a tip y of more than {wide} mm, which is {by} mm from where it holds the part."),
+        (
+            (5, 40),
+            "Draw the clamp back to a stroke of more than {wide} mm, which is {by} mm from where it holds the part.",
+        ),
+    ],
+    ids=["tip", "stroke"],
+)
+def test_a_clamp_is_drawn_back(run: Any, tmp_path: Path, travel: tuple[float, float] | None, words: str) -> None:
+    """What is read is the tip's place or the stroke; a tip that pushes up is drawn down, and both get less."""
+    plate = Plate(pitch=20, peg_radius=3, directions=["+y"], travel=travel)
+    workhold.save(workhold.design(WEDGE, plate, best=1), tmp_path / "p.json")
+    result = workhold.open(tmp_path / "p.json")
+    [told] = workhold.seatings(result)
+    outcome = run("seat", tmp_path / "p.json", 1, "--draw", tmp_path / "seats.svg")
+    text = " ".join(outcome.stdout.split())
+    right = result[0].pegs[-1].y if travel is None else -result[0].jaw_separation
+    assert words.format(wide=f"{right - told.capture_opening:.3f}", by=f"{told.capture_opening:.3f}") in text
+    assert f"is {right:.3f} mm. While that is less, the part is stuck" in text
+    reads = [line.split()[1] for line in outcome.stdout.splitlines() if line.split()[:1] and line.split()[0].isdigit()]
+    rest = [right - (seat.jaw_separation - result[0].jaw_separation) for seat in told.seats if not seat.is_own]
+    shown = [one for one in told.seats if not one.is_own and (travel is None or one.jaw_separation <= -travel[0])]
+    assert len(reads) == 1 + len(shown) and set(reads[1:]) <= {f"{one:.3f}" for one in rest}
+    assert f"reads {right:.3f} mm" in (tmp_path / "seats.svg").read_text()
+
+
+def test_an_opening_vise_is_closed_to_put_the_part_in(run: Any, tmp_path: Path) -> None:
+    holed = Workpiece.from_loops(
+        "holed",
+        [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]],
+    )
+    vise = OpeningVise(pitch=15, columns=1, peg_radius=3, min_gap=6)
+    workhold.save(workhold.design(holed, vise, best=1), tmp_path / "o.json")
+    result = workhold.open(tmp_path / "o.json")
+    [told] = workhold.seatings(result)
+    text = " ".join(run("seat", tmp_path / "o.json", 1).stdout.split())
+    right = result[0].jaw_separation
+    assert f"Close the jaws to more than {right - told.capture_opening:.3f} mm" in text
+    assert f"the opening S is {right:.3f} mm. While that is less" in text

@@ -125,7 +125,7 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
     for friction, sticks in ((0.19, True), (0.21, False)):
         steps = words_for(result, evolve(told[0], sticking_friction=friction)).steps(WEDGE)
-        assert any("tap it home while closing" in step for step in steps) == sticks
+        assert any("tap it home meanwhile" in step for step in steps) == sticks
 
 
 def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, told: list[Seating]) -> None:
@@ -134,7 +134,7 @@ def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, t
     assert "as far as you like" in free[0] and not any("Put the part in" in step for step in free)
     most = result[0].jaw_separation + 0.5 * (told[0].capture_opening or 0.0)
     narrow = SeatingWords(told[0], result[0], evolve(result.toolkit, max_opening=most), LengthUnit.mm())
-    assert "as far as they go" in narrow.steps(WEDGE)[0]
+    assert "as far as possible" in narrow.steps(WEDGE)[0]
 
 
 def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Seating]) -> None:
@@ -172,3 +172,18 @@ def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     with pytest.raises(workhold.InputError) as refusal:
         workhold.seatings(plate)
     assert str(refusal.value)[1:] in words
+
+
+def test_a_clamp_is_drawn_back_and_tightened() -> None:
+    """Words and readings of a clamp whose stroke gets less as it is drawn back, and never told wider than it may be."""
+    plate = workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, directions=["+y"], travel=(1, 40)), best=1)
+    (told,) = workhold.seatings(plate)
+    words = words_for(plate, told)
+    steps = words.steps(WEDGE)
+    right, capture = -plate[0].jaw_separation, told.capture_opening or 0.0
+    least = float(steps[0].split("stroke = ")[1].split()[0])
+    assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
+    assert right - capture <= least < right - capture + 0.01
+    assert any(step.startswith("Tighten it. stroke = ") and "While less is read" in step for step in steps)
+    lower = next(seat for seat in told.seats if seat.difference > 0.1)
+    assert words.difference(lower).endswith("less")

@@ -9,7 +9,7 @@ import pytest
 
 import workhold
 from seating_examples import LEFT, RIGHT, SAMPLED, Obstacle, case_fixture, closed, held, moved, solved
-from workhold import Fixture, InputError, Peg, Plate, Pose, Vise, Workpiece
+from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.model.seating import Seating
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
@@ -270,14 +270,6 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats():
         assert all(sum(seat.is_own for seat in one.seats) == 1 for one in told)
         there = [seat for seat in told[0].seats if seat.kind == "fixture" and not seat.mirrored]
         assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
-
-
-def test_other_toolkits_are_refused_in_a_sentence():
-    fixture = solved(0)[1]
-    with pytest.raises(InputError, match="a vise that closes"):
-        Solver(workhold.load("widget"), Plate(pitch=8, peg_radius=2)).of(fixture)
-    with pytest.raises(InputError, match="radius 0"):
-        Solver(workhold.load("widget"), Vise(8, 2, 0)).of(fixture)
 
 
 def test_case_fixtures_have_a_part():

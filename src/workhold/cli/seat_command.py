@@ -15,10 +15,10 @@ from workhold.cli.values import choice, length_unit, optional_positive_length, p
 
 if TYPE_CHECKING:
     from workhold.cli.table import Table
-    from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
     from workhold.model.units import Unit
+    from workhold.seating.reading import Gauge
 
 __all__ = ["seat"]
 
@@ -40,15 +40,17 @@ def seat(
     number: RankArgument,
     side: str = option(None, "WORD", "Which side of the part may lie up: drawn, turned-over, or both.", default="both"),
     opening: str | None = option(
-        None, "LENGTH", "Open the jaws by this much to put the part in; as far as they go if not given."
+        None,
+        "LENGTH",
+        "Open the jaws, or draw the clamp back, by this much to put the part in; as far as they go if not given.",
     ),
     draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Tell whether the part ends up in the pose of fixture N when the vise is closed: how wide open the jaws may be when it
-    is let go and how far off it may lie, where else it can come to rest, and what the jaws read then.
+    """Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened: how wide open
+    that may be when the part is let go and how far off it may lie, where else it can come to rest, and what is read then.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
@@ -65,18 +67,20 @@ def seat(
     fixture = result[rank - 1]
 
     from workhold.cli.tables import print_tables
+    from workhold.seating.reading import Gauge
     from workhold.seating.seating import Solver
 
+    gauge = Gauge(fixture, result.toolkit)
     told = Solver(result.workpiece, result.toolkit).of(fixture)
     seats = shown_seats(told, shown_side, opened, result)
     if not json_:
         print_tables(
             f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
             "",
-            *setting_words(told, fixture, shown_unit),
+            *setting_words(told, gauge, shown_unit),
             "",
-            *wrong_words(told, seats, opened, shown_unit),
-            seat_table(seats, fixture, shown_unit),
+            *wrong_words(told, seats, opened, gauge, shown_unit),
+            seat_table(seats, gauge, shown_unit),
         )
     for words in told.unsettled:
         tell(words)
@@ -98,31 +102,38 @@ def shown_seats(told: Seating, side: str, opened: float | None, result: Result) 
     own = [one for one in told.seats if one.is_own]
     rest = [one for one in told.seats if not one.is_own and (side == "both" or one.mirrored == (side == "turned-over"))]
     if opened is not None:
-        rest = [one for one in rest if one.difference < opened]
+        rest = [one for one in rest if told.clamping * one.difference < opened]
     most = result.toolkit.moving.travel.most if result.toolkit.moving.travel else None
     return own + [one for one in rest if most is None or one.jaw_separation <= most]
 
 
-def setting_words(told: Seating, fixture: Fixture, unit: Unit) -> list[str]:
+def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     """What to do, and what to read when it went right."""
-    right = unit.text(fixture.jaw_separation)
+    setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
+    named = f"a {setting.name} of " if carrier.on else ""
+    more, less = ("more", "less") if gauge.grows else ("less", "more")
     if told.capture_opening is None:
-        words = [f"However wide the jaws open, the part cannot get to another place. Close them: they read {right}."]
+        words = [f"However {ways.far}, the part cannot get to another place: put it in and {ways.close}."]
     else:
-        wide, more = unit.text(fixture.jaw_separation + told.capture_opening), unit.text(told.capture_opening)
+        wide = gauge.at(gauge.fixture.jaw_separation + told.clamping * told.capture_opening)
         words = [
-            f"Open the jaws to less than {wide}, which is {more} more than they close to. Put the part in its place and "
-            "close them: on the way it cannot leave for another place.",
-            f"When it has come home the jaws read {right}. While they read more it is stuck short of its pose.",
+            f"{ways.open} to {named}{less} than {unit.text(wide)}, which is {unit.text(told.capture_opening)} from where "
+            f"{ways.hold} the part. Put the part in its place and {ways.close}: on the way it cannot leave for another "
+            "place."
         ]
-        if told.drop_room is not None:
-            words.append(f"Opened so far, there is about {unit.text(told.drop_room)} of room at every peg at once.")
+    words.append(
+        f"When it has come home the {setting.name} is {unit.text(setting.length)}. While that is {more}, the part is stuck "
+        "short of its pose."
+    )
+    if told.drop_room is not None:
+        words.append(f"{ways.done} so far, there is about {unit.text(told.drop_room)} of room at every peg at once.")
     if told.cage is not None and told.placing is not None:
         low, high = told.cage.theta_deg
-        x, y = (" to ".join(unit.number(end) for end in ends) for ends in (told.cage.x, told.cage.y))
+        shifts = (told.cage.x, told.cage.y) if carrier.is_along_x else (told.cage.y, told.cage.x)
+        along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
         words += [
-            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {x} {unit.abbreviation} along the jaws' way, {y} "
-            f"{unit.abbreviation} across it, as far as the pegs let it. Told to a grid's step.",
+            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along the {ways.whose} "
+            f"way, {across} {unit.abbreviation} across it, as far as the pegs let it. Told to a grid's step.",
             f"Put so that every point is nearer than {unit.text(told.placing)} to its place, it comes home.",
         ]
     tap = "." if told.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."
@@ -130,7 +141,7 @@ def setting_words(told: Seating, fixture: Fixture, unit: Unit) -> list[str]:
     return words
 
 
-def wrong_words(told: Seating, seats: list[Seat], opened: float | None, unit: Unit) -> list[str]:
+def wrong_words(told: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit) -> list[str]:
     """How many wrong seats there are, and whether a reading tells them."""
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
@@ -141,21 +152,22 @@ def wrong_words(told: Seating, seats: list[Seat], opened: float | None, unit: Un
         words.append("There is no wrong place where it can come to rest.")
     else:
         near = min(wrong, key=lambda one: abs(one.difference))
+        more = gauge.at(near.jaw_separation) > gauge.setting.length
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words.append(
             f"It can come to rest in {places}; the reading nearest to the right one is "
-            f"{unit.text(abs(near.difference))} {'more' if near.difference > 0 else 'less'}."
+            f"{unit.text(abs(near.difference))} {'more' if more else 'less'}."
         )
     if alike:
         words.append(f"In {alike} more it covers its place all the same, which no reading tells: mark the part.")
     return words
 
 
-def seat_table(seats: list[Seat], fixture: Fixture, unit: Unit) -> Table:
-    """The seats: what the jaws read, how the part lies, what touches, and how far it is held."""
+def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
+    """The seats: what is read, how the part lies, what touches, and how far it is held."""
     from workhold.cli.table import Table
 
-    of = unit.abbreviation
+    of, fixture = unit.abbreviation, gauge.fixture
     table = Table(("seat", f">reads {of}", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"))
     for k, one in enumerate(seats):
         turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
@@ -163,8 +175,8 @@ def seat_table(seats: list[Seat], fixture: Fixture, unit: Unit) -> Table:
         words = "right" if one.is_own else "same place" if one.same_place else KINDS[one.kind]
         table.add_row(
             str(k + 1),
-            unit.number(one.jaw_separation),
-            unit.number(one.difference),
+            unit.number(gauge.at(one.jaw_separation)),
+            unit.number(gauge.at(one.jaw_separation) - gauge.setting.length),
             f"{one.pose.theta_deg:.1f}" if one.mirrored else f"{turned:.1f}",
             "over" if one.mirrored else "up",
             "-" if one.depth is None else unit.number(one.depth),

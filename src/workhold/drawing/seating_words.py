@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import asin, degrees, floor, inf, log10
+from math import asin, ceil, degrees, floor, inf, log10
 
 from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
 from workhold.model.fixture import Fixture
 from workhold.model.seating import Seat, Seating
-from workhold.model.setting import settings_of
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.place import Silhouette
+from workhold.seating.reading import Gauge
 
 __all__ = ["SeatingWords", "down"]
 
@@ -57,13 +57,18 @@ class SeatingWords:
     lengths: LengthUnit
 
     @property
+    def gauge(self) -> Gauge:
+        """What tells the seats."""
+        return Gauge(self.fixture, self.toolkit)
+
+    @property
     def sign(self) -> str:
         """What is read, such as S."""
-        return settings_of(self.fixture, self.toolkit)[0].sign
+        return self.gauge.setting.sign
 
     def reading(self, seat: Seat) -> float:
         """What is read in a seat, in mm."""
-        return settings_of(self.fixture, self.toolkit)[0].length + seat.difference
+        return self.gauge.at(seat.jaw_separation)
 
     def reads(self, length: float) -> str:
         """A reading in words."""
@@ -74,10 +79,12 @@ class SeatingWords:
         unit = self.lengths.unit
         return f"{down(length / unit.millimetres)} {unit.abbreviation}"
 
-    def lowered(self, length: float) -> float:
-        """A length in mm rounded down to the decimals that are written."""
+    def short_of(self, opened: float) -> float:
+        """What is read when the jaws are opened by a length in mm, rounded to the decimals written so that they are not
+        opened further."""
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
-        return floor(length / step) * step
+        reading = self.gauge.at(self.own.jaw_separation + self.told.clamping * opened) / step
+        return (floor(reading) if self.gauge.grows else ceil(reading)) * step
 
     @cached_property
     def own(self) -> Seat:
@@ -112,23 +119,23 @@ class SeatingWords:
         """How the reading of a seat differs from the right one."""
         if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
             return "the same"
-        return f"{self.lengths.words(abs(seat.difference))} {'more' if seat.difference > 0.0 else 'less'}"
+        more = self.reading(seat) > self.reading(self.own)
+        return f"{self.lengths.words(abs(seat.difference))} {'more' if more else 'less'}"
 
     def steps(self, workpiece: Workpiece) -> list[str]:
         """What to do and what to read, one step each."""
         told, right = self.told, self.reads(self.reading(self.own))
-        noun = self.toolkit.moving.noun
+        ways, (most, more) = self.gauge.ways, ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room, travel = told.capture_opening, told.drop_room, self.toolkit.moving.travel
         widest = inf if travel is None or travel.most is None else travel.most
         if capture is None or room is None:
-            steps = [f"Open the {noun}s as far as you like: the part cannot get to another place on these pegs."]
-        elif self.own.jaw_separation + capture > widest:
-            steps = [f"Open the {noun}s as far as they go: nowhere on the way can the part get to another place."]
+            steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
+        elif self.own.jaw_separation + self.told.clamping * capture > widest:
+            steps = [f"{ways.open} as far as possible: nowhere on the way can the part get to another place."]
         else:
-            wide = self.reads(self.lowered(self.reading(self.own) + capture))
             steps = [
-                f"Open the {noun}s to {wide} at most, {self.bound(capture)} wider than they close to. That leaves about "
-                f"{self.bound(room)} of room at every peg."
+                f"{ways.open} to {self.reads(self.short_of(capture))} {most}, {self.bound(capture)} from where {ways.hold} "
+                f"the part. That leaves about {self.bound(room)} of room at every peg."
             ]
         within = self.within(workpiece)
         if within is not None:
@@ -137,11 +144,14 @@ class SeatingWords:
                 f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as the pegs let it: "
                 "from there it comes home."
             )
-        steps.append(f"Close. {right} is right. While more is read, the part is stuck short of its place: tap it home.")
+        steps.append(
+            f"{ways.close.capitalize()}. {right} is right. While {more} is read, the part is stuck short of its place: tap "
+            "it home."
+        )
         least = f"{told.sticking_friction:.2f}"
         if told.sticking_friction < DRY_STEEL:
             steps.append(
-                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home while closing."
+                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home meanwhile."
             )
         return steps
 
@@ -169,9 +179,9 @@ class SeatingWords:
             found.append(
                 (
                     "capture",
-                    f"The part is caught from next to nothing: with the {self.toolkit.moving.noun}s "
-                    f"{self.bound(told.capture_opening)} wider it may come to rest elsewhere. Hold it in its place while "
-                    "they close, and compare the reading.",
+                    f"The part is caught from next to nothing: {self.gauge.ways.done.lower()} by "
+                    f"{self.bound(told.capture_opening)} it may come to rest elsewhere. Hold it in its place meanwhile, and "
+                    "compare the reading.",
                 )
             )
         near = self.wrong[0] if self.wrong else None

@@ -15,6 +15,7 @@ from workhold.model.seating import Seat
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.seating.reading import Gauge
 
 __all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats"]
 
@@ -33,7 +34,7 @@ def draw_seats(
     title: str = "Fixture",
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve seats of a fixture's pegs on one A4 sheet, all to the same scale, with what the jaws read.
+    """Draw up to twelve seats of a fixture's pegs on one A4 sheet, all to the same scale, with what is read in each.
 
     Parameters
     ----------
@@ -73,30 +74,38 @@ class Placed:
     seat : which.
     loops : of the part.
     pegs : places, radii, and whether each touches.
+    reading : what is read there, and in the fixture's own pose.
+    extent : of all of it.
     """
 
     def __init__(
-        self, seat: Seat, loops: list[list[Segment]], pegs: list[tuple[tuple[float, float], float, bool]], extent: Box
+        self,
+        seat: Seat,
+        loops: list[list[Segment]],
+        pegs: list[tuple[tuple[float, float], float, bool]],
+        reading: tuple[float, float],
+        extent: Box,
     ) -> None:
-        self.seat, self.loops, self.pegs, self.extent = seat, loops, pegs, extent
+        self.seat, self.loops, self.pegs, self.reading, self.extent = seat, loops, pegs, reading, extent
 
     @classmethod
     def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
         """A seat of a fixture's pegs."""
         part = workpiece.turned_over if seat.mirrored else workpiece
         lying = part.placed(seat.pose)
-        touching = {contact.peg for contact in seat.contacts}
-        pegs = []
-        for k, peg in enumerate(fixture.pegs):
-            x = peg.x + (seat.difference if peg.carrier == toolkit.moving.name else 0.0)
-            pegs.append(((x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching))
+        touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)
+        pegs = [
+            ((peg.x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching)
+            for k, peg in enumerate(gauge.pegs(seat.jaw_separation))
+        ]
+        reading = gauge.at(seat.jaw_separation), gauge.setting.length
         x0, y0, x1, y1 = lying.bounds
         boxes = [(x0, y0, x1, y1), *((x - r, y - r, x + r, y + r) for (x, y), r, _ in pegs)]
         lows, highs = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
         extent = Box(
             *(min(ends) for ends in zip(*lows, strict=True)), *(max(ends) for ends in zip(*highs, strict=True))
         )
-        return cls(seat, [list(loop) for loop in lying.loop_segments], pegs, extent)
+        return cls(seat, [list(loop) for loop in lying.loop_segments], pegs, reading, extent)
 
 
 def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
@@ -108,17 +117,17 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
 
 
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
-    """Draw one seat with its number, what the jaws read, and how that differs."""
-    seat = placed.seat
+    """Draw one seat with its number, what is read, and how that differs."""
+    seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
     draw_lying(scene, placed, view)
     side = ", turned over" if seat.mirrored else ""
     words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
     scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
-    scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(seat.jaw_separation)}", 13, "end", fill=ARROW)
+    scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(reading)}", 13, "end", fill=ARROW)
     kind = seat.kind if seat.kind != "fixture" else "four pegs"
     scene.text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
     if not seat.is_own:
-        more = "more" if seat.difference >= 0.0 else "less"
-        scene.text((cell.x1 - 10, cell.y1 - 12), f"{unit.text(abs(seat.difference))} {more}", 12, "end", fill=GREY)
+        more = "more" if reading >= own else "less"
+        scene.text((cell.x1 - 10, cell.y1 - 12), f"{unit.text(abs(reading - own))} {more}", 12, "end", fill=GREY)

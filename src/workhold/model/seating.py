@@ -62,7 +62,7 @@ class Seat:
     ----------
     kind : fixture, corner, pocket, curved, loose, or unsettled.
     pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
-    jaw_separation : S in mm.
+    jaw_separation : S in mm, of a clamp its travel.
     difference : S less that of the fixture.
     mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the same.
     contacts, forces : what touches, and each force per unit of jaw force; none of what is loose or not settled.
@@ -163,11 +163,12 @@ class Seating:
     way_out : in mm, how far the jaws open before the part can leave all pegs; None where it never can.
     cage, placing : how far the part may be off; None where the cage has no end.
     sticking_friction : the coefficient below which it cannot stick near its seat.
-    stop : the smallest jaw separation in mm.
+    stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing stops it.
     seats : all, by their separations, the fixture's own among them.
     unsettled : why what was not settled was not, one sentence each.
     opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
         separation; in mm, without end if None.
+    clamping : 1 where S gets less as it clamps, -1 where it gets more.
     """
 
     capture_opening: float | None
@@ -177,11 +178,12 @@ class Seating:
     cage: Cage | None
     placing: float | None
     sticking_friction: float
-    stop: float
+    stop: float | None
     seats: tuple[Seat, ...]
     unsettled: tuple[str, ...] = ()
     opening: float | None = None
     most: float | None = None
+    clamping: int = 1
 
     @property
     def drop_room(self) -> float | None:
@@ -198,7 +200,7 @@ class Seating:
         reach = self.opening if opening is None else opening
         wrong = [seat for seat in self.seats if seat.is_wrong]
         if reach is not None:
-            wrong = [seat for seat in wrong if seat.difference < reach]
+            wrong = [seat for seat in wrong if self.clamping * seat.difference < reach]
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
     def reading_of(self, opening: float | None = None) -> float | None:

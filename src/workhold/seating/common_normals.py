@@ -1,8 +1,9 @@
 """Two pegs that press a part along one line: on a common normal of two pieces, or in pockets. All in closed form.
 
 With both pegs on one line and at a fixed height above each other, the jaw separation grows with their distance d on the
-part; so equilibria are those of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the
-second derivatives of d are 1 / d - kappa along each piece, and -1 / d across.
+part, counted along the outward normal of what moves: below 0 where both press from between, as in a hole. So equilibria are
+those of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the second derivatives of d are
+1 / d - kappa along each piece, and -1 / d across.
 """
 
 from __future__ import annotations
@@ -44,13 +45,13 @@ FLAT = 1e-9
 
 @frozen(slots=False)
 class CommonNormal:
-    """Two places on the boundary, each on the other's normal and outside of it.
+    """Two places on the boundary with opposite normals, each on the other's.
 
     Parameters
     ----------
     pieces : of each place what a peg there touches: one piece, or the two of a pocket.
     one, two : places about the centre, in mm.
-    length : their distance.
+    length : their distance along the outward normal of the second, below 0 where the normals point at each other.
     curvatures : of the pieces, in 1 / mm; None of a pocket.
     """
 
@@ -70,7 +71,7 @@ class CommonNormal:
                 return 0.0, 0.0, 0.0
             return 1.0 / d - (one or 0.0) - (two or 0.0), float(one is not None), float(two is not None)
         values, ways = np.linalg.eigh([[1.0 / d - one, -1.0 / d], [-1.0 / d, 1.0 / d - two]])
-        return (float(values[0]) if values[1] * d > FLAT else nan), float(ways[0, 0]), float(ways[1, 0])
+        return (float(values[0]) if values[1] * abs(d) > FLAT else nan), float(ways[0, 0]), float(ways[1, 0])
 
     @property
     def turned(self) -> CommonNormal:
@@ -93,11 +94,11 @@ def common_normals(locus: Locus) -> list[CommonNormal]:
             continue
         (vx, vy), (wx, wy) = locus.pockets[v, :2], locus.pockets[w, :2]
         d = hypot(wx - vx, wy - vy)
-        if d > SHORTEST:
-            ux, uy = (wx - vx) / d, (wy - vy) / d
+        for signed in (d, -d) if d > SHORTEST else ():
+            ux, uy = (wx - vx) / signed, (wy - vy) / signed
             if holds(locus.pockets[v], -ux, -uy) and holds(locus.pockets[w], ux, uy):
                 pieces = pocket_pieces(locus, v), pocket_pieces(locus, w)
-                found.append(CommonNormal(pieces, (vx, vy), (wx, wy), d, (None, None)))
+                found.append(CommonNormal(pieces, (vx, vy), (wx, wy), signed, (None, None)))
     return found
 
 
@@ -148,7 +149,7 @@ def of_pieces(rows: Array, a: int, b: int) -> list[CommonNormal]:
             q = reached(two, ux, uy, 0.0, 0.0)
             p = reached(one, ux, uy, *q)
         d = (q[0] - p[0]) * ux + (q[1] - p[1]) * uy
-        if d > SHORTEST and contains(one, *p) and contains(two, *q):
+        if abs(d) > SHORTEST and contains(one, *p) and contains(two, *q):
             found.append(CommonNormal(((a,), (b,)), p, q, d, (bend(one), bend(two))))
     return found
 
@@ -161,7 +162,7 @@ def of_pocket(locus: Locus, pocket: int, b: int) -> list[CommonNormal]:
     for ux, uy in ways:
         q = reached(row, ux, uy, x, y)
         d = (q[0] - x) * ux + (q[1] - y) * uy
-        if d > SHORTEST and contains(row, *q) and holds(locus.pockets[pocket], -ux, -uy):
+        if abs(d) > SHORTEST and contains(row, *q) and holds(locus.pockets[pocket], -ux, -uy):
             found.append(CommonNormal((pocket_pieces(locus, pocket), (b,)), (x, y), q, d, (None, bend(row))))
     return found
 
@@ -179,11 +180,11 @@ def squeezed(pattern: Pattern, normals: list[CommonNormal]) -> list[Array]:
     for i, j in product(np.flatnonzero(pattern.right == 0).tolist(), np.flatnonzero(pattern.right == 1).tolist()):
         run, rise = pattern.pegs[j] - pattern.pegs[i]
         for normal in normals:
-            if normal.length <= abs(rise) * (1.0 + 1e-12):
+            if abs(normal.length) <= abs(rise) * (1.0 + 1e-12):
                 continue
             omega = asin(rise / normal.length)
             separation = normal.length * cos(omega) - run
-            if separation > pattern.stop:
+            if pattern.reaches(separation):
                 out.append(pressed(pattern, normal, i, j, omega, separation))
     return out
 
@@ -191,7 +192,7 @@ def squeezed(pattern: Pattern, normals: list[CommonNormal]) -> list[Array]:
 def pressed(pattern: Pattern, normal: CommonNormal, i: int, j: int, omega: float, separation: float) -> Array:
     """The candidate of one common normal, pressed by peg i and peg j in direction omega."""
     (px, py), (qx, qy), d = normal.one, normal.two, normal.length
-    theta = omega - atan2(qy - py, qx - px)
+    theta = omega - atan2((qy - py) / d, (qx - px) / d)
     c, s = cos(theta), sin(theta)
     rx, ry = c * px - s * py, s * px + c * py
     row = np.zeros(CANDIDATE_LENGTH)

@@ -41,7 +41,7 @@ class Closing:
         pattern = self.pattern
         rows = np.array(self.locus.rows)
         pegs = np.array(pattern.pegs), pattern.right, self.locus.parts
-        return Obstacles(rows, self.locus.spans, *pegs, self.size, pattern.stop)
+        return Obstacles(rows, self.locus.spans, *pegs, self.size, pattern.end(2.0 * self.size))
 
     def run(self, configs: Array, first: float) -> tuple[Array, NDArray[np.int8]]:
         """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.

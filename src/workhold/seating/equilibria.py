@@ -87,7 +87,7 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
             ).reshape(-1, CANDIDATE_LENGTH),
         ]
     )
-    candidates = candidates[candidates[:, SEPARATION] > pattern.stop]
+    candidates = candidates[pattern.reaches(candidates[:, SEPARATION])]
     settle(candidates, given, size, np.empty((4, 4)), np.empty((4, 5)))
     used = np.arange(4) < candidates[:, CONTACTS, None]
     forces = np.where(used, candidates[:, FORCE : FORCE + 4], np.inf)

@@ -156,7 +156,7 @@ class Finder:
     ) -> list[Family]:
         """The families of a part that slides with one peg, which stands at ``start``, on a line from a parameter to
         another."""
-        if high - low < SHORTEST or s <= self.pattern.stop + SAME:
+        if high - low < SHORTEST or not self.pattern.reaches(s, SAME):
             return []
         t = np.linspace(low, high, SLIDE_STEPS)
         x, y = line[X] + t * line[AXIS_X], line[Y] + t * line[AXIS_Y]
@@ -174,7 +174,7 @@ class Finder:
         across: tuple[float, float] | None,
     ) -> list[Family]:
         """The families of a part that turns about the centre of an arc, which stands at a place in the vise."""
-        if s <= self.pattern.stop + SAME:
+        if not self.pattern.reaches(s, SAME):
             return []
         theta = np.arange(TURN_STEPS) * tau / TURN_STEPS
         c, d = np.cos(theta), np.sin(theta)
@@ -191,7 +191,7 @@ class Finder:
                 one, two = self.rows[a], self.rows[b]
                 ux, uy = -one[AXIS_Y], one[AXIS_X]
                 d = (two[X] - one[X]) * ux + (two[Y] - one[Y]) * uy
-                if d <= abs(rise) * (1.0 + 1e-12) or not self.touch([(i, a), (j, b)]):
+                if abs(d) <= abs(rise) * (1.0 + 1e-12) or not self.touch([(i, a), (j, b)]):
                     continue
                 omega = asin(rise / d)
                 shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
@@ -205,7 +205,7 @@ class Finder:
                 for a, b in product(group, repeat=2):
                     one, two = (float(self.rows[k, SIGN] * self.rows[k, RADIUS]) for k in (a, b))
                     d = one + two
-                    if d <= max(abs(rise) * (1.0 + 1e-12), SHORTEST) or not self.touch([(i, a), (j, b)]):
+                    if abs(d) <= max(abs(rise) * (1.0 + 1e-12), SHORTEST) or not self.touch([(i, a), (j, b)]):
                         continue
                     omega = asin(rise / d)
                     center = pegs[i, 0] + one * cos(omega), pegs[i, 1] + one * sin(omega)

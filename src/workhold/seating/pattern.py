@@ -1,6 +1,9 @@
-"""Four pegs on two jaws of which the right one slides along x: what is solved once for all fixtures on them."""
+"""Four pegs of which those that move slide along x: what is solved once for all fixtures on them."""
 
 from __future__ import annotations
+
+from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 from attrs import define
@@ -9,59 +12,110 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import OpeningVise, Vise
+from workhold.seating.door import Door
 
 __all__ = ["Pattern", "refuse_unseated"]
 
 Array = NDArray[np.float64]
 # mm. Peg patterns that agree to this are one: places are whole steps of a lattice.
 SAME_PATTERN = 1e-6
+# mm. A clamp's tip may be in a locator by this much: rounding.
+APART = 1e-6
+# mm. How much farther apart than both could touch the part pegs are at the end of a way that nothing stops.
+BEYOND = 1.0
 
 
 @define(frozen=True, eq=False)
 class Pattern:
-    """Four pegs.
+    """Four pegs, in the frame of their door.
 
     Parameters
     ----------
-    pegs : (4, 2) their places in mm at jaw separation 0.
-    right : (4,) 1 for those of the right jaw, 0 for others.
+    pegs : (4, 2) their places in mm at separation 0.
+    right : (4,) 1 for those that move, such as pegs of the right jaw, 0 for others.
     radii : in mm, of the pegs that stand still and of those that move.
-    gap : smallest distance in mm along x from a left peg to a right one.
+    stop, widest : the smallest and the largest separation in mm, infinite where nothing stops what moves.
+    door : the way to the toolkit's frame.
     """
 
     pegs: Array
     right: NDArray[np.int64]
     radii: tuple[float, float]
-    gap: float
+    stop: float
+    widest: float
+    door: Door
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
-        """The pegs of a fixture in a vise.
+        """The pegs of a fixture.
 
         Raises
         ------
         InputError
-            In another toolkit, and for pegs without a radius.
+            On a fence and with two clamps, for pegs with a flat, and for pegs without a radius.
         """
         refuse_unseated(toolkit)
-        assert isinstance(toolkit, Vise)
-        right = np.array([int(peg.carrier == "right") for peg in fixture.pegs], dtype=np.int64)
-        places = np.array([[peg.x, peg.y] for peg in fixture.pegs], dtype=np.float64)
-        places[:, 0] -= right * fixture.jaw_separation
-        return cls(places, right, (toolkit.peg_radius, toolkit.peg_radius), toolkit.gap)
+        carriers = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
+        moving = next(carrier for carrier in carriers if carrier.travel is not None)
+        standing = next(carrier for carrier in carriers if carrier.travel is None)
+        door = Door.of(toolkit, moving)
+        right = np.array([int(carrier.travel is not None) for carrier in carriers], dtype=np.int64)
+        pegs = door.turned(np.array([[peg.x, peg.y] for peg in fixture.pegs], dtype=np.float64))
+        pegs[:, 0] -= right * (door.sign * fixture.jaw_separation)
+        pattern = cls(pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door)
+        stop, widest = pattern.free_of_locators(door.sign * fixture.jaw_separation)
+        if toolkit.gap is not None:
+            stop, widest = pattern.gap_kept(toolkit.gap)
+        assert moving.travel is not None
+        if door.sign < 0.0:
+            stop = stop if moving.travel.most is None else max(stop, -moving.travel.most)
+        elif toolkit.gap is None:
+            stop = max(stop, moving.travel.least)
+        return cls(pegs, right, pattern.radii, stop, widest, door)
 
-    @property
-    def stop(self) -> float:
-        """The smallest jaw separation in mm."""
+    def gap_kept(self, gap: float) -> tuple[float, float]:
+        """The separations at which pegs of both jaws are a gap apart: the stop as they close, the widest of those that
+        clamp by opening."""
         left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
-        return float(self.gap + left.max() - right.min())
+        if self.door.sign > 0.0:
+            return float(gap + left.max() - right.min()), inf
+        return -inf, float(left.min() - right.max() - gap)
+
+    def free_of_locators(self, separation: float) -> tuple[float, float]:
+        """The separations at which a clamp's tip meets a locator before it and behind it, seen from one between."""
+        stop, widest = -inf, inf
+        for tip in self.pegs[self.right == 1]:
+            for locator in self.pegs[self.right == 0]:
+                across, ahead = float(locator[1] - tip[1]), float(locator[0] - tip[0])
+                square = sum(self.radii) ** 2 - across**2
+                if square <= 0.0:
+                    continue
+                if ahead <= separation:
+                    stop = max(stop, min(ahead + sqrt(square), separation + APART))
+                else:
+                    widest = min(widest, max(ahead - sqrt(square), separation - APART))
+        return stop, widest
+
+    def end(self, diameter: float) -> float:
+        """The smallest separation in mm that a way leads to: the stop or, where there is none, one at which no peg that
+        moves touches a part of a diameter together with one that stands still."""
+        left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
+        return max(self.stop, float(left.min() - right.max()) - diameter - sum(self.radii) - BEYOND)
 
     def key(self) -> tuple[object, ...]:
         """What patterns share that differ by a shift of all pegs and by their order."""
         order = np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
-        moved = np.rint((self.pegs[order] - self.pegs[order[0]]) / SAME_PATTERN)
-        return (*self.radii, self.gap, *self.right[order].tolist(), *(moved + 0.0).ravel().tolist())
+        moved = self.pegs[order] - self.pegs[order[0]]
+        # Where separations are counted from is of no account.
+        apart = moved[self.right[order] == 1, 0].min()
+        moved[self.right[order] == 1, 0] -= apart
+        ends = self.stop + apart, self.widest + apart
+        told = np.rint(np.array([*ends, *moved.ravel()]) / SAME_PATTERN) + 0.0
+        return (*self.radii, *self.right[order].tolist(), *told.tolist())
+
+    def reaches(self, separation: Any, slack: float = 0.0) -> Any:
+        """Whether separations, a number or many, are between the stop and the widest."""
+        return (separation > self.stop + slack) & (separation < self.widest - slack)
 
     def at(self, configs: Array) -> Array:
         """Places (N, 4, 2) of the pegs on the part, in configurations (N, 4) of theta, x, y and S."""
@@ -72,16 +126,19 @@ class Pattern:
 
 
 def refuse_unseated(toolkit: Toolkit) -> None:
-    """Refuse a toolkit of which no seating is worked out.
+    """Refuse toolkits of which seating is not told.
 
     Raises
     ------
     InputError
-        For another one than a vise that closes, and for pegs without a radius.
+        On a fence and with two clamps, for pegs with a flat, and for pegs without a radius.
     """
-    if not isinstance(toolkit, Vise) or isinstance(toolkit, OpeningVise):
-        raise InputError(
-            "what a part does while it is clamped is told for a vise that closes: this result has another toolkit."
-        )
-    if toolkit.peg_radius <= 0.0:
+    asked = "what a part does while it is clamped is told"
+    if toolkit.wall is not None:
+        raise InputError(f"{asked} of vises and of plates without a fence: this result has a fence.")
+    if toolkit.needs_pairs:
+        raise InputError(f"{asked} of one clamp: neither of the two clamps of this result holds the part alone.")
+    if toolkit.has_flats:
+        raise InputError(f"{asked} of round pegs: those of this result have flats.")
+    if min(carrier.peg_radius for carrier in toolkit.carriers) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from math import cos, pi, radians, sin, tau
+from itertools import product
+from math import cos, isfinite, pi, radians, sin, tau
 from threading import Event
 
 import numpy as np
@@ -207,20 +208,18 @@ class Reading:
     @property
     def own(self) -> Array:
         """(4,) configuration of the fixture."""
-        return self.config(self.fixture.pose, self.fixture.jaw_separation)
-
-    def config(self, pose: Pose, separation: float) -> Array:
-        """A pose of the part, as drawn, and a separation as a configuration."""
+        pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
-        return np.array([radians(pose.theta_deg), x, y, separation])
+        return self.pattern.door.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation]))
 
     def pose(self, config: Array, mirrored: bool) -> Pose:
-        """The pose of a configuration."""
+        """The pose of a configuration, in the toolkit's frame."""
         x, y = self.solver.workpiece.center
         x = -x if mirrored else x
-        theta = float(config[0]) % tau
+        left = self.pattern.door.leave(config)
+        theta = float(left[0]) % tau
         c, s = cos(theta), sin(theta)
-        return Pose(theta * 180.0 / pi, float(config[1]) - (c * x - s * y), float(config[2]) - (s * x + c * y))
+        return Pose(theta * 180.0 / pi, float(left[1]) - (c * x - s * y), float(left[2]) - (s * x + c * y))
 
     def contacts(self, row: Array, mirrored: bool) -> tuple[Contact, ...]:
         """What touches in a candidate."""
@@ -232,7 +231,7 @@ class Reading:
     def seat(self, row: Array, kind: str, mirrored: bool, depth: float | None, has_forces: bool = True) -> Seat:
         """A seat of a candidate."""
         config, own = row[CONFIG] + self.shift, self.own
-        contacts = self.contacts(row, mirrored)
+        contacts, sign = self.contacts(row, mirrored), self.pattern.door.sign
         if kind == "fixture" and len({contact.peg for contact in contacts}) < 4:
             kind = "pocket"
         elif kind == "fixture" and any(contact.corner for contact in contacts):
@@ -242,8 +241,8 @@ class Reading:
         return Seat(
             kind,
             self.pose(config, mirrored),
-            float(config[3]),
-            float(config[3] - own[3]),
+            sign * float(config[3]),
+            sign * float(config[3] - own[3]),
             mirrored,
             bool(self.solver.outline.covers_same(own, config, mirrored)),
             contacts,
@@ -302,8 +301,9 @@ class Reading:
             cage=cage,
             placing=placing,
             sticking_friction=self.sticking(row),
-            stop=self.pattern.stop,
+            stop=self.pattern.door.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
             seats=seats,
+            clamping=int(self.pattern.door.sign),
             unsettled=() if not unsettled else (f"{unsettled} places where the part may rest could not be settled.",),
             most=travel.most if (travel := self.solver.toolkit.moving.travel) else None,
         )
@@ -311,7 +311,8 @@ class Reading:
     def lowest_pass(self, join: Join) -> Pass:
         """A join as the fixture's pass."""
         config = join.candidate[CONFIG] + self.shift
-        return Pass(self.pose(config, False), float(config[3]), self.contacts(join.candidate, False))
+        separation = self.pattern.door.sign * float(config[3])
+        return Pass(self.pose(config, False), separation, self.contacts(join.candidate, False))
 
     def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
         """Cage and placing."""
@@ -320,8 +321,10 @@ class Reading:
         way = top[:3] - seat[:3]
         way[0] = (way[0] + pi) % tau - pi
         around = Surroundings(closing, np.array(seat), opening, way, self.solver.outline.arm)
-        turns, x, y = ((float(low), float(high)) for low, high in around.cage)
-        return Cage((turns[0] * 180.0 / pi, turns[1] * 180.0 / pi), x, y), around.placing
+        turns, across, along = around.cage
+        corners = self.pattern.door.turned(np.array(list(product(across, along))), back=True)
+        x, y = ((float(ends.min()), float(ends.max())) for ends in corners.T)
+        return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
     def sticking(self, row: Array) -> float:
         """The friction below which the part cannot stick near its seat."""
@@ -355,7 +358,7 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     Raises
     ------
     InputError
-        For a toolkit other than a vise that closes, and for pegs of radius 0.
+        As ``Pattern.of``: on a fence, with two clamps, for pegs with a flat and for pegs of radius 0.
 
     Examples
     --------

@@ -102,7 +102,7 @@ def with_third(
     """The candidate with a third peg on a line, if it is there."""
     line, arc, other = (locus.rows[piece] for piece in pieces)
     s = separation(pattern, theta, line, other, pegs[0], pegs[2])
-    if s is None or s <= pattern.stop:
+    if s is None or not pattern.reaches(s):
         return []
     c, e = cos(theta), sin(theta)
     run, rise = pattern.pegs[pegs[2]] - pattern.pegs[pegs[0]]

@@ -112,7 +112,9 @@ def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Resu
         )
     travel = query.toolkit.moving.travel
     most = None if travel is None else travel.most
-    return evolve(result, seating=tuple(evolve(one, opening=query.opening, most=most) for one in seating))
+    clamping = query.toolkit.clamping
+    told = (evolve(one, opening=query.opening, most=most, clamping=clamping) for one in seating)
+    return evolve(result, seating=tuple(told))
 
 
 def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:

@@ -88,7 +88,7 @@ class SeatingPart(Part):
     cage: CagePart | None
     placing: Length | None
     sticking_friction: Length | None
-    stop: float
+    stop: float | None
     seats: list[SeatPart]
     wrong_seats: Annotated[int, Field(ge=0)]
     reading: Length | None

@@ -1,0 +1,270 @@
+"""Seating of opening vises and of plates with a clamp: the same theorems, by other arithmetic, and what must not change."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import hypot
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+import workhold
+from seating_examples import Obstacle, closed
+from workhold import Fixture, InputError, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
+from workhold.model.result import Result
+from workhold.model.seating import Seating
+from workhold.model.toolkit import Toolkit
+from workhold.seating.door import Door
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+
+WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
+HOLED = Workpiece.from_loops(
+    "holed", [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]]
+)
+ROUNDED = Workpiece.from_loops(
+    "rounded", [[[0, 0, 0], [60, 8, 0.3], [60, 40, 0], [30, 50, 0], [0, 30, 0]], [[22, 22, -1.0], [38, 26, -1.0]]]
+)
+KITS: dict[str, tuple[Workpiece, Toolkit]] = {
+    "opening": (HOLED, OpeningVise(pitch=15, columns=1, peg_radius=3, min_gap=6)),
+    "left": (WEDGE, Plate(pitch=20, peg_radius=3, clamp_radius=5, directions=["-x"])),
+    "right": (ROUNDED, Plate(pitch=20, peg_radius=3, clamp_radius=4, directions=["+x"])),
+    "down": (ROUNDED, Plate(pitch=20, peg_radius=4, clamp_radius=2, directions=["-y"])),
+    "up": (WEDGE, Plate(pitch=20, peg_radius=3, directions=["+y"], travel=(5, 40))),
+}
+
+
+@cache
+def listed(name: str) -> tuple[Result, Solver]:
+    """All fixtures of a part in a toolkit, and what solves their patterns."""
+    part, toolkit = KITS[name]
+    return workhold.design(part, toolkit), Solver(part, toolkit)
+
+
+@cache
+def told_of(name: str, rank: int) -> Seating:
+    """The seating of a fixture, with its cage."""
+    result, solver = listed(name)
+    return solver.of(result[rank])
+
+
+@pytest.mark.parametrize("name", KITS)
+def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
+    """With S to 1e-6, each in its own pose; and no seat on four faces is missing from the complete list."""
+    result, solver = listed(name)
+    by_pattern: dict[object, list[Fixture]] = {}
+    for fixture in result:
+        by_pattern.setdefault(Pattern.of(fixture, result.toolkit).key(), []).append(fixture)
+    most = sorted(by_pattern.values(), key=len)[-3:]
+    for fixtures in most:
+        pattern = Pattern.of(fixtures[0], result.toolkit)
+        turned = evolve(pattern, pegs=-pattern.pegs, right=1 - pattern.right).key() if name == "opening" else None
+        told = [solver.of(fixture, with_cage=False) for fixture in fixtures]
+        for fixture, one in zip(fixtures, told, strict=True):
+            [own] = [seat for seat in one.seats if seat.is_own]
+            assert own.jaw_separation == pytest.approx(fixture.jaw_separation, abs=1e-6) and abs(own.difference) < 1e-9
+            assert abs((own.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0) < 1e-6
+            assert (own.pose.x, own.pose.y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-6)
+            assert [contact.face for contact in sorted(own.contacts, key=lambda c: c.peg)] == [
+                p.face for p in fixture.pegs
+            ]
+        # Those that hold by less than a micrometre of opening are fixtures all the same.
+        touches = solver.closing(pattern, False).locus.touches
+        there = [
+            row
+            for row in solver.trees(pattern)[0].seats
+            if len(set(row[5:9])) == 4 and not any(touches[int(piece)].corner for piece in row[9:13])
+        ]
+        assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
+
+
+@pytest.mark.parametrize("name", KITS)
+def test_every_seat_lies_free_where_its_pose_says(name):
+    """Told from the outline, in the toolkit's own frame and with each peg's own radius: what touches does, and forces
+    balance the clamp's."""
+    result, _ = listed(name)
+    fixture, told = result[0], told_of(name, 0)
+    assert len(told.seats) > 1 and any(seat.mirrored for seat in told.seats)
+    for seat in told.seats:
+        part = result.workpiece.turned_over if seat.mirrored else result.workpiece
+        obstacle = Obstacle.about(part, fixture, result.toolkit)
+        config = np.array([np.radians(seat.pose.theta_deg), *seat.pose.apply(*part.center), seat.jaw_separation])
+        near = obstacle.near(config, np.inf)
+        assert min(d for d, _ in near) > -1e-6
+        slopes = np.array([g for d, g in near if abs(d) < 1e-6])
+        assert len(slopes) >= len(seat.contacts) >= 2
+        from scipy.optimize import nnls
+
+        if seat.kind != "unsettled":
+            assert nnls(slopes.T, np.array([0.0, 0.0, 0.0, float(obstacle.clamping)]))[1] < 1e-5
+
+
+def comes_home(name: str, rank: int, seed: int, share: float, steps: int) -> bool:
+    """Whether a walk through free configurations below a share of the capture opening, and then closing by linear programs
+    of another hand, ends in the fixture's pose."""
+    result, solver = listed(name)
+    fixture, told = result[rank], told_of(name, rank)
+    obstacle = Obstacle.about(result.workpiece, fixture, result.toolkit)
+    size, seat, sign = solver.outline.arm, obstacle.start(fixture), obstacle.clamping
+    generator, config = np.random.default_rng(seed), seat.copy()
+    config[3] += 0.5 * sign * share * told.capture_opening
+    for _ in range(steps):
+        after = config + generator.normal(size=4) * 0.3 * told.drop_room * np.array([1.0 / size, 1.0, 1.0, 1.0])
+        if sign * (after[3] - seat[3]) < share * told.capture_opening and obstacle.free(after) >= 0.0:
+            config = after
+    end = closed(obstacle, config, size, -np.inf if told.stop is None else told.stop)
+    return bool(abs(end[3] - seat[3]) < 1e-4 and abs(end[0] - seat[0]) * size + hypot(*(end - seat)[1:3]) < 0.02)
+
+
+@pytest.mark.parametrize("name", KITS)
+def test_what_is_let_go_in_the_cage_comes_home(name):
+    assert comes_home(name, 0, 0, 0.97, 100)
+
+
+@pytest.mark.prove
+@pytest.mark.parametrize("name", KITS)
+@pytest.mark.parametrize("rank", range(4))
+def test_hundreds_of_walks_come_home(name, rank):
+    if told_of(name, rank).capture_opening is not None:
+        assert all(comes_home(name, rank, seed, 0.99, 300) for seed in range(50))
+
+
+@pytest.mark.parametrize("name", KITS)
+def test_the_cage_is_told_in_the_frame_of_the_toolkit(name):
+    """Closing from its corners of y and of the turn shows which is which: the pass lies in it, as does the pose."""
+    result, _ = listed(name)
+    fixture, told, center = result[0], told_of(name, 0), result.workpiece.center
+    (x, y), (u, v) = told.lowest_pass.pose.apply(*center), fixture.pose.apply(*center)
+    for (low, high), at in zip((told.cage.x, told.cage.y), (x - u, y - v), strict=True):
+        assert low - 1e-9 <= min(0.0, at) and max(0.0, at) <= high + 1e-9
+    assert told.way_out is None or told.way_out >= told.capture_opening - 1e-12
+    rise = told.lowest_pass.jaw_separation - fixture.jaw_separation
+    assert rise == pytest.approx(told.clamping * told.capture_opening, abs=1e-9)
+
+
+def figures(told: Seating) -> tuple[float, ...]:
+    """What must not depend on how the drawing and the pegs lie."""
+    known = (told.capture_opening, told.way_out, told.room_factor, told.sticking_friction, told.reading_of())
+    return tuple(-1.0 if value is None else value for value in known)
+
+
+def differences(told: Seating, mirrored: bool) -> list[float]:
+    """How much further open each seat of one side is than the fixture's, in order."""
+    return sorted(told.clamping * seat.difference for seat in told.seats if seat.mirrored == mirrored)
+
+
+def same(one: Seating, other: Seating) -> None:
+    """Whether two seatings tell the same."""
+    assert figures(one) == pytest.approx(figures(other), abs=1e-8)
+    for mirrored in (False, True):
+        assert differences(one, mirrored) == pytest.approx(differences(other, mirrored), abs=1e-8)
+
+
+def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fixture:
+    """A fixture and its plate turned by quarters."""
+    c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
+    pegs = tuple(
+        Peg(names.get(peg.carrier, peg.carrier), 0, 0, c * peg.x - s * peg.y, s * peg.x + c * peg.y, peg.face, 0.0)
+        for peg in fixture.pegs
+    )
+    at = fixture.pose
+    pose = Pose(at.theta_deg + 90.0 * quarters, c * at.x - s * at.y, s * at.x + c * at.y)
+    return Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
+
+
+@pytest.mark.parametrize(("direction", "quarters"), [("-y", 1), ("+x", 2), ("+y", 3)])
+def test_a_plate_turned_says_the_same(direction, quarters):
+    result, _ = listed("left")
+    plate = evolve(result.toolkit, directions=(direction,))
+    other = Solver(WEDGE, plate).of(quarter_turned(result[0], {"clamp -x": f"clamp {direction}"}, quarters))
+    told = told_of("left", 0)
+    same(other, told)
+    ways = [told.cage.x, told.cage.y]
+    for _ in range(quarters):
+        ways = [(-ways[1][1], -ways[1][0]), ways[0]]
+    for found, way in zip((other.cage.x, other.cage.y), ways, strict=True):
+        assert found == pytest.approx(way, abs=1e-9)
+    assert other.placing == pytest.approx(told.placing, abs=1e-9)
+
+
+def test_part_and_plate_turned_over_say_the_same():
+    """Mirrored along the clamp's way: the part turned over is then as it was drawn."""
+    result, _ = listed("left")
+    fixture = result[0]
+    pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
+    pose = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
+    over = Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
+    same(Solver(WEDGE.turned_over, result.toolkit).of(over, with_cage=False), told_of("left", 0))
+
+
+def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
+    """Seen from the right jaw the left one comes nearer as S grows: with -S for S it closes."""
+    result, solver = listed("opening")
+    for fixture in result[:2]:
+        opening = Pattern.of(fixture, result.toolkit)
+        places = np.array([[peg.x, peg.y] for peg in fixture.pegs])
+        right = np.array([int(peg.carrier == "right") for peg in fixture.pegs])
+        places[:, 0] -= right * fixture.jaw_separation
+        closing = Pattern(places, 1 - right, opening.radii, opening.stop, opening.widest, Door(0, 1.0))
+        for one, other in zip(solver.trees(opening), solver.trees(closing), strict=True):
+            assert len(one.seats) > 0
+            assert one.seats[:, 3] == pytest.approx(other.seats[:, 3], abs=1e-8)
+            assert [join.separation for join in one.joins] == pytest.approx(
+                [j.separation for j in other.joins], abs=1e-8
+            )
+            assert [join.places for join in one.joins if len(set(join.places)) == 2]
+
+
+def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
+    """Three pegs and one: jaws and clamp differ in their stop alone, which no seat here is near."""
+    vise = Vise(pitch=20, columns=2, peg_radius=3)
+    result = workhold.design(WEDGE, vise, types="II", best=2)
+    plate = Plate(pitch=20, peg_radius=3, directions=["-x"])
+    for fixture in result:
+        pegs = tuple(evolve(peg, carrier="plate" if peg.carrier == "left" else "clamp -x") for peg in fixture.pegs)
+        onto = Solver(WEDGE, plate).of(evolve(fixture, pegs=pegs), with_cage=False)
+        told = Solver(WEDGE, vise).of(fixture, with_cage=False)
+        assert [told.capture_opening, told.way_out] == pytest.approx([onto.capture_opening, onto.way_out], abs=1e-9)
+        there = {round(seat.jaw_separation, 6) for seat in onto.seats}
+        assert {round(seat.jaw_separation, 6) for seat in told.seats} <= there
+        assert onto.stop is None or onto.stop < told.stop
+
+
+def test_a_clamp_stops_where_its_tip_meets_a_locator():
+    """Before it, or behind it; and at the end of its stroke."""
+    at = (("plate", 0, 0), ("plate", 40, 3), ("plate", 0, 40), ("clamp -x", 20, 0))
+    fixture = Fixture("clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 20.0, {})
+    pattern = Pattern.of(fixture, Plate(pitch=20, peg_radius=3, clamp_radius=4))
+    assert (pattern.stop, pattern.widest) == pytest.approx((7.0, 40.0 - np.sqrt(49.0 - 9.0)))
+    stroke = evolve(fixture, jaw_separation=-30.0)
+    short = Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(5, 35)))
+    assert short.stop == -35.0
+    assert short.key() == Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(7, 35))).key()
+
+
+def test_a_disc_is_nowhere_located_by_a_clamp():
+    disc = Workpiece.from_loops("disc", [[[-15, 0, 1], [15, 0, 1]]])
+    plate = Plate(pitch=20, peg_radius=3, clamp_radius=5)
+    at = (("plate", 0, 0), ("plate", 0, 20), ("plate", 40, 60), ("clamp -x", 40, 10))
+    fixture = Fixture("clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    tree = Solver(disc, plate).trees(Pattern.of(fixture, plate))[0]
+    assert len(tree.seats) == 0
+    # Between two locators, its centre 15 + 3 from both; the tip 15 + 5 from it.
+    assert any(family.middle[3] == pytest.approx(np.sqrt(18.0**2 - 10.0**2) + 20.0 - 40.0) for family in tree.loose)
+
+
+@pytest.mark.parametrize(
+    ("toolkit", "message"),
+    [
+        (Vise(8, 2, 0), "radius 0"),
+        (Plate(pitch=8, peg_radius=2, clamp_radius=0), "radius 0"),
+        (Vise(8, 2, 2, flat=(1, 1)), "round pegs"),
+        (Plate(pitch=8, peg_radius=2, clamps=2), "neither of the two clamps"),
+        (workhold.Fence(pitch=8, peg_radius=2, wall_offset=4), "a fence"),
+    ],
+)
+def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):
+    fixture = Fixture("I", (), Pose(0, 0, 0), 0.0, {})
+    with pytest.raises(InputError, match=message):
+        Solver(WEDGE, toolkit).of(fixture)
