@@ -44,6 +44,38 @@ def test_it_tells_what_to_do_and_what_to_read(run: Any, result_file: Path, monke
     assert f"in {len(told.wrong_within())} wrong places" in text
 
 
+def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the table, in the file, and in words of ``show``, which are those of ``seat``."""
+    monkeypatch.setenv("COLUMNS", "80")
+    part, out = tmp_path / "wedge.json", tmp_path / "r.json"
+    part.write_text(json.dumps({"name": "wedge", "units": "mm", "loops": [WEDGE.loops[0].tolist()]}))
+    asked = ("design", part, "--pitch", 20, "--columns", 2, "--peg-radius", 3, "--best", 6, "--seating", 6)
+    outcome = run(*asked, "--out", out)
+    assert outcome.exit_code == 0, outcome.stderr
+    lines = outcome.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    result = workhold.open(out)
+    assert len(result.seating) == 6
+    first = next(line.split() for line in lines if line.split()[:1] == ["1"])
+    for figure in ("capture_opening", "reading"):
+        assert f"{result[0].figures[figure]:.2f}" in first
+    shown, told = (" ".join(run(command, out, 1).stdout.split()) for command in ("show", "seat"))
+    sentence = f"When it has come home the opening S is {result[0].jaw_separation:.3f} mm."
+    assert sentence in shown and sentence in told
+    data = json.loads(run("show", out, 1, "--json").stdout)
+    assert data["fixture"]["seating"] == json.loads(json.dumps(result.seating[0].as_fields()))
+    opening = min(one.capture_opening or 0.0 for one in result.seating)
+    opened = run(*asked, "--opening", opening, "--foolproof", "--rank-by", "reading", "--out", out, "--force")
+    assert opened.exit_code == 0, opened.stderr
+    query = workhold.open(out).query
+    assert (query.opening, query.foolproof, query.ranking) == (opening, True, ("reading",))
+    assert "listed for their seating" in " ".join(opened.stdout.split()) and "as asked" in opened.stderr
+    alone = run("design", "widget", "--pitch", 8, "--columns", 1, "--peg-radius", 3, "--foolproof")
+    assert alone.exit_code == 2 and "need --seating K" in alone.stderr
+
+
 def test_one_side_and_one_opening_leave_seats_out(run: Any, result_file: Path) -> None:
     drawn = run("seat", result_file, 1, "--side", "drawn").stdout
     over = run("seat", result_file, 1, "--side", "turned-over").stdout

@@ -21,6 +21,7 @@ from workhold.cli.progress import search_progress
 from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_form, write_output
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords, with_fit_of
+from workhold.cli.seating_options import SeatingWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
 from workhold.cli.vise_options import ViseWords
 
@@ -50,6 +51,7 @@ def design(
     *,
     held_in: ViseWords,
     words: QueryWords,
+    seated_by: SeatingWords,
     type_: str = option(
         SEARCH,
         "I|II|both",
@@ -104,7 +106,7 @@ def design(
     if folder is not None:
         refuse_output_folder(folder, picture_names(), (part, held_in.vise, words.loads), force)
     toolkit, tolerance = held_in.asked(shown)
-    asked = words.asked(shown)
+    asked = words.asked(shown) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.kernels.base.compiling import is_first_run
@@ -146,7 +148,7 @@ def foretelling(
     progress: Callable[[float, int], None], query: Query, out: str | None, form: str
 ) -> Callable[[float, int], None]:
     """The same progress, which says once how large a file it will be, as soon as that can be told and where it matters."""
-    if out is None or query.best is not None:
+    if out is None or query.best is not None or query.has_seating_rules:
         return progress
     told: list[float] = []
 

@@ -15,12 +15,13 @@ from workhold.cli.values import choice, length_unit, optional_positive_length, p
 
 if TYPE_CHECKING:
     from workhold.cli.table import Table
+    from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
     from workhold.model.units import Unit
     from workhold.seating.reading import Gauge
 
-__all__ = ["seat"]
+__all__ = ["seat", "seating_words"]
 
 SIDES = ("both", "drawn", "turned-over")
 # What the friction of dry steel reaches.
@@ -68,10 +69,12 @@ def seat(
 
     from workhold.cli.tables import print_tables
     from workhold.seating.reading import Gauge
-    from workhold.seating.seating import Solver
 
-    gauge = Gauge(fixture, result.toolkit)
-    told = Solver(result.workpiece, result.toolkit).of(fixture)
+    gauge, told = Gauge(fixture, result.toolkit), fixture.seating
+    if told is None:
+        from workhold.seating.seating import Solver
+
+        told = Solver(result.workpiece, result.toolkit).of(fixture)
     seats = shown_seats(told, shown_side, opened, result)
     if not json_:
         print_tables(
@@ -105,6 +108,17 @@ def shown_seats(told: Seating, side: str, opened: float | None, result: Result) 
         rest = [one for one in rest if told.clamping * one.difference < opened]
     most = result.toolkit.moving.travel.most if result.toolkit.moving.travel else None
     return own + [one for one in rest if most is None or one.jaw_separation <= most]
+
+
+def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
+    """What a result tells of the seating of a fixture: what to do, what to read, and what to beware of."""
+    from workhold.seating.reading import Gauge
+
+    told: Seating = fixture.seating
+    gauge = Gauge(fixture, result.toolkit)
+    beware = [f"Beware: {words}." for words in told.warnings]
+    seats = shown_seats(told, SIDES[0], told.opening, result)
+    return ["", *setting_words(told, gauge, unit), *wrong_words(told, seats, told.opening, gauge, unit), *beware]
 
 
 def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:

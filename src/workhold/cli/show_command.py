@@ -100,4 +100,8 @@ def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Un
     fixture, toolkit = result[rank - 1], result.toolkit
     quality = quality_table(fixture, toolkit.moving.noun, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), "", quality)
+    if fixture.seating is not None:
+        from workhold.cli.seat_command import seating_words
+
+        print_tables(*seating_words(fixture, result, unit))
     print_tables(*load_tables(cases, fixture, toolkit, unit))

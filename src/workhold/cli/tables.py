@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from math import degrees, hypot, nan, pi
+from math import degrees, hypot, isfinite, isnan, nan, pi
 from textwrap import wrap
 from typing import TYPE_CHECKING, TextIO
 
@@ -47,6 +47,8 @@ __all__ = [
 MOST_FURTHER = 8
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
+# Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads otherwise.
+SHORT = {"capture_opening": "caught", "reading": "reads"}
 UNDECIDED = (
     "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: another peg "
     "radius or pitch decides it."
@@ -118,7 +120,9 @@ def counts_sentence(result: Result) -> str:
         each = f", the best of {plural(result.pairs, 'pair')} of clamps at each seat"
         found += each if result.query.listing == "best" else f" at {plural(result.seats, 'seat')}"
     sentence = f"{found}; {sum(result.distinct.values())} distinct under the part's symmetry"
-    if len(result) < total:
+    if result.query.has_seating_rules:
+        sentence += f"; {plural(len(result), 'fixture')} of the first {result.query.seating} listed for their seating"
+    elif len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
 
@@ -185,19 +189,23 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the table looks as
     sorted as it is.
     """
-    from workhold.model.quality import FIGURES, LOCATION_ERROR
+    from workhold.model.quality import FIGURES, LOCATION_ERROR, RANKED, SEATING_FIGURES
     from workhold.model.setting import settings_of
     from workhold.statics.judging import unfit
 
-    ranked = [figure for key in result.query.ranking for figure in FIGURES if figure.key == key]
+    ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
     others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
-    figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].quality]
-    headings = [f">{heading(figure, unit)}" for figure in figures]
+    figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
+    if result.seating:
+        # What it is ranked by first, then how wide open the part is caught, and what a reading must tell.
+        told = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
+        figures[1:1] = told
+    headings = [f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures]
     toolkit = result.toolkit
     groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
     pairs = [">best of"] if toolkit.needs_pairs and result.query.listing == "best" else []
     columns = (">rank", ">like it", *groups, *pairs, opening, ">angle deg", *headings, "type")
-    table = Table(columns, spare=max(len(headings) - 1, 0) + 1)
+    table = Table(columns, spare=max(len(headings) - (3 if result.seating else 1), 0) + 1)
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
     decimals, degrees_decimals = (unit.decimals - 2, 1) if toolkit.needs_pairs else (unit.decimals, 3)
     red = unfit(result.table.quality, result.query.tolerance)
@@ -217,7 +225,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             rounded(fixture.pose.theta_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
-                    figure, fixture.quality.get(figure.key, nan), unit
+                    figure, fixture.figures.get(figure.key, nan), unit
                 )
                 for figure in figures
             ),
@@ -253,8 +261,12 @@ def place_of(peg: Peg, toolkit: Toolkit) -> str:
 
 def heading(figure: Figure, unit: Unit) -> str:
     """A figure's name and unit."""
-    of = unit.abbreviation if figure.unit == "mm" else figure.unit
-    return f"{figure.words} {of}".rstrip()
+    return f"{figure.words} {unit_of(figure, unit)}".rstrip()
+
+
+def unit_of(figure: Figure, unit: Unit) -> str:
+    """The unit that a figure is told in."""
+    return unit.abbreviation if figure.unit == "mm" else figure.unit
 
 
 def rounded(value: float, decimals: int) -> str:
@@ -268,14 +280,20 @@ def rounded(value: float, decimals: int) -> str:
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
-    """A figure's value as a number of its unit."""
-    return unit.number(value, unit.decimals + 1) if figure.unit == "mm" else rounded(value, figure.decimals)
+    """A figure's value as a number of its unit; in words where it has no end, or is not known."""
+    if not isfinite(value):
+        return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
+    # A caliper reads hundredths of a millimetre.
+    decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
+    return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
 
 
 def counted_text(figure: Figure, value: float, unit: Unit) -> str:
     """A figure's value as it counts in an order, which is in mm, as a number of a unit."""
     from math import floor, log10
 
+    if not isfinite(value):
+        return figure_text(figure, value, unit)
     counts = float(f"{round(value, 9):.1e}")
     shown = counts / unit.millimetres if figure.unit == "mm" else counts
     if figure.decimals == 0 or shown == 0:

@@ -209,6 +209,14 @@ class Fixture:
         return None if self.listed is None else str(self.draw())
 
     @property
+    def figures(self) -> dict[str, float]:
+        """The figures of quality and, where it is told, of seating, whose warnings count as well."""
+        if self.seating is None:
+            return dict(self.quality)
+        figures = {**self.quality, **self.seating.figures}
+        return figures | {"warnings": figures.get("warnings", 0.0) + self.seating.warning_count}
+
+    @property
     def listing(self) -> Listed:
         """Where it is listed.
 

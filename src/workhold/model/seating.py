@@ -228,7 +228,7 @@ class Seating:
         out, reading = list[str](), self.reading_of()
         if self.is_hardly_caught:
             opened = f"{self.capture_opening:.3f} mm"
-            out.append(f"the part is caught only while the jaws stand open by less than {opened}")
+            out.append(f"the part is caught only when opened by less than {opened}")
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
             out.append(f"a wrong seat reads only {reading:.3f} mm otherwise, which a caliper hardly tells")
         if self.unsettled:
