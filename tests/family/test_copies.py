@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
+import numpy as np
 import pytest
 from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class
@@ -79,6 +80,19 @@ def test_what_is_too_near_is_so_by_another_library(results: dict[str, Result], n
             # Within a hundredth of the gap, chords of two kinds may differ.
             if abs(room) > 0.01:
                 assert ((i, j) in near) == (room < 0), (i, j, room)
+
+
+def test_pegs_keep_clear_of_pegs_however_far_the_parts_are_apart(
+    results: dict[str, Result], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pegs of 18 mm on holes 17 mm apart overlap; their parts, of 1 mm, would not be near each other."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    outline = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    bodies = module.Bodies(outline, np.array([[[0.5, 0.5], [0.5, 0.5]]]), np.array([9.0]))
+    monkeypatch.setattr(module, "bodies_of", lambda *given: bodies)
+    result = results["tips alone"]
+    near = too_near_shifts(result[0], result.workpiece, Plate(pitch=17, peg_radius=3), 0.5, (3, 3))
+    assert near == {(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)}
 
 
 def most_by_trying(places: list[tuple[int, int]], near: set[tuple[int, int]]) -> int:

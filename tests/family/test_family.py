@@ -206,6 +206,15 @@ def test_losses_are_ratios_whichever_way_is_better() -> None:
     assert losses(np.full(2, np.nan), error).tolist() == [inf, inf]
 
 
+@pytest.mark.parametrize("toolkit", [VISE, Plate(pitch=20, peg_radius=3, columns=6, rows=5, clamps=2)])
+def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Toolkit) -> None:
+    """Of two clamps of every pair, too."""
+    part = TWENTY[:1]
+    every = answer(asked(part, toolkit, **({"listing": "all"} if toolkit.needs_pairs else {}))[0].query, threads=1)
+    member = family_of(asked(part, toolkit, best=1), threads=1).members[0]
+    assert member.fixtures == len(every) > 1
+
+
 def test_unfit_fixtures_are_used_when_asked_for() -> None:
     result = answer(asked(TWENTY[:1], Vise(pitch=10, columns=2, peg_radius=3))[0].query, threads=1)
     bad = unfit(result.table.quality, result.query.tolerance)
@@ -256,8 +265,25 @@ def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
         assert sum(setup["pegs_to_place"] for setup in entry["plan"][1:]) == entry["pegs_moved"]
         for setup in entry["plan"]:
             assert len(setup["pattern"]["pegs"]) == 4
-            for one in setup["parts"]:
-                assert {"fixture", "pose", "opening", "loss"} <= one.keys()
+        for setup, planned in zip(entry["plan"], plan.setups, strict=True):
+            for told, one in zip(setup["parts"], planned.holdings, strict=True):
+                assert {"fixture", "pose", "opening", "loss"} <= told.keys()
+                assert (told["fixture"], told["turned"]) == (one.number, one.turned)
+                assert told["zero"] == pytest.approx(one.fixture.pose.apply(*one.member.zero.point), abs=1e-8)
+    assert {one["turned"] for entry in family["curve"] for s in entry["plan"] for one in s["parts"]} == {False, True}
+
+
+def test_pegs_of_a_part_that_stand_elsewhere_and_its_zero_are_told(twenty: Family) -> None:
+    """A largest opening, or a smallest gap, may ask for other columns than those of the set-up."""
+    from workhold.family.file import holding_entry
+
+    one = twenty.plans[0].setups[0].holdings[0]
+    assert "pegs" not in holding_entry(one, WIDE, 0)
+    told = holding_entry(evolve(one, in_place=False), WIDE, 0)
+    elsewhere = evolve(one.member, zero=evolve(one.member.zero, point=(3.0, 4.0)))
+    zero = holding_entry(evolve(one, member=elsewhere), WIDE, 0)["zero"]
+    assert zero == pytest.approx(one.fixture.pose.apply(3.0, 4.0), abs=1e-8)
+    assert told["pegs"] == [{"jaw": p.carrier, "column": p.column, "row": p.row} for p in one.fixture.pegs]
 
 
 def test_one_and_its_half_turn_are_one_pattern() -> None:

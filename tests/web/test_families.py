@@ -45,6 +45,10 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     family = family_of([Asked(part.name, Query(part, vise, ranking=FAMILY_RANKING)) for part in PARTS], threads=1)
     assert [(one["setups"], one["loss"]) for one in answer["points"]] == [(p.setups, p.loss) for p in family.points]
     assert [one["pegs_moved"] for one in answer["points"]] == [plan.moved for plan in family.plans]
+    assert len(family.points) > 1
+    for one, plan in zip(answer["points"], family.plans, strict=True):
+        worst = [held for setup in plan.setups for held in setup.holdings if held.loss == plan.point.loss]
+        assert (one["worst"], one["figure"]) in [(held.member.name, held.figure) for held in worst]
     assert answer["figure"] == "location_error" and answer["parts"] == [part.name for part in PARTS]
     assert answer["left_out"] == [{"name": "disc", "reason": "it has no fixture in this vise"}]
     told = json.loads(server.client.get(f"{job}/family/plans.json").text)["family"]
@@ -58,6 +62,11 @@ def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:
     assert (
         "Set-up 1 of" in sheets.text and "2026-03-31" in sheets.text and all(part.name in sheets.text for part in PARTS)
     )
+    assert sheets.text.count("Set-up 1 of 1") and "Set-up 1 of 2" not in sheets.text
+    more = server.client.get(f"{job}/family/sheets.svg", params={"setups": 2})
+    assert "Set-up 2 of 2" in more.text
+    # The point that was picked is marked.
+    assert curve.text != server.client.get(f"{job}/family/curve.svg").text
     paper = server.client.get(f"{job}/family/sheets.pdf", params={"setups": 9})
     assert paper.content.startswith(b"%PDF") and "attachment" in paper.headers["content-disposition"]
 

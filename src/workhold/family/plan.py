@@ -96,7 +96,7 @@ def plan_of(point: Point, table: Table, members: Sequence[Member]) -> Plan:
     """The plan at a point of a family's curve."""
     losses = table.losses_of(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
-    suits = np.argmin(np.where(np.isnan(losses), np.inf, losses) + np.isnan(losses), axis=0)
+    suits = np.argmin(np.where(np.isnan(losses), np.inf, losses), axis=0)
     setups = []
     for place, pattern in enumerate(point.patterns):
         held = [members[number] for number in np.flatnonzero(suits == place).tolist()]
@@ -134,9 +134,7 @@ def in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
     out = []
     for step in best_order(holes, freedom_of(toolkit)):
         setup = setups[step.setup]
-        holdings = tuple(
-            evolve(one, row=shifted(one.row, toolkit, {0: step.columns, 1: step.columns}, step.rows))
-            for one in setup.holdings
-        )
+        rows = (shifted(one.row, toolkit, {0: step.columns}, step.rows) for one in setup.holdings)
+        holdings = tuple(evolve(one, row=row) for one, row in zip(setup.holdings, rows, strict=True))
         out.append(evolve(setup, holdings=holdings, moved=step.moved))
     return tuple(out)
