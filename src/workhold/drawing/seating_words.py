@@ -172,6 +172,26 @@ class SeatingWords:
             )
         return [*words, *told_in_sentences(self.told.unsettled)]
 
+    def ended(self, ending: str, seat: Seat | None, separation: float) -> str:
+        """What a closing ended in, one of ``seating.playing.ENDINGS``, with what is read then."""
+        noun = self.toolkit.moving.noun
+        read = self.reads(separation)
+        if seat is not None and ending == "right":
+            return f"It comes home: {read}."
+        if seat is not None and ending == "same place":
+            way = "turned over" if seat.mirrored else "turned round"
+            return f"It covers its place, but {way}: {read}, which tells nothing. Mark the part."
+        if seat is not None:
+            kind = {"loose": " that does not locate it", "unsettled": " that is not settled"}.get(seat.kind, "")
+            off = self.difference(seat)
+            tells = "as when it is right" if off == "the same" else f"{off} than when it is right"
+            return f"It comes to rest in a wrong place{kind}: {read}, {tells}."
+        return {
+            "stop": f"The {noun}s meet their stop, {read}: the part lies loose beside the pegs.",
+            "outside": f"The part slips out, and the {noun}s close to their stop, {read}.",
+            "elsewhere": f"It comes to rest where a nudge moves it on: {read}.",
+        }.get(ending, f"The way could not be followed to its end; the last reading is {read}.")
+
     def cautions(self) -> list[tuple[str, str]]:
         """What to beware of: a word for it, "capture" or "reading", and a sentence."""
         told, found = self.told, list[tuple[str, str]]()

@@ -43,18 +43,20 @@ class Closing:
         pegs = np.array(pattern.pegs), pattern.right, self.locus.parts
         return Obstacles(rows, self.locus.spans, *pegs, self.size, pattern.end(2.0 * self.size))
 
-    def run(self, configs: Array, first: float) -> tuple[Array, NDArray[np.int8]]:
+    def run(self, configs: Array, first: float, stop: float | None = None) -> tuple[Array, NDArray[np.int8]]:
         """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
 
         Parameters
         ----------
         first : how long the first steps are, in mm.
+        stop : S in mm at which the jaws are stopped; the pattern's own stop if None.
         """
+        obstacles = self.obstacles if stop is None else self.obstacles._replace(stop=max(stop, self.pattern.stop))
         out = np.array(configs, dtype=np.float64)
         ends = np.zeros(len(out), np.int8)
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         work = WorkSpace(np.empty((64, 5)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
-        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), self.obstacles, work, ends)
+        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, work, ends)
         return out, ends
 
     def escapes(self, config: Array) -> bool:

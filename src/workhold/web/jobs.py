@@ -21,6 +21,7 @@ from workhold.listing.alike import Entries
 from workhold.model.explanation import Explanation
 from workhold.model.notes import kept_note, stopped_note
 from workhold.model.result import Result
+from workhold.seating.figures import Seating
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.limits import Limits
@@ -35,7 +36,7 @@ NAME_BYTES = 16
 # The part of a search after which its records are decided and listed, see ``search.design``.
 LISTING = 0.9
 OVER = ("done", "failed", "cancelled")
-ORDERS_KEPT = 8
+ORDERS_KEPT, SEATINGS_KEPT = 8, 32
 
 
 class TooManyError(BusyError):
@@ -79,6 +80,7 @@ class Job:
     orders: dict[tuple[int, Selection], Entries] = field(factory=dict)
     result_hash: str | None = None
     family: FamilyFound | None = None
+    seatings: dict[tuple[int, int], Seating] = field(factory=dict)
 
     @property
     def compares(self) -> bool:
@@ -129,6 +131,12 @@ class Job:
             "revision": self.revision,
             "table": list(self.table) if self.compares else None,
         }
+
+    def keep_seating(self, key: tuple[int, int], told: Seating) -> None:
+        """Keep the seating of a fixture, by revision and rank, instead of the oldest one kept."""
+        while len(self.seatings) >= SEATINGS_KEPT:
+            self.seatings.pop(next(iter(self.seatings)))
+        self.seatings[key] = told
 
     def chosen(self, selection: Selection, result: Result) -> Entries:
         """What a selection chooses of the result; the last few selections are remembered."""

@@ -12,10 +12,10 @@ from starlette.requests import Request
 
 from workhold.web.jobs import Job, Jobs
 from workhold.web.limits import Limits
-from workhold.web.pool import Pool, Task
+from workhold.web.pool import Pool, StoppedError, Task
 from workhold.web.static_files import StaticFile, static_files
 
-__all__ = ["ServerState", "address_of", "at_desk", "state_of"]
+__all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
 
 
 @define(eq=False)
@@ -74,7 +74,40 @@ def address_of(request: Request) -> str:
     return "" if request.client is None else request.client.host
 
 
-async def at_desk(request: Request, name: str, payload: Any) -> Any:
-    """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises."""
+async def at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
+    """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
+
+    Parameters
+    ----------
+    seconds : how long it may take, if not as long as what is quick.
+    """
     state = state_of(request)
-    return await state.desks.run(Task(name, payload, state.limits.desk_seconds, address_of(request)))
+    return await state.desks.run(Task(name, payload, seconds or state.limits.desk_seconds, address_of(request)))
+
+
+async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
+    """As :func:`at_desk`, stopped when the client hangs up; for what comes to its end by itself when told to stop.
+
+    Raises
+    ------
+    StoppedError
+        When the client is gone; nobody hears it.
+    """
+    state = state_of(request)
+    task = Task(name, payload, state.limits.desk_seconds, address_of(request), stops_well=True)
+    running, gone = asyncio.create_task(state.desks.run(task)), asyncio.create_task(hung_up(request))
+    try:
+        await asyncio.wait((running, gone), return_when=asyncio.FIRST_COMPLETED)
+        if not running.done():
+            raise StoppedError
+        return running.result()
+    finally:
+        for one in (running, gone):
+            one.cancel()
+        await asyncio.gather(running, gone, return_exceptions=True)
+
+
+async def hung_up(request: Request) -> None:
+    """Wait until a client whose request has come whole is gone."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass

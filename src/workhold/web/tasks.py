@@ -24,6 +24,7 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.paper import make_paper
+from workhold.web.seating import close, find_seating
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
@@ -293,6 +294,8 @@ TASKS: Tasks = {
     "warnings": warnings,
     "resist": resist,
     "paper": make_paper,
+    "seating": find_seating,
+    "closing": close,
     "family": find_family,
     "family_paper": make_family_paper,
 }

@@ -1,0 +1,196 @@
+"""Closing the jaws from where a part was put: the way it goes, to be watched, and what it ends in.
+
+The way is followed without friction by ``seating.descents``, stopped at levels of S that are evenly spaced as a vise is
+closed, and at more of them where the part moves far between two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import cos, degrees, inf, radians, sin, tau
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
+from workhold.model.fixture import Fixture, Pose
+from workhold.seating.descents import Closing
+from workhold.seating.figures import Seat
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+from workhold.seating.tree import AT_SEAT, SAME_LEVEL, distances
+
+__all__ = ["ENDINGS", "Played", "play"]
+
+Array = NDArray[np.float64]
+# The fixture's own seat; one that covers the same place; another; rest in none of them; the stop with the part loose beside
+# the pegs, or gone from them; and what could not be followed to its end.
+ENDINGS = "right", "same place", "wrong", "elsewhere", "stop", "outside", "lost"
+# A part that is put by hand may enter a peg by this part of the peg's radius: it is pushed out again.
+ENTERS = 0.5
+# mm. Steps of closing at first; a peg is pushed out of the part from as deep as so many of them.
+FIRST_STEP, STEPS_DEEP = 0.05, 8.0
+# Levels of S; of the part's size how far it moves between two of them; how often a stretch is halved, and how many
+# configurations there are at most.
+LEVELS, FAR, HALVINGS, MOST = 60, 0.02, 6, 400
+
+
+@frozen(eq=False)
+class Played:
+    """How a closing went.
+
+    Parameters
+    ----------
+    poses, separations : of the part, turned over where that was asked for, and S in mm, one after the other.
+    ending : one of :data:`ENDINGS`.
+    seat : what it ended in, of the seats that were given; None where it ended in none of them.
+    """
+
+    poses: tuple[Pose, ...]
+    separations: tuple[float, ...]
+    ending: str
+    seat: Seat | None
+
+
+def play(
+    solver: Solver,
+    fixture: Fixture,
+    seats: Sequence[Seat],
+    pose: Pose,
+    opening: float,
+    turned_over: bool = False,
+    is_cancelled: Callable[[], bool] = lambda: False,
+) -> Played:
+    """Close the jaws of a fixture from where the part was put.
+
+    Parameters
+    ----------
+    seats : the fixture's, see :class:`workhold.seating.figures.Seating`.
+    pose : of the part, of the part turned over (x to -x in its own frame) where that is asked for.
+    opening : how much farther than in the fixture the jaws stand open, in mm.
+    is_cancelled : asked between steps; the way ends where it is when it says so.
+
+    Raises
+    ------
+    InputError
+        As ``Pattern.of``; for jaws that meet their stop, and a part that a peg stands in.
+    """
+    pattern = Pattern.of(fixture, solver.toolkit)
+    closing = solver.closing(pattern, turned_over)
+    center = Center(solver.workpiece.center, turned_over)
+    start = center.config(pose, fixture.jaw_separation + opening)
+    if start[3] < pattern.stop:
+        raise InputError("pegs of both jaws meet before the jaws stand so near: open them farther.")
+    into = entered(solver, fixture, pattern, start, turned_over)
+    # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they stood.
+    first = max(FIRST_STEP, into / STEPS_DEEP)
+    configs, how = closing.run(start[None], first, start[3])
+    if how[0] == GAVE_UP:
+        raise InputError("a peg stands in the part there, and there is no room beside it: put the part elsewhere.")
+    way = follow(closing, configs[0], is_cancelled)
+    end, how = closing.run(way[-1][None], FIRST_STEP)
+    way.append(end[0])
+    ending, seat = ended(solver, closing, center, end[0], int(how[0]), seats)
+    poses = tuple(center.pose(config) for config in way)
+    return Played(poses, tuple(float(config[3]) for config in way), ending, seat)
+
+
+@frozen
+class Center:
+    """The way between poses of a part and configurations, which tell of the middle of its box.
+
+    Parameters
+    ----------
+    middle : of the box in the part's own coordinates, in mm.
+    turned_over : whether the part is turned over.
+    """
+
+    middle: tuple[float, float]
+    turned_over: bool
+
+    @property
+    def own(self) -> tuple[float, float]:
+        """The middle of the box of the part as it lies."""
+        x, y = self.middle
+        return (-x, y) if self.turned_over else (x, y)
+
+    def config(self, pose: Pose, separation: float) -> Array:
+        """(4,) theta in radians, x and y of the middle, and S."""
+        return np.array([radians(pose.theta_deg), *pose.apply(*self.own), separation])
+
+    def pose(self, config: Array) -> Pose:
+        """The pose of a configuration, turned by 0 to 360 degrees."""
+        theta, (x, y) = float(config[0]) % tau, self.own
+        c, s = cos(theta), sin(theta)
+        return Pose(degrees(theta), float(config[1]) - (c * x - s * y), float(config[2]) - (s * x + c * y))
+
+
+def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
+    """How deep in mm a peg stands in the part in a configuration; 0 where none does.
+
+    Raises
+    ------
+    InputError
+        When it is deeper than a part that is put by hand may go.
+    """
+    rows = solver.outline.rows
+    points = pattern.at(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
+    away = outline_distances(np.ascontiguousarray(points), rows)
+    deepest = 0.0
+    for (x, y), off, peg in zip(points.tolist(), away.tolist(), fixture.pegs, strict=True):
+        radius = solver.toolkit.carrier(peg.carrier).peg_radius
+        depth = radius + off if is_inside(x, y, rows) else radius - off
+        if depth > ENTERS * radius:
+            raise InputError(
+                f"the peg in {peg.hole} stands in the part there: put the part elsewhere, or open farther."
+            )
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
+    """The way down from a configuration, at levels of S."""
+    low = closing.run(config[None], FIRST_STEP)[0][0, 3]
+    way = [config]
+    for level in np.linspace(config[3], low, LEVELS + 1)[1:-1]:
+        if is_cancelled() or len(way) >= MOST:
+            break
+        go_down(closing, way, float(level), HALVINGS)
+    return way
+
+
+def go_down(closing: Closing, way: list[Array], level: float, halvings: int) -> None:
+    """Go on down to a level, with stops between where the part moves far."""
+    before = way[-1]
+    if level >= before[3]:
+        return
+    after = closing.run(before[None], FIRST_STEP, level)[0][0]
+    if halvings and len(way) < MOST and distances(after[None], before, closing.size)[0] > FAR * closing.size:
+        go_down(closing, way, (before[3] + float(after[3])) / 2.0, halvings - 1)
+        go_down(closing, way, level, halvings - 1)
+    else:
+        way.append(after)
+
+
+def ended(
+    solver: Solver, closing: Closing, center: Center, config: Array, how: int, seats: Sequence[Seat]
+) -> tuple[str, Seat | None]:
+    """What a way ended in: one of :data:`ENDINGS`, and the seat if it is one of those given."""
+    if how == GAVE_UP:
+        return "lost", None
+    if how == AT_THE_STOP:
+        return ("outside" if closing.escapes(config) else "stop"), None
+    best, found = inf, None
+    for seat in seats:
+        if seat.mirrored != center.turned_over or abs(seat.jaw_separation - config[3]) > SAME_LEVEL:
+            continue
+        away = float(distances(center.config(seat.pose, 0.0)[None], config, closing.size)[0])
+        # Where nothing locates the part, it may lie anywhere along what the seat is the middle of.
+        if away < best and (away < AT_SEAT or seat.kind in ("loose", "unsettled")):
+            best, found = away, seat
+    if found is None:
+        return "elsewhere", None
+    return ("right" if found.is_own else "same place" if found.same_place else "wrong"), found

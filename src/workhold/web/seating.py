@@ -1,0 +1,108 @@
+"""Tasks and answers about seating: whether a part ends up where a fixture wants it, and closings from where it was put."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from attrs import frozen
+from pydantic import Field
+
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.sheet_seating import caption
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.toolkit import Toolkit
+from workhold.model.units import unit_named
+from workhold.model.workpiece import Workpiece
+from workhold.seating.figures import Seating
+from workhold.web.forms import LARGEST, Form, Number
+from workhold.web.worker import Order
+
+__all__ = ["ClosingForm", "ClosingOrder", "close", "find_seating", "seating_answer"]
+
+# A fixture and what it is of.
+Held = tuple[Fixture, Workpiece, Toolkit]
+
+
+class ClosingForm(Form):
+    """Where the part was put, turned over (x to -x in its own frame) where that is said, and how far the jaws are open
+    beyond where they close to; in mm and degrees. The unit is of lengths in sentences."""
+
+    theta_deg: Number
+    x: Number
+    y: Number
+    opening: Annotated[float, Field(ge=0, le=LARGEST)]
+    turned_over: bool = False
+    unit: Literal["mm", "inch"] = "mm"
+
+
+@frozen(eq=False)
+class ClosingOrder:
+    """What to close from where.
+
+    Parameters
+    ----------
+    held : the fixture.
+    told : its seating.
+    form : where the part was put.
+    """
+
+    held: Held
+    told: Seating
+    form: ClosingForm
+
+
+def words_of(held: Held, told: Seating, unit: str) -> SeatingWords:
+    """What a seating means in words."""
+    fixture, _, toolkit = held
+    pitch = min(min(carrier.pitch) for carrier in toolkit.carriers)
+    return SeatingWords(told, fixture, toolkit, LengthUnit.suiting(unit_named(unit), pitch))
+
+
+def find_seating(held: Held, order: Order) -> Seating:
+    """The seating of a fixture."""
+    from workhold.seating.seating import Solver
+
+    fixture, workpiece, toolkit = held
+    return Solver(workpiece, toolkit).of(fixture)
+
+
+def seating_answer(held: Held, told: Seating, unit: str) -> dict[str, Any]:
+    """The fields of a seating as a result file has them, with what they mean in words.
+
+    ``own`` is the place of the fixture's own seat in ``seats``, ``nearest`` are the places of the wrong ones that the jaws
+    open to, those that read most like it first; ``captions`` are lines for each seat.
+    """
+    words, seats = words_of(held, told, unit), list(told.seats)
+    return {
+        **told.as_fields(),
+        "own": seats.index(words.own),
+        "nearest": [seats.index(seat) for seat in words.wrong],
+        "captions": [caption(words, seat) for seat in seats],
+        "steps": words.steps(held[1]),
+        "words": words.wrong_words(),
+    }
+
+
+def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
+    """The way of a closing, what it ends in and what is read then; None once nobody wants to know any more."""
+    from workhold.seating.playing import play
+    from workhold.seating.seating import Solver
+
+    form, told = payload.form, payload.told
+    fixture, workpiece, toolkit = payload.held
+    pose = Pose(form.theta_deg, form.x, form.y)
+    played = play(
+        Solver(workpiece, toolkit), fixture, told.seats, pose, form.opening, form.turned_over, order.cancel.is_set
+    )
+    if order.cancel.is_set():
+        return None
+    return {
+        "way": [
+            [one.theta_deg, one.x, one.y, separation]
+            for one, separation in zip(played.poses, played.separations, strict=True)
+        ],
+        "ending": played.ending,
+        "seat": None if played.seat is None else told.seats.index(played.seat),
+        "words": words_of(payload.held, told, form.unit).ended(played.ending, played.seat, played.separations[-1]),
+    }

@@ -1,0 +1,156 @@
+"""Closings from where a part was put: every ending there is, ways without gaps, and starts that cannot be."""
+
+from __future__ import annotations
+
+from math import hypot, radians
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+from seating_examples import LEFT, RIGHT, Obstacle, held, solved
+from workhold import InputError, Pose, Vise, Workpiece
+from workhold.model.fixture import Fixture
+from workhold.seating.figures import Seat
+from workhold.seating.playing import ENDINGS, Played, play
+from workhold.seating.seating import Solver
+
+CASE = 1
+
+
+def put(fixture: Fixture, part: Workpiece, turn: float, dx: float, dy: float) -> Pose:
+    """The pose of a fixture, turned about the middle of the part's box and shifted."""
+    x, y = fixture.pose.apply(*part.center)
+    pose = Pose(fixture.pose.theta_deg + turn, 0.0, 0.0)
+    u, v = pose.apply(*part.center)
+    return Pose(pose.theta_deg, float(x - u) + dx, float(y - v) + dy)
+
+
+def obstacle_of(solver: Solver, fixture: Fixture, turned_over: bool = False) -> Obstacle:
+    """The part and the pegs, by elementary geometry."""
+    part = solver.workpiece.turned_over if turned_over else solver.workpiece
+    return Obstacle(part, fixture, solver.toolkit.carriers[0].peg_radius)
+
+
+def config(obstacle: Obstacle, pose: Pose, separation: float) -> np.ndarray:
+    """theta, x and y of the middle of the part's box, and S."""
+    x, y = pose.apply(*obstacle.center)
+    return np.array([radians(pose.theta_deg), x, y, separation])
+
+
+def check_way(solver: Solver, fixture: Fixture, played: Played, turned_over: bool = False) -> None:
+    """All along the way no peg is in the part, S only falls, and the part never jumps."""
+    assert played.ending in ENDINGS and len(played.poses) == len(played.separations) <= 500
+    obstacle = obstacle_of(solver, fixture, turned_over)
+    size = solver.outline.arm
+    for pose, separation in zip(played.poses, played.separations, strict=True):
+        assert obstacle.free(config(obstacle, pose, separation)) > -1e-6
+    assert all(b <= a + 1e-9 for a, b in zip(played.separations, played.separations[1:], strict=False))
+    configs = [config(obstacle, pose, 0.0) for pose in played.poses]
+    for one, other in zip(configs, configs[1:], strict=False):
+        turn = abs((other[0] - one[0] + np.pi) % (2 * np.pi) - np.pi)
+        assert turn * size + hypot(*(other - one)[1:3]) < 0.2 * size
+
+
+def test_what_is_put_nearer_than_placing_comes_home():
+    """Jaws open by nearly the capture opening, or a peg is in the way."""
+    solver, fixture, told = solved(CASE)
+    opening, free = 0.9 * told.capture_opening, 0
+    for k in range(16):
+        turn, dx, dy = 0.1 * np.cos(k), 0.2 * told.placing * np.cos(2 * k), 0.2 * told.placing * np.sin(3 * k)
+        try:
+            played = play(solver, fixture, told.seats, put(fixture, solver.workpiece, turn, dx, dy), opening)
+        except InputError:
+            continue
+        free += 1
+        assert played.ending == "right" and played.seat.is_own
+        assert played.separations[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
+        check_way(solver, fixture, played)
+    assert free >= 3
+
+
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_each_seat_is_where_closing_from_just_above_it_ends(turned_over):
+    """Every strict seat of both sides, told by its own name."""
+    solver, fixture, told = solved(CASE)
+    seen = 0
+    for seat in told.seats:
+        if seat.mirrored != turned_over or seat.kind not in ("fixture", "corner") or seat.depth is None:
+            continue
+        opening = seat.difference + min(0.2 * seat.depth, 0.05)
+        if opening < 0.0:
+            opening = seat.difference
+            with_less = evolve(fixture, jaw_separation=fixture.jaw_separation + seat.difference)
+            played = play(solver, moved_right(with_less, seat.difference), told.seats, seat.pose, 0.01, turned_over)
+        else:
+            played = play(solver, fixture, told.seats, seat.pose, opening, turned_over)
+        seen += 1
+        assert played.seat == seat
+        assert played.ending == ("right" if seat.is_own else "same place" if seat.same_place else "wrong")
+        check_way(solver, fixture, played, turned_over)
+    assert seen >= 2
+
+
+def moved_right(fixture: Fixture, difference: float) -> Fixture:
+    """The same pegs with the right jaw moved, so that a fixture's opening counts from there."""
+    pegs = tuple(evolve(peg, x=peg.x + difference) if peg.carrier == RIGHT else peg for peg in fixture.pegs)
+    return evolve(fixture, pegs=pegs)
+
+
+def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
+    """A small square far above all pegs can be taken away; one with all four about it cannot, though none touches it."""
+    square = Workpiece.from_points("square", [(0, 0), (6, 0), (6, 6), (0, 6)])
+    vise = Vise(20, 2, 3)
+    fixture = held([(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 40.0, 0.0), (RIGHT, 40.0, 20.0)], (0, 20, 7), 40.0)
+    solver = Solver(square, vise)
+    away = play(solver, fixture, (), Pose(0.0, 20.0, 90.0), 5.0)
+    assert (away.ending, away.seat) == ("outside", None)
+    assert away.separations[-1] == pytest.approx(vise.gap) and away.poses[0] == away.poses[-1]
+    larger = Workpiece.from_points("larger", [(0, 0), (8.5, 0), (8.5, 8.5), (0, 8.5)])
+    about = held([(LEFT, 0.0, 0.0), (LEFT, 0.0, 12.0), (RIGHT, 20.0, 0.0), (RIGHT, 20.0, 12.0)], (0, 3, 2), 20.0)
+    shut = play(Solver(larger, evolve(vise, min_gap=14.0)), about, (), Pose(0.0, 2.75, 1.75), 5.0)
+    assert (shut.ending, shut.seat) == ("stop", None)
+    assert shut.separations[-1] == pytest.approx(14.0)
+
+
+def test_a_seat_that_is_not_given_is_elsewhere():
+    solver, fixture, told = solved(CASE)
+    played = play(solver, fixture, [seat for seat in told.seats if not seat.is_own], fixture.pose, 0.01)
+    assert (played.ending, played.seat) == ("elsewhere", None)
+
+
+def test_a_loose_seat_is_known_by_its_reading():
+    """A disc turns on its pegs: wherever it is let go, it ends in the loose seat that is told of all its turns."""
+    disc = Workpiece.from_loops("disc", [[[-15, 0, 1], [15, 0, 1]]])
+    fixture = held([(LEFT, 0, 0), (LEFT, 0, 20), (RIGHT, 25, 0), (RIGHT, 25, 20)], (0.0, 15.0, 10.0), 25.0)
+    apart = 2.0 * np.sqrt(18.0**2 - 10.0**2)
+    seat = Seat("loose", Pose(0.0, apart / 2, 10.0), apart, 0.0, False, False, (), (), None, False)
+    fixture = evolve(moved_right(fixture, apart - 25.0), jaw_separation=apart)
+    played = play(Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0)
+    assert (played.ending, played.seat) == ("wrong", seat)
+    assert played.separations[-1] == pytest.approx(apart, abs=1e-6)
+
+
+def test_a_part_that_enters_a_peg_a_little_is_pushed_out():
+    """As hands put it; the jaws stand as they stood."""
+    solver, fixture, told = solved(CASE)
+    enters = 0.4 * solver.toolkit.peg_radius
+    played = play(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -enters, 0.0), 3.0 + enters)
+    assert played.separations[0] == pytest.approx(fixture.jaw_separation + 3.0 + enters)
+    check_way(solver, fixture, played)
+
+
+def test_starts_that_cannot_be_are_refused_in_a_sentence():
+    solver, fixture, told = solved(CASE)
+    with pytest.raises(InputError, match=r"^the peg in .* stands in the part there: put the part elsewhere"):
+        play(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -15.0, 0.0), 1.0)
+    with pytest.raises(InputError, match="meet before the jaws stand so near"):
+        play(solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.jaw_separation - 1.0)
+
+
+def test_a_way_that_nobody_wants_any_more_ends():
+    solver, fixture, told = solved(CASE)
+    asked = iter([False, False, True])
+    pose, opening = put(fixture, solver.workpiece, 0.0, 0.5, 0.0), 1.0
+    played = play(solver, fixture, told.seats, pose, opening, is_cancelled=lambda: next(asked, True))
+    assert len(played.poses) <= 4
