@@ -15,11 +15,11 @@ from workhold import Plate, Vise, Workpiece
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.result_sheet import result_cautions, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.seating_words import CLOSE_READING, SMALL_CAPTURE, SeatingWords
+from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.result import Result
-from workhold.model.seating import Seating
+from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.model.units import INCH, MILLIMETRE, Unit
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -118,8 +118,9 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     assert f"{abs(near.difference):.3f} mm {'more' if near.difference > 0 else 'less'}" in written
     assert f"S = {result[1].jaw_separation:.3f} mm" in written and "right" in written
     most = sorted(seat.jaw_separation for seat in told[1].seats if seat.is_wrong)[2] + 1e-6
-    within = evolve(told[1], most=most)
-    assert len(SeatingWords(within, result[1], result.toolkit, words.lengths).wrong) == 3
+    assert len(words_for(result, evolve(told[1], most=most), 1).wrong) == 3
+    near = words_for(result, evolve(told[1], opening=words.wrong[2].difference + 1e-6), 1)
+    assert len(near.wrong) < len(words.wrong) and "opened by no more than" in near.wrong_words()[0]
 
 
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
@@ -133,8 +134,7 @@ def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, t
     free = words_for(result, evolve(told[0], capture_opening=None, placing=None)).steps(WEDGE)
     assert "as far as you like" in free[0] and not any("Put the part in" in step for step in free)
     most = result[0].jaw_separation + 0.5 * (told[0].capture_opening or 0.0)
-    narrow = SeatingWords(told[0], result[0], evolve(result.toolkit, max_opening=most), LengthUnit.mm())
-    assert "as far as possible" in narrow.steps(WEDGE)[0]
+    assert "as far as possible" in words_for(result, evolve(told[0], most=most)).steps(WEDGE)[0]
 
 
 def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Seating]) -> None:
@@ -153,12 +153,13 @@ def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Se
     assert caution[0] == "reading" and "no different" in caution[1]
 
 
-def test_it_is_told_when_asked_for_only(result: Result) -> None:
-    """The page warns of what the sheet warns of; without being asked for neither tells anything of it."""
-    asked, plain = (
-        " ".join(word for page in result_sheet(result, 1, seating=seating) for word in texts(page))
-        for seating in (True, None)
-    )
+def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Seating]) -> None:
+    """A sheet of a result that has it is the one that is asked for; without, neither page nor sheet tell anything of it."""
+    sheets = {seating: result_sheet(result, 1, seating=seating) for seating in (True, None)}
+    asked, plain = (" ".join(word for page in pages for word in texts(page)) for pages in sheets.values())
+    kept = evolve(result, seating=tuple(told))
+    same = {seating: result_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)}
+    assert same == {None: True, True: True, False: False}
     assert "Will it end up there?" in asked and "no different" in asked
     assert "Will it end up there?" not in plain
     assert [c.kind for c in result_cautions(result, 1, seating=True)] == ["reading"]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import hypot, radians
 
 import numpy as np
 import pytest
 from attrs import evolve
 
+import workhold
 from seating_examples import LEFT, RIGHT, Obstacle, held, solved
-from workhold import InputError, Pose, Vise, Workpiece
+from workhold import InputError, Plate, Pose, Vise, Workpiece
 from workhold.model.fixture import Fixture
-from workhold.seating.figures import Seat
+from workhold.model.seating import Seat
 from workhold.seating.playing import ENDINGS, Played, play
 from workhold.seating.seating import Solver
 
@@ -40,14 +42,14 @@ def config(obstacle: Obstacle, pose: Pose, separation: float) -> np.ndarray:
 
 def check_way(solver: Solver, fixture: Fixture, played: Played, turned_over: bool = False) -> None:
     """All along the way no peg is in the part, S only falls, and the part never jumps."""
-    assert played.ending in ENDINGS and len(played.poses) == len(played.separations) <= 500
+    assert played.ending in ENDINGS and len(played.poses) == len(played.travels) <= 500
     obstacle = obstacle_of(solver, fixture, turned_over)
     size = solver.outline.arm
-    for pose, separation in zip(played.poses, played.separations, strict=True):
+    for pose, separation in zip(played.poses, played.travels, strict=True):
         assert obstacle.free(config(obstacle, pose, separation)) > -1e-6
-    assert all(b <= a + 1e-9 for a, b in zip(played.separations, played.separations[1:], strict=False))
+    assert all(b <= a + 1e-9 for a, b in pairwise(played.travels))
     configs = [config(obstacle, pose, 0.0) for pose in played.poses]
-    for one, other in zip(configs, configs[1:], strict=False):
+    for one, other in pairwise(configs):
         turn = abs((other[0] - one[0] + np.pi) % (2 * np.pi) - np.pi)
         assert turn * size + hypot(*(other - one)[1:3]) < 0.2 * size
 
@@ -64,7 +66,7 @@ def test_what_is_put_nearer_than_placing_comes_home():
             continue
         free += 1
         assert played.ending == "right" and played.seat.is_own
-        assert played.separations[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
+        assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
         check_way(solver, fixture, played)
     assert free >= 3
 
@@ -105,12 +107,12 @@ def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
     solver = Solver(square, vise)
     away = play(solver, fixture, (), Pose(0.0, 20.0, 90.0), 5.0)
     assert (away.ending, away.seat) == ("outside", None)
-    assert away.separations[-1] == pytest.approx(vise.gap) and away.poses[0] == away.poses[-1]
+    assert away.travels[-1] == pytest.approx(vise.gap) and away.poses[0] == away.poses[-1]
     larger = Workpiece.from_points("larger", [(0, 0), (8.5, 0), (8.5, 8.5), (0, 8.5)])
     about = held([(LEFT, 0.0, 0.0), (LEFT, 0.0, 12.0), (RIGHT, 20.0, 0.0), (RIGHT, 20.0, 12.0)], (0, 3, 2), 20.0)
     shut = play(Solver(larger, evolve(vise, min_gap=14.0)), about, (), Pose(0.0, 2.75, 1.75), 5.0)
     assert (shut.ending, shut.seat) == ("stop", None)
-    assert shut.separations[-1] == pytest.approx(14.0)
+    assert shut.travels[-1] == pytest.approx(14.0)
 
 
 def test_a_seat_that_is_not_given_is_elsewhere():
@@ -128,7 +130,7 @@ def test_a_loose_seat_is_known_by_its_reading():
     fixture = evolve(moved_right(fixture, apart - 25.0), jaw_separation=apart)
     played = play(Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0)
     assert (played.ending, played.seat) == ("wrong", seat)
-    assert played.separations[-1] == pytest.approx(apart, abs=1e-6)
+    assert played.travels[-1] == pytest.approx(apart, abs=1e-6)
 
 
 def test_a_part_that_enters_a_peg_a_little_is_pushed_out():
@@ -136,7 +138,7 @@ def test_a_part_that_enters_a_peg_a_little_is_pushed_out():
     solver, fixture, told = solved(CASE)
     enters = 0.4 * solver.toolkit.peg_radius
     played = play(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -enters, 0.0), 3.0 + enters)
-    assert played.separations[0] == pytest.approx(fixture.jaw_separation + 3.0 + enters)
+    assert played.travels[0] == pytest.approx(fixture.jaw_separation + 3.0 + enters)
     check_way(solver, fixture, played)
 
 
@@ -144,7 +146,7 @@ def test_starts_that_cannot_be_are_refused_in_a_sentence():
     solver, fixture, told = solved(CASE)
     with pytest.raises(InputError, match=r"^the peg in .* stands in the part there: put the part elsewhere"):
         play(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -15.0, 0.0), 1.0)
-    with pytest.raises(InputError, match="meet before the jaws stand so near"):
+    with pytest.raises(InputError, match=r"^pegs meet before what moves stands there"):
         play(solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.jaw_separation - 1.0)
 
 
@@ -154,3 +156,18 @@ def test_a_way_that_nobody_wants_any_more_ends():
     pose, opening = put(fixture, solver.workpiece, 0.0, 0.5, 0.0), 1.0
     played = play(solver, fixture, told.seats, pose, opening, is_cancelled=lambda: next(asked, True))
     assert len(played.poses) <= 4
+
+
+@pytest.mark.parametrize("way", ["-x", "+y"])
+def test_a_clamp_presses_the_part_home(way):
+    """Along a row and along a column; the travel told is the toolkit's own."""
+    wedge = Workpiece.from_points("wedge", [(0, 0), (70, 0), (25, 55)])
+    result = workhold.design(wedge, Plate(pitch=20, peg_radius=3, directions=[way], travel=(1, 40)), best=1)
+    fixture, (told,) = result[0], workhold.seatings(result, with_cage=False)
+    played = play(Solver(wedge, result.toolkit), fixture, told.seats, fixture.pose, 0.5 * told.capture_opening)
+    assert played.ending == "right"
+    opened = fixture.jaw_separation + told.clamping * 0.5 * told.capture_opening
+    assert played.travels[0] == pytest.approx(opened)
+    assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
+    assert played.poses[-1].theta_deg == pytest.approx(fixture.pose.theta_deg, abs=1e-4)
+    assert (played.poses[-1].x, played.poses[-1].y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-3)

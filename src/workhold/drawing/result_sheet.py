@@ -92,8 +92,8 @@ def result_details(
     asked = result.query.loads if loads is None else loads
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
     fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
-    told, not_seated = None, ""
-    if seating:
+    told, not_seated = result[rank - 1].seating if seating is not False else None, ""
+    if seating and told is None:
         try:
             told = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:

@@ -10,7 +10,7 @@ from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
 from workhold.model.fixture import Fixture
-from workhold.model.seating import Seat, Seating
+from workhold.model.seating import CLOSE_READING, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.place import Silhouette
@@ -18,10 +18,6 @@ from workhold.seating.reading import Gauge
 
 __all__ = ["SeatingWords", "down"]
 
-# mm. Jaws are opened by hand to about a millimetre; what catches from less hardly catches.
-SMALL_CAPTURE = 1.0
-# mm. Two readings of a caliper, each off by up to 0.03, and tolerances of the contacts make as much of a difference.
-CLOSE_READING = 0.1
 # What the friction of dry steel reaches.
 DRY_STEEL = 0.2
 # More than this is told without a bound, in degrees.
@@ -126,8 +122,8 @@ class SeatingWords:
         """What to do and what to read, one step each."""
         told, right = self.told, self.reads(self.reading(self.own))
         ways, (most, more) = self.gauge.ways, ("at most", "more") if self.gauge.grows else ("at least", "less")
-        capture, room, travel = told.capture_opening, told.drop_room, self.toolkit.moving.travel
-        widest = inf if travel is None or travel.most is None else travel.most
+        capture, room = told.capture_opening, told.drop_room
+        widest = inf if told.most is None else told.most
         if capture is None or room is None:
             steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
         elif self.own.jaw_separation + self.told.clamping * capture > widest:
@@ -157,25 +153,27 @@ class SeatingWords:
 
     def wrong_words(self) -> list[str]:
         """How many wrong seats there are, and what no reading tells."""
+        told, reach = self.told, ""
+        if told.opening is not None:
+            reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(told.opening)},"
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
         turned = "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
-        words = ["The same pegs hold the part in no wrong place."]
+        words = [f"The same pegs{reach} hold the part in no wrong place."]
         if wrong:
             plain = abs(wrong[0].difference) >= CLOSE_READING
             tells = "the reading tells" if plain else "see how the part lies, the reading alone does not tell"
-            words = [f"The same pegs can hold the part in {places}{turned}: {tells}."]
+            words = [f"The same pegs{reach} can hold the part in {places}{turned}: {tells}."]
         if self.alike:
             words.append(
                 f"In {self.alike} more it lies turned round or over and covers its place all the same, which no reading "
                 "tells: mark the part."
             )
-        return [*words, *told_in_sentences(self.told.unsettled)]
+        return [*words, *told_in_sentences(told.unsettled)]
 
-    def ended(self, ending: str, seat: Seat | None, separation: float) -> str:
+    def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
         """What a closing ended in, one of ``seating.playing.ENDINGS``, with what is read then."""
-        noun = self.toolkit.moving.noun
-        read = self.reads(separation)
+        read, clamp = self.reads(self.gauge.at(travelled)), self.gauge.carrier.on is not None
         if seat is not None and ending == "right":
             return f"It comes home: {read}."
         if seat is not None and ending == "same place":
@@ -186,16 +184,17 @@ class SeatingWords:
             off = self.difference(seat)
             tells = "as when it is right" if off == "the same" else f"{off} than when it is right"
             return f"It comes to rest in a wrong place{kind}: {read}, {tells}."
+        stopped = "the clamp goes as far as it can" if clamp else "the jaws meet their stop"
         return {
-            "stop": f"The {noun}s meet their stop, {read}: the part lies loose beside the pegs.",
-            "outside": f"The part slips out, and the {noun}s close to their stop, {read}.",
+            "stop": f"The part lies loose beside the pegs: {stopped}, {read}.",
+            "outside": f"The part slips out: {stopped}, {read}.",
             "elsewhere": f"It comes to rest where a nudge moves it on: {read}.",
         }.get(ending, f"The way could not be followed to its end; the last reading is {read}.")
 
     def cautions(self) -> list[tuple[str, str]]:
         """What to beware of: a word for it, "capture" or "reading", and a sentence."""
         told, found = self.told, list[tuple[str, str]]()
-        if told.capture_opening is not None and told.capture_opening < SMALL_CAPTURE:
+        if told.capture_opening is not None and told.is_hardly_caught:
             found.append(
                 (
                     "capture",

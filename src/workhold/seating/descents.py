@@ -49,9 +49,11 @@ class Closing:
         Parameters
         ----------
         first : how long the first steps are, in mm.
-        stop : S in mm at which the jaws are stopped; the pattern's own stop if None.
+        stop : S in mm at which the jaws are stopped; where the pattern ends if None.
         """
-        obstacles = self.obstacles if stop is None else self.obstacles._replace(stop=max(stop, self.pattern.stop))
+        obstacles = self.obstacles
+        if stop is not None:
+            obstacles = obstacles._replace(stop=max(stop, obstacles.stop))
         out = np.array(configs, dtype=np.float64)
         ends = np.zeros(len(out), np.int8)
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)

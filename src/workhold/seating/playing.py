@@ -17,8 +17,9 @@ from workhold.errors import InputError
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.seating import Seat
 from workhold.seating.descents import Closing
-from workhold.seating.figures import Seat
+from workhold.seating.door import Door
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 from workhold.seating.tree import AT_SEAT, SAME_LEVEL, distances
@@ -44,13 +45,14 @@ class Played:
 
     Parameters
     ----------
-    poses, separations : of the part, turned over where that was asked for, and S in mm, one after the other.
+    poses, travels : of the part, turned over where that was asked for, and of what moves in mm, such as the jaw separation,
+        one after the other.
     ending : one of :data:`ENDINGS`.
     seat : what it ended in, of the seats that were given; None where it ended in none of them.
     """
 
     poses: tuple[Pose, ...]
-    separations: tuple[float, ...]
+    travels: tuple[float, ...]
     ending: str
     seat: Seat | None
 
@@ -68,9 +70,9 @@ def play(
 
     Parameters
     ----------
-    seats : the fixture's, see :class:`workhold.seating.figures.Seating`.
+    seats : the fixture's, see :class:`workhold.model.seating.Seating`.
     pose : of the part, of the part turned over (x to -x in its own frame) where that is asked for.
-    opening : how much farther than in the fixture the jaws stand open, in mm.
+    opening : how much farther than in the fixture the jaws stand open, or the clamp is drawn back, in mm.
     is_cancelled : asked between steps; the way ends where it is when it says so.
 
     Raises
@@ -80,10 +82,10 @@ def play(
     """
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, turned_over)
-    center = Center(solver.workpiece.center, turned_over)
-    start = center.config(pose, fixture.jaw_separation + opening)
-    if start[3] < pattern.stop:
-        raise InputError("pegs of both jaws meet before the jaws stand so near: open them farther.")
+    center = Center(solver.workpiece.center, turned_over, pattern.door)
+    start = center.config(pose, fixture.jaw_separation + solver.toolkit.clamping * opening)
+    if not pattern.stop <= start[3] <= pattern.widest:
+        raise InputError("pegs meet before what moves stands there: open it more, or less.")
     into = entered(solver, fixture, pattern, start, turned_over)
     # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they stood.
     first = max(FIRST_STEP, into / STEPS_DEEP)
@@ -95,21 +97,23 @@ def play(
     way.append(end[0])
     ending, seat = ended(solver, closing, center, end[0], int(how[0]), seats)
     poses = tuple(center.pose(config) for config in way)
-    return Played(poses, tuple(float(config[3]) for config in way), ending, seat)
+    return Played(poses, tuple(pattern.door.sign * float(config[3]) for config in way), ending, seat)
 
 
 @frozen
 class Center:
-    """The way between poses of a part and configurations, which tell of the middle of its box.
+    """The way between poses of a part and configurations, which tell of the middle of its box in the frame of a door.
 
     Parameters
     ----------
     middle : of the box in the part's own coordinates, in mm.
     turned_over : whether the part is turned over.
+    door : the way to the toolkit's frame.
     """
 
     middle: tuple[float, float]
     turned_over: bool
+    door: Door
 
     @property
     def own(self) -> tuple[float, float]:
@@ -117,15 +121,16 @@ class Center:
         x, y = self.middle
         return (-x, y) if self.turned_over else (x, y)
 
-    def config(self, pose: Pose, separation: float) -> Array:
+    def config(self, pose: Pose, travelled: float) -> Array:
         """(4,) theta in radians, x and y of the middle, and S."""
-        return np.array([radians(pose.theta_deg), *pose.apply(*self.own), separation])
+        return self.door.enter(np.array([radians(pose.theta_deg), *pose.apply(*self.own), travelled]))
 
     def pose(self, config: Array) -> Pose:
         """The pose of a configuration, turned by 0 to 360 degrees."""
-        theta, (x, y) = float(config[0]) % tau, self.own
+        left, (x, y) = self.door.leave(config), self.own
+        theta = float(left[0]) % tau
         c, s = cos(theta), sin(theta)
-        return Pose(degrees(theta), float(config[1]) - (c * x - s * y), float(config[2]) - (s * x + c * y))
+        return Pose(degrees(theta), float(left[1]) - (c * x - s * y), float(left[2]) - (s * x + c * y))
 
 
 def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
@@ -185,9 +190,10 @@ def ended(
         return ("outside" if closing.escapes(config) else "stop"), None
     best, found = inf, None
     for seat in seats:
-        if seat.mirrored != center.turned_over or abs(seat.jaw_separation - config[3]) > SAME_LEVEL:
+        there = center.config(seat.pose, seat.jaw_separation)
+        if seat.mirrored != center.turned_over or abs(there[3] - config[3]) > SAME_LEVEL:
             continue
-        away = float(distances(center.config(seat.pose, 0.0)[None], config, closing.size)[0])
+        away = float(distances(there[None], config, closing.size)[0])
         # Where nothing locates the part, it may lie anywhere along what the seat is the middle of.
         if away < best and (away < AT_SEAT or seat.kind in ("loose", "unsettled")):
             best, found = away, seat

@@ -21,7 +21,7 @@ from workhold.listing.alike import Entries
 from workhold.model.explanation import Explanation
 from workhold.model.notes import kept_note, stopped_note
 from workhold.model.result import Result
-from workhold.seating.figures import Seating
+from workhold.model.seating import Seating
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.limits import Limits

@@ -11,10 +11,10 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_seating import caption
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
-from workhold.seating.figures import Seating
 from workhold.web.forms import LARGEST, Form, Number
 from workhold.web.worker import Order
 
@@ -26,7 +26,7 @@ Held = tuple[Fixture, Workpiece, Toolkit]
 
 class ClosingForm(Form):
     """Where the part was put, turned over (x to -x in its own frame) where that is said, and how far the jaws are open
-    beyond where they close to; in mm and degrees. The unit is of lengths in sentences."""
+    beyond where they hold the part, or a clamp is drawn back; in mm and degrees. The unit is of lengths in sentences."""
 
     theta_deg: Number
     x: Number
@@ -60,24 +60,27 @@ def words_of(held: Held, told: Seating, unit: str) -> SeatingWords:
 
 
 def find_seating(held: Held, order: Order) -> Seating:
-    """The seating of a fixture."""
+    """The seating of a fixture, worked out where the result has none."""
     from workhold.seating.seating import Solver
 
     fixture, workpiece, toolkit = held
-    return Solver(workpiece, toolkit).of(fixture)
+    told: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
+    return told
 
 
 def seating_answer(held: Held, told: Seating, unit: str) -> dict[str, Any]:
     """The fields of a seating as a result file has them, with what they mean in words.
 
     ``own`` is the place of the fixture's own seat in ``seats``, ``nearest`` are the places of the wrong ones that the jaws
-    open to, those that read most like it first; ``captions`` are lines for each seat.
+    open to, those that read most like it first; ``clamping`` is 1 where ``jaw_separation`` falls while the part is clamped,
+    -1 where it rises; ``captions`` are lines for each seat.
     """
     words, seats = words_of(held, told, unit), list(told.seats)
     return {
         **told.as_fields(),
         "own": seats.index(words.own),
         "nearest": [seats.index(seat) for seat in words.wrong],
+        "clamping": told.clamping,
         "captions": [caption(words, seat) for seat in seats],
         "steps": words.steps(held[1]),
         "words": words.wrong_words(),
@@ -97,12 +100,10 @@ def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
     )
     if order.cancel.is_set():
         return None
+    opened = [told.clamping * (travelled - fixture.jaw_separation) for travelled in played.travels]
     return {
-        "way": [
-            [one.theta_deg, one.x, one.y, separation]
-            for one, separation in zip(played.poses, played.separations, strict=True)
-        ],
+        "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(played.poses, opened, strict=True)],
         "ending": played.ending,
         "seat": None if played.seat is None else told.seats.index(played.seat),
-        "words": words_of(payload.held, told, form.unit).ended(played.ending, played.seat, played.separations[-1]),
+        "words": words_of(payload.held, told, form.unit).ended(played.ending, played.seat, played.travels[-1]),
     }

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
-from workhold.seating.figures import Seating
+from workhold.model.seating import Seating
 from workhold.web.fixture_routes import Rank, Revision, UnitName, ranked
 from workhold.web.job_routes import found_job, result_of_job
 from workhold.web.seating import ClosingForm, ClosingOrder, Held, seating_answer
@@ -44,7 +44,8 @@ async def seating(
 async def closing(
     request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
 ) -> dict[str, Any] | None:
-    """The way that part and jaws go without friction, as turn in degrees, x, y and S in mm, and what it ends in: ``right``,
+    """The way that part and jaws go without friction, as turn in degrees, x and y of its pose and how far the
+    jaws are open beyond where they hold it, in mm, and what it ends in: ``right``,
     ``same place``, ``wrong``, ``elsewhere``, ``stop``, ``outside`` or ``lost``. Who hangs up has it stopped."""
     held, told = await seated(request, name, rank, revision)
     answer: dict[str, Any] | None = await at_desk_while_heard(request, "closing", ClosingOrder(held, told, form))

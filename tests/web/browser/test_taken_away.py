@@ -43,13 +43,23 @@ def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
     for name, value in GIVEN.items():
         page.fill(f"#{name}", value)
     page.press("#part-name", "Tab")
+    page.check("#sheet-seating")
     page.select_option("#paper", "letter")
     query = asked(walk)
     wanted = {name.replace("-", "_"): value for name, value in GIVEN.items()}
     assert {name: query[name] for name in wanted} == wanted
-    assert (query["paper"], query["unit"]) == ("letter", "mm")
+    assert (query["paper"], query["unit"], query["seating"]) == ("letter", "mm", "true")
     sheet = re.sub(r"<[^>]+>", " ", walk.saved("#take-svg").decode())
-    for words in ("door handle", "centre of hole 1", "12.000 mm", "30.000 mm", "8.000 mm", "6 mm m6 in H7", "G54 G68"):
+    for words in (
+        "door handle",
+        "centre of hole 1",
+        "12.000 mm",
+        "30.000 mm",
+        "8.000 mm",
+        "6 mm m6 in H7",
+        "G54 G68",
+        "end up there?",
+    ):
         assert words in sheet
     assert walk.saved("#take-sheet").startswith(b"%PDF")
     assert walk.saved("#take-pins").decode().count("6 mm m6 in H7") == 3
@@ -60,7 +70,7 @@ def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
     walk.reload()
     walk.searched()
     assert {name: page.input_value(f"#{name}") for name in GIVEN} == GIVEN
-    assert asked(walk) == query
+    assert asked(walk) == query and page.is_checked("#sheet-seating")
     assert page.input_value("#paper") == "letter"
 
 

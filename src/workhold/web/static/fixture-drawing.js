@@ -3,10 +3,11 @@
  *
  * Lettering and arrows are in fixture-lettering.js; they keep their size when the drawing is zoomed.
  */
-import { draw } from "./dom.js";
+import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
 import { contactsOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
+import { lyingMatrix } from "./trial.js";
 import { Viewport } from "./viewport.js";
 
 /** Room around the drawing for lettering, in pixels: top, right, bottom, left. */
@@ -29,6 +30,10 @@ export class FixtureDrawing {
     this.open = 0;
     this.frame = 0;
     this.underPegs = draw("g");
+    /** How the part lies where it was put by hand; null where the fixture has it. @type {import("./trial.js").Lying|null} */
+    this.lying = null;
+    /** What else keeps its size on top. @type {() => Node[]} */
+    this.extras = () => [];
     /** How far the cutter is to keep off the pegs, in mm; null for no such circles. @type {number|null} */
     this.clearance = null;
   }
@@ -43,6 +48,7 @@ export class FixtureDrawing {
   show(part, vise, row, { keepView = false } = {}) {
     cancelAnimationFrame(this.frame);
     this.open = 0;
+    this.lying = null;
     const toVise = intoVise(row);
     const box = boundsOf(partSegments(part).map(({ segment }) => segment), toVise);
     this.part = part;
@@ -96,6 +102,8 @@ export class FixtureDrawing {
     const outline = outlinePath(part.loops);
     const touched = new Set(row.faces.filter((_, k) => !row.corners.includes(k)));
     const shape = draw("g.part", { transform: poseMatrix(row) }, draw("path.part-fill", { d: outline }));
+    this.shape = shape;
+    this.ghost = draw("path.ghost", { d: outline, transform: poseMatrix(row), hidden: true });
     for (const { segment, face } of partSegments(part)) {
       if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
     }
@@ -104,8 +112,21 @@ export class FixtureDrawing {
     const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
     this.plates = groups((each) => (each.clamp ? this.clamp(each) : this.plate(each)));
     this.pegs = groups((each) => each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)));
-    this.view.world.replaceChildren(...this.plates, shape, ...this.pegs);
+    this.view.world.replaceChildren(...this.plates, this.ghost, shape, ...this.pegs);
     this.slide(this.open);
+  }
+
+  /**
+   * Show the part where it was put by hand, with an outline of its place, or where the fixture has it.
+   * @param {import("./trial.js").Lying|null} lying
+   */
+  lie(lying) {
+    cancelAnimationFrame(this.frame);
+    this.lying = lying;
+    this.shape.setAttribute("transform", lying ? lyingMatrix(lying) : poseMatrix(this.row));
+    this.shape.classList.toggle("put", lying !== null);
+    this.shape.classList.toggle("over", lying?.over === true);
+    show(this.ghost, lying !== null);
   }
 
   /** The plate of a carrier and its holes. */

@@ -15,7 +15,7 @@ const SHORTEST = 20;
  */
 export function drawLettering(drawing) {
   const { overlay } = drawing.view;
-  const closed = drawing.open === 0;
+  const closed = drawing.open === 0 && drawing.lying === null;
   const axes = [...columnNames(drawing), ...rowNames(drawing)];
   const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...travels(drawing)];
   if (closed) {
@@ -23,7 +23,7 @@ export function drawLettering(drawing) {
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
   parts.push(...labels(drawing, closed, axes.filter(({ kind }) => kind === USED)));
-  overlay.replaceChildren(...parts);
+  overlay.replaceChildren(...parts, ...drawing.extras());
 }
 
 /**

@@ -51,7 +51,7 @@ export function togglePush() {
     return;
   }
   const [x, y] = centerOf(state.part);
-  change({ force: { x, y, size: 200, direction: 0, moment: 0, jaw: null, kind: "screw" } });
+  change({ trial: null, force: { x, y, size: 200, direction: 0, moment: 0, jaw: null, kind: "screw" } });
   byId("forces").scrollIntoView({ block: "nearest" });
 }
 

@@ -7,6 +7,7 @@ import { stopZone } from "./rules-panel.js";
 import { step } from "./selection.js";
 import { closeVise, leaveDrawing, togglePin } from "./stage-panel.js";
 import { state } from "./state.js";
+import { leaveTrial, toggleTrial } from "./trial-panel.js";
 
 const KEYS = {
   ArrowLeft: () => step(-1),
@@ -14,6 +15,7 @@ const KEYS = {
   c: closeVise,
   f: togglePush,
   p: togglePin,
+  t: toggleTrial,
 };
 
 /** Listen to the keys. */
@@ -26,6 +28,7 @@ export function listenToKeys() {
     if (event.key === "Escape") {
       stopZone();
       leaveDrawing();
+      leaveTrial();
       return;
     }
     if (event.shiftKey || state.view !== "fixture" || !state.selected) return;

@@ -16,6 +16,7 @@ import { listenToSections } from "./sections.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { takePanel } from "./take-panel.js";
+import { trialPanel } from "./trial-panel.js";
 import { unitWord } from "./units.js";
 import { offerToolkits, toolkitPanel } from "./toolkit-panel.js";
 import { visesDialog } from "./vises-dialog.js";
@@ -77,6 +78,7 @@ async function begin() {
   byId("step-word").textContent = about.step ? ", STEP" : "";
   detailsPanel(figures);
   forcesPanel();
+  trialPanel();
   resultsPanel(figures);
   whyPanel();
   visesDialog(figures);

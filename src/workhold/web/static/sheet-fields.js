@@ -25,6 +25,9 @@ const FIELDS = [
 /** @returns {HTMLInputElement} */
 const field = ({ name }) => /** @type {HTMLInputElement} */ (byId(name.replaceAll("_", "-")));
 
+/** Whether the sheet tells where else the part can come to rest. @returns {HTMLInputElement} */
+const seating = () => /** @type {HTMLInputElement} */ (byId("sheet-seating"));
+
 /** Set the fields up. */
 export function sheetFields() {
   byId("sheet-details").addEventListener("input", quiet(read, 200));
@@ -37,6 +40,7 @@ export function sheetFields() {
 /** Read the fields; one that cannot be read is marked and left as it was. */
 function read() {
   const sheet = { paper: state.sheet.paper };
+  if (seating().checked) sheet.seating = true;
   for (const each of FIELDS) {
     const text = field(each).value;
     const known = state.sheet[each.name];
@@ -55,6 +59,7 @@ function read() {
 function write() {
   const { sheet, selected, part } = state;
   /** @type {HTMLSelectElement} */ (byId("paper")).value = sheet.paper;
+  seating().checked = sheet.seating === true;
   for (const each of FIELDS) {
     const input = field(each);
     if (input === document.activeElement) continue;
@@ -65,7 +70,7 @@ function write() {
   for (const place of document.querySelectorAll(".first-hole")) place.textContent = selected?.origin ?? "";
   const given = [
     sheet.thickness && `${length(sheet.thickness, 2)} thick`, sheet.dowel, sheet.zero && `X0 Y0 at ${sheet.zero}`,
-    sheet.clearance !== undefined && `cutter ${length(sheet.clearance, 2)} off`,
+    sheet.seating && "seating", sheet.clearance !== undefined && `cutter ${length(sheet.clearance, 2)} off`,
   ];
   byId("sheet-words").textContent = given.filter(Boolean).join(", ");
 }
@@ -73,6 +78,7 @@ function write() {
 /** What is asked of the sheet, as the server takes it: lengths in the unit shown. */
 export function sheetQuery() {
   const query = { paper: state.sheet.paper, unit: state.unit };
+  if (state.sheet.seating) query.seating = "true";
   for (const { name, form } of FIELDS) {
     const value = state.sheet[name];
     if (value === undefined || value === null) continue;

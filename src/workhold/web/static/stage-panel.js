@@ -159,7 +159,7 @@ export function togglePin() {
 
 /** Show the vise closing. */
 export function closeVise() {
-  if (state.view === "fixture" && state.selected) fixtureDrawing.close();
+  if (state.view === "fixture" && state.selected && !state.trial) fixtureDrawing.close();
 }
 
 /** Where in the list the fixture shown is. */

@@ -32,6 +32,7 @@ export const SETTINGS = [
  * @property {any} pinned the fixture it is compared with, or null
  * @property {string} view "part", "fixture" or "draw"
  * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null, kind?: string|number}|null} force with the force and kind of the jaw
+ * @property {import("./trial.js").Trial|null} trial the part in the hand
  * @property {Object<string, any>} sheet what stands on the setup sheet besides: wishes by the server's names, lengths in mm
  */
 
@@ -59,6 +60,7 @@ export const state = {
   view: "part",
   force: null,
   sheet: { paper: "a4" },
+  trial: null,
 };
 
 /** @type {{keys: string[], call: (changed: Set<string>) => void}[]} */

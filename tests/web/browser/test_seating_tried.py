@@ -1,0 +1,125 @@
+"""Will it end up there? The part is put between the pegs by hand, and the page says what becomes of it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from running_server import RunningServer
+from walking import Walk
+
+AXE = Path(__file__).parent / "data" / "axe.min.js"
+MIDDLE = """async () => {
+  const { state } = await import("/static/state.js");
+  const { lyingOf, middleOf } = await import("/static/trial.js");
+  return middleOf(state.part, lyingOf(state.part, state.selected, state.trial));
+}"""
+# The first closing that is asked for has no answer until it is given up.
+DEAF = """() => {
+  const real = window.fetch;
+  window.fetch = (address, options) => {
+    if (window.heard || !String(address).endsWith("/closing")) return real(address, options);
+    window.heard = options.signal;
+    return new Promise((_, fail) => options.signal.addEventListener("abort", () => fail(options.signal.reason)));
+  };
+}"""
+SERIOUS = """async () => (await axe.run(document)).violations
+  .filter((rule) => ["serious", "critical"].includes(rule.impact)).map((rule) => rule.id)"""
+
+
+def begin(walk: Walk) -> dict[str, Any]:
+    """Take a fixture into the hand; what the server tells of it."""
+    walk.page.click("#try")
+    walk.seen("#seats .seat")
+    row = walk.shown()
+    told = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/{row['rank']}/seating").json()
+    return dict(told)
+
+
+def dragged(walk: Walk, dx: float, dy: float) -> None:
+    """Drag the part by its middle, so many mm, and let it go."""
+    x, y = walk.page.evaluate(MIDDLE)
+    walk.drag(walk.point(x, y, "fixtureDrawing"), walk.point(x + dx, y + dy, "fixtureDrawing"))
+
+
+def verdict(walk: Walk, words: str, kind: str) -> str:
+    """What is said at last."""
+    return str(walk.seen(f"#try-words.{kind}:has-text('{words}')").inner_text())
+
+
+def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
+    """It comes home from beside its place, slips out from far away, is refused where a peg is, and rests in a wrong seat
+    where it is put over one; each is said with its reading, and its picture is marked."""
+    page = walk.page
+    walk.take()
+    walk.search()
+    told = begin(walk)
+    right = f"{told['seats'][told['own']]['jaw_separation']:.3f} mm"
+    dragged(walk, 0.4, 0.0)
+    assert right in verdict(walk, "It comes home", "good")
+    pressed = page.locator('#seats .seat[aria-pressed="true"]')
+    assert pressed.get_attribute("data-seat") == str(told["own"])
+    dragged(walk, 0.0, -16.0)
+    assert re.search("slips out|wrong place|stop|stands? in", verdict(walk, "", "bad"))
+    page.click("#try-back")
+    page.fill("#try-x", "-12")
+    assert "in the part here" in verdict(walk, "in the part here", "bad")
+    assert page.locator("#drawing-fixture .peg.entered").count() >= 1
+    page.click("#try-close")
+    verdict(walk, "put the part elsewhere", "bad")
+    number = told["nearest"][0]
+    page.click(f'#seats .seat[data-seat="{number}"]')
+    seat = told["seats"][number]
+    assert f"{seat['jaw_separation']:.3f} mm" in verdict(walk, "", "bad")
+    page.fill("#try-opening", str(max(seat["difference"], 0.0) + 0.02))
+    page.click("#try-close")
+    words = verdict(walk, "wrong place", "bad")
+    assert f"{abs(seat['difference']):.3f} mm {'more' if seat['difference'] > 0 else 'less'} than" in words
+    page.click("#try")
+    page.wait_for_selector("#seating", state="hidden")
+    assert page.locator("#drawing-fixture .part.put").count() == 0
+    # Pegs without a radius have no seating: it is said why, and the part cannot be taken hold of.
+    page.fill("#peg-radius", "0")
+    page.press("#peg-radius", "Tab")
+    walk.searched()
+    page.click("#try")
+    assert "radius 0" in walk.seen("#seating-trouble").inner_text()
+    assert page.locator("#seating-answer").is_hidden()
+    assert page.locator("#drawing-fixture .part.put").count() == 0
+    # One start was refused, and these pegs.
+    walk.troubles = [line for line in walk.troubles if "400" not in line]
+
+
+def test_keys_and_fields_do_what_the_hand_does(browser: Any, server: RunningServer) -> None:
+    """On a phone, in inches, with motion: arrows move the part, comma turns it, Enter closes; who takes hold of it again
+    hangs up on what was asked; nothing of it keeps anybody out."""
+    context = browser.new_context(viewport={"width": 390, "height": 800}, reduced_motion="no-preference")
+    context.add_init_script(path=AXE)
+    walk = Walk(context.new_page(), server)
+    walk.open()
+    page = walk.page
+    walk.take()
+    page.click("#search")
+    walk.searched(shown=False)
+    walk.go("stage")
+    page.select_option("#unit", "inch")
+    begin(walk)
+    page.focus("#drawing-fixture .part")
+    for key in ("ArrowRight", "ArrowUp", ",", ","):
+        page.keyboard.press(key)
+    assert [float(page.input_value(f"#try-{name}")) for name in ("x", "y", "turn")] == [0.05, 0.05, 2]
+    assert page.evaluate("document.activeElement.classList.contains('part')")
+    page.evaluate(DEAF)
+    page.keyboard.press("Enter")
+    page.wait_for_function("window.heard")
+    assert not page.evaluate("window.heard.aborted")
+    dragged(walk, 0.2, 0.0)
+    assert page.evaluate("window.heard.aborted")
+    walk.seen("#try-words.good, #try-words.bad")
+    assert re.search(r"S = \d\.\d{4} in", page.inner_text("#try-words"))
+    assert page.evaluate(SERIOUS) == []
+    page.keyboard.press("Escape")
+    page.wait_for_selector("#seating", state="hidden")
+    context.close()
+    assert [line for line in walk.troubles if "400" not in line] == []
