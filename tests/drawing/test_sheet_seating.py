@@ -185,6 +185,6 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     least = float(steps[0].split("stroke = ")[1].split()[0])
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
     assert right - capture <= least < right - capture + 0.01
-    assert any(step.startswith("Tighten it. stroke = ") and "While less is read" in step for step in steps)
+    assert any(step.startswith("Tighten it. Right is stroke = ") and "While less is read" in step for step in steps)
     lower = next(seat for seat in told.seats if seat.difference > 0.1)
     assert words.difference(lower).endswith("less")

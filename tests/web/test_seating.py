@@ -65,6 +65,7 @@ def test_figures_and_sentences_are_the_programs(server: RunningServer, place: st
     off = [abs(answer["seats"][k]["difference"]) for k in answer["nearest"]]
     assert off == sorted(off) and len(off) == fields["wrong_seats"]
     assert answer["captions"][answer["own"]] == [f"S = {told.seats[answer['own']].jaw_separation:.3f} mm", "right"]
+    assert answer["done"] == "Opened"
     assert all(sentence.endswith(".") for sentence in (*answer["steps"], *answer["words"]))
     inches = server.client.get(f"{place}/seating", params={"unit": "inch"}).json()
     assert " in at most" in inches["steps"][0] and inches["capture_opening"] == answer["capture_opening"]
@@ -191,3 +192,23 @@ def test_a_closing_that_is_stopped_has_no_answer(result: Result, told: Seating) 
     assert answer is not None and answer["ending"] == "right"
     stopped.set()
     assert close(ClosingOrder(held, told, form), order) is None
+
+
+@pytest.mark.parametrize(
+    ("vise", "widest"),
+    [
+        ({**VISE, "max_opening": 60}, lambda row: 60 - row["jaw_separation"]),
+        (
+            {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "travel": [5, 40]},
+            lambda row: row["stroke"] - 5,
+        ),
+    ],
+    ids=["vise", "clamp"],
+)
+def test_it_is_told_how_far_what_moves_can_be_opened(server: RunningServer, vise: Any, widest: Any) -> None:
+    job = server.done(request(workpiece=WEDGE, vise=vise))
+    row = server.client.get(f"{job}/fixtures/1").json()
+    row["stroke"] = row["settings"][0]["length"]
+    answer = server.client.get(f"{job}/fixtures/1/seating").json()
+    assert 0.0 < answer["widest"] <= widest(row) + 1e-9
+    assert answer["widest"] == pytest.approx(widest(row)) or vise.get("kind")

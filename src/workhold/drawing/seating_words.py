@@ -141,7 +141,7 @@ class SeatingWords:
                 "from there it comes home."
             )
         steps.append(
-            f"{ways.close.capitalize()}. {right} is right. While {more} is read, the part is stuck short of its place: tap "
+            f"{ways.close.capitalize()}. Right is {right}. While {more} is read, the part is stuck short of its place: tap "
             "it home."
         )
         least = f"{told.sticking_friction:.2f}"

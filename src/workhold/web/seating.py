@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Annotated, Any, Literal
 
 from attrs import frozen
@@ -15,6 +16,8 @@ from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
+from workhold.presenting.data import finite
+from workhold.seating.pattern import Pattern
 from workhold.web.forms import LARGEST, Form, Number
 from workhold.web.worker import Order
 
@@ -73,14 +76,22 @@ def seating_answer(held: Held, told: Seating, unit: str) -> dict[str, Any]:
 
     ``own`` is the place of the fixture's own seat in ``seats``, ``nearest`` are the places of the wrong ones that the jaws
     open to, those that read most like it first; ``clamping`` is 1 where ``jaw_separation`` falls while the part is clamped,
-    -1 where it rises; ``captions`` are lines for each seat.
+    -1 where it rises; ``widest`` is how far in mm it can be opened beyond where it holds the part, and ``done`` that it is
+    opened, in a word; ``captions`` are lines for each seat.
     """
     words, seats = words_of(held, told, unit), list(told.seats)
+    travel = words.gauge.carrier.travel
+    assert travel is not None
+    # The farthest that it opens, counted as its separation is in ``seating.door``.
+    end = -travel.least if told.clamping < 0 else inf if travel.most is None else travel.most
+    widest = min(Pattern.of(held[0], held[2]).widest, end) - told.clamping * held[0].jaw_separation
     return {
         **told.as_fields(),
         "own": seats.index(words.own),
         "nearest": [seats.index(seat) for seat in words.wrong],
         "clamping": told.clamping,
+        "widest": finite(widest),
+        "done": words.gauge.ways.done,
         "captions": [caption(words, seat) for seat in seats],
         "steps": words.steps(held[1]),
         "words": words.wrong_words(),

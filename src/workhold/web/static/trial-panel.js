@@ -134,6 +134,7 @@ async function learn() {
     show(byId("seating-answer"), true);
     const list = (sentences) => sentences.map((sentence) => make("li", {}, sentence));
     byId("seating-steps").replaceChildren(...list(answer.steps));
+    byId("try-done").textContent = answer.done;
     byId("seating-words").textContent = answer.words.join(" ");
     writeSeats();
     if (!state.trial) return;
@@ -157,8 +158,9 @@ function say(words, kind = "") {
 }
 
 /** Put the part somewhere, the jaws open. @param {import("./trial.js").Trial} trial */
-function place(trial) {
+function place(wanted) {
   leave();
+  const trial = { ...wanted, opening: Math.min(wanted.opening, told()?.widest ?? Infinity) };
   change({ trial });
   const { part, selected } = state;
   const lying = lyingOf(part, selected, trial);
@@ -192,7 +194,7 @@ function tellEntered(lying, opening) {
   }
   const holes = pegs.map((k) => selected.holes[k]).join(" and ");
   if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
-  else say(`Open by ${length(opening, 2)}. Drag the part and let go, or close.`);
+  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}. Drag the part and let go.`);
 }
 
 /** Close the jaws from where the part is. */
