@@ -28,6 +28,8 @@ Progress = Callable[[float, int], None]
 
 # Degrees. Orientations of undecided entries that agree to this are the same.
 SAME_ORIENTATION = 1e-6
+# mm or degrees. Numbers of a seating that agree to this are the same.
+SAME_SEATING = 1e-6
 
 
 def verify(
@@ -125,9 +127,28 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
         yield from other_numbers("the proof", numbers_of(listing.proof), numbers_of(result.proof))
         yield from other_entries(listing.proof, result.proof)
     yield from other_numbers("the statistics", listing.statistics, result.statistics)
+    for fixture, match in matches:
+        claim = None if match is None else listing.fixtures[match].seating
+        if claim is not None and fixture.seating is not None:
+            other = first_other(claim.fields, fixture.seating.as_fields())
+            if other:
+                yield f"a search tells another {other} of the seating of fixture {(match or 0) + 1}"
+                break
     lacking = [note for note in result.notes if note not in listing.notes]
     if lacking:
         yield f'the note is missing that says "{lacking[0]}"'
+
+
+def first_other(written: Any, derived: Any, key: str = "") -> str:
+    """The key of the first value that is another one, as far as numbers are known; empty where all agree."""
+    if isinstance(derived, dict):
+        pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
+        return next((other for name, a, b in pairs if (other := first_other(a, b, name))), "")
+    if isinstance(derived, list) and isinstance(written, list) and len(written) == len(derived):
+        return next((other for a, b in zip(written, derived, strict=True) if (other := first_other(a, b, key))), "")
+    if isinstance(derived, float) and isinstance(written, float | int):
+        return "" if abs(written - derived) <= SAME_SEATING else key
+    return "" if written == derived else key
 
 
 def counted(number: int) -> str:

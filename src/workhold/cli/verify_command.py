@@ -96,7 +96,7 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
         return ["A search of the same query was compared with the file."]
     if asked:
         return ["The search was interrupted, so nothing was compared."]
-    points = not_shown(listing.query.toolkit)
+    points = not_shown(listing.query.toolkit, listing.query.seating is not None)
     return ["What a file alone cannot show, and --complete does:", *(f"  - {point}" for point in points)]
 
 

@@ -48,6 +48,8 @@ AGREES = 1e-5
 SHALLOW = 1e-3
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
+# Those that are listed all the same: nothing is known of their depth, or they are fixtures of a complete list.
+ALWAYS = ("fixture", "loose", "unsettled")
 KINDS = {2: "curved", 3: "curved", 4: "fixture"}
 
 
@@ -271,7 +273,7 @@ class Reading:
                 row = np.zeros(CANDIDATE_LENGTH)
                 row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = config
                 out.append(self.seat(row, "unsettled", mirrored, None, False))
-        kept = [seat for seat in out if seat.is_own or seat.kind in ("loose", "unsettled") or deep(seat)]
+        kept = [seat for seat in out if seat.kind in ALWAYS or deep(seat)]
         return tuple(sorted(kept, key=lambda seat: (seat.jaw_separation, seat.mirrored, seat.pose.theta_deg)))
 
     def seating(self, with_cage: bool) -> Seating:

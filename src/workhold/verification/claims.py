@@ -29,6 +29,11 @@ class Claim:
     fields: Mapping[str, Any]
     told: Seating
 
+    @property
+    def capture_opening(self) -> float | None:
+        """As told."""
+        return self.told.capture_opening
+
 
 def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
     """The claim that fields make of a fixture, counted from 1, in a pose.

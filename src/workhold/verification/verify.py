@@ -17,8 +17,10 @@ from workhold.verification.kinds import hardware_of
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.order import order_faults
 from workhold.verification.pair_account import seat_faults
+from workhold.verification.patterns import pattern_faults
 from workhold.verification.repeats import Seen
 from workhold.verification.restrictions import broken_restriction
+from workhold.verification.seating import SeatingJudge
 
 __all__ = ["Unproven", "Verification", "no_progress", "not_shown", "verify", "verify_file", "verify_listing"]
 
@@ -81,11 +83,13 @@ class Verification:
         return not self.refuted and not self.faults
 
 
-def not_shown(toolkit: Toolkit) -> Iterator[str]:
-    """What a result in a toolkit alone cannot show; answering its query again does."""
+def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
+    """What a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
     left_out = "seats" if toolkit.needs_pairs else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
     yield f"whether the query was wider: what is listed also meets one with {hardware_of(toolkit).wider_words}"
+    if is_seated:
+        yield "whether a fixture has further seats, or a lower pass, and how far its way out, cage, placing and depths go"
     yield from NOT_SHOWN
 
 
@@ -122,7 +126,7 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
     """Verify what a result claims."""
     query, everything = listing.query, listing.fixtures
-    judge = Judge(query)
+    judge, seating = Judge(query), SeatingJudge(query)
     seen = Seen.of(query.workpiece, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
@@ -132,7 +136,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         bits = max(bits, ruling.bits)
         if verdict != "refuted":
             broken = broken_restriction(fixture, query, judge.hardware)
-            broken = broken or figure_missing(fixture, query.loads)
+            broken = broken or figure_missing(fixture, query.loads) or seating.fault(fixture)
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
@@ -145,6 +149,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     ]
     tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
     faults = [*listing.faults, *account_faults(listing), *order_faults(everything, query, judge.hardware)]
+    faults += pattern_faults(everything, query)
     faults += seat_faults(listing, {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"})
     if not tally["refuted"]:
         faults += distinct_faults(listing, seen)

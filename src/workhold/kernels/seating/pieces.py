@@ -12,6 +12,8 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 
 Array = NDArray[np.float64]
+# mm. Two pieces are as near when their distances agree to this: they end in one point.
+SAME_END = 1e-9
 Foot = tuple[float, float, float, float, float, float]
 
 
@@ -88,16 +90,20 @@ def distance_to(row: Array, x: float, y: float) -> float:
 
 @inner
 def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
-    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part."""
+    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part.
+
+    Where the nearest point is an inner corner, in which two pieces end, the centre is in the part, though it may lie on the
+    outer side of one of them; so of two as near the one that says so counts.
+    """
     best = inf
     for k in range(first, end):
         row = rows[k]
         # What cannot be nearer: its carrier is not.
         dx, dy = x - row[X], y - row[Y]
         off = dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else hypot(dx, dy) - row[RADIUS]
-        if abs(off) < abs(best):
+        if abs(off) < abs(best) + SAME_END:
             d = distance_to(row, x, y)
-            if abs(d) < abs(best):
+            if abs(d) < abs(best) - SAME_END or (abs(d) < abs(best) + SAME_END and d < 0.0):
                 best = d
     return best
 

@@ -1,0 +1,214 @@
+"""What a file tells of seating is derived again: what is so holds, and any number or word that is off is refuted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import attrs
+import pytest
+
+import workhold
+from workhold import Plate, Result, Vise, Workpiece
+from workhold.completeness import first_other
+from workhold.verification.listing import Listing, read_listing
+from workhold.verification.order import order_faults
+from workhold.verification.patterns import pattern_faults
+from workhold.verification.seating import SeatingJudge
+from workhold.verification.verify import not_shown
+
+WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
+# With an arc, an inner corner and loose rest.
+NOTCH = Workpiece.from_loops("notch", [[[0, 0, 0], [60, 0, 0], [60, 25, 0.3], [35, 30, 0], [35, 45, 0], [0, 45, 0]]])
+VISE = Vise(pitch=20, columns=2, peg_radius=3)
+Fields = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    """Some fixtures with the seating of the first."""
+    return workhold.design(WEDGE, VISE, seating=4, best=4)
+
+
+@pytest.fixture(scope="module")
+def judge(result: Result) -> SeatingJudge:
+    """What knows the wedge and its vise."""
+    return SeatingJudge(result.query)
+
+
+def written(result: Result, path: Path) -> Listing:
+    """A result as its file is read."""
+    workhold.save(result, path)
+    return read_listing(path)
+
+
+@pytest.fixture(scope="module")
+def listing(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Listing:
+    """The same as it is read from a file."""
+    return written(result, tmp_path_factory.mktemp("seating") / "r.json")
+
+
+def fault(listing: Listing, judge: SeatingJudge, change: Callable[[Fields], Any], index: int = 0) -> str:
+    """What is wrong with the seating of a fixture after a change of its fields."""
+    fixture = listing.fixtures[index]
+    fields = deepcopy(dict(fixture.seating.fields))
+    change(fields)
+    claim = attrs.evolve(fixture.seating, fields=fields, told=told(fields, fixture))
+    return judge.fault(attrs.evolve(fixture, seating=claim))
+
+
+def told(fields: Fields, fixture: Any) -> Any:
+    """The seating of fields."""
+    return type(fixture.seating.told).of_fields(fields, fixture.pose)
+
+
+@pytest.mark.parametrize("form", ["json", "npz"])
+@pytest.mark.parametrize(
+    ("part", "toolkit"),
+    [(WEDGE, VISE), (NOTCH, Vise(15, 2, 2)), (WEDGE, Plate(pitch=20, peg_radius=3, columns=6, rows=6))],
+    ids=["wedge", "notch", "plate"],
+)
+def test_what_is_so_holds(part: Workpiece, toolkit: Any, form: str, tmp_path: Path) -> None:
+    made = solved(part, toolkit)
+    assert len(made.seating) == 2
+    workhold.save(made, tmp_path / f"r.{form}")
+    outcome = workhold.verify(tmp_path / f"r.{form}")
+    assert outcome.holds and outcome.proven == 2, (outcome.faults, outcome.unproven)
+
+
+def solved(part: Workpiece, toolkit: Any, known: dict[int, Result] = {}) -> Result:  # noqa: B006
+    """Two fixtures with seating, made once."""
+    if id(toolkit) not in known:
+        known[id(toolkit)] = workhold.design(part, toolkit, seating=2, best=2)
+    return known[id(toolkit)]
+
+
+def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:
+    """All numbers and words of fields, and where they are."""
+    if isinstance(value, dict | list):
+        for key, one in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from leaves(one, (*place, key))
+    else:
+        yield place, value
+
+
+# What a file alone shows within bounds only: how far something goes.
+BOUNDED = ("way_out", "cage", "placing", "depth")
+
+
+def test_every_number_that_is_off_a_little_is_refuted(listing: Listing, judge: SeatingJudge) -> None:
+    fields = listing.fixtures[0].seating.fields
+    assert judge.fault(listing.fixtures[0]) == ""
+    missed = []
+    for place, value in leaves(fields):
+        if place[0] in BOUNDED or place[-1] in BOUNDED or isinstance(value, str):
+            continue
+        other = {bool: lambda v: not v, int: lambda v: (v + 1) % 4, type(None): lambda v: 1.0}.get(
+            type(value), lambda v: v + 1e-3
+        )(value)
+
+        def change(edited: Fields, place: tuple[Any, ...] = place, other: Any = other) -> None:
+            for key in place[:-1]:
+                edited = edited[key]
+            edited[place[-1]] = other
+
+        if not fault(listing, judge, change):
+            missed.append((place, value))
+    assert not missed
+
+
+def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge: SeatingJudge) -> None:
+    fields = listing.fixtures[0].seating.fields
+    own = next(k for k, seat in enumerate(listing.fixtures[0].seating.told.seats) if seat.is_own)
+    other = next(k for k, seat in enumerate(fields["seats"]) if k != own and seat["kind"] == "fixture")
+    opening = fields["capture_opening"]
+    for change, words in (
+        (lambda f: f["seats"].pop(own), "it tells 0 seats in the fixture's own pose"),
+        (lambda f: f["seats"].append(f["seats"][own]), "2 seats"),
+        (lambda f: f["seats"][other].update(kind="corner"), "is called corner"),
+        (lambda f: f["seats"][other].update(kind="unsettled"), "is unsettled, and unsettled does not say so"),
+        (lambda f: f["seats"][other]["contacts"].pop(), "is called fixture"),
+        (lambda f: f["seats"].pop(other), "wrong_seats says"),
+        (lambda f: f.update(capture_opening=None, drop_room=None, way_out=None), "a pass without"),
+        (lambda f: f.update({"pass": None}), "a capture opening without a pass"),
+        (lambda f: f["pass"]["contacts"].append(f["pass"]["contacts"][0]), "pass"),
+        (lambda f: f.update(way_out=opening - 0.01), "way out is nearer"),
+        (lambda f: f.update(placing=f["placing"] + 50.0), "placing is farther"),
+        (lambda f: f["cage"].update(x=[0.1, 0.2]), "cage leaves out"),
+        (lambda f: f["seats"].reverse(), "order"),
+    ):
+        assert words in fault(listing, judge, change), words
+
+
+def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> None:
+    """A seat left out with all counts adjusted is seen where the list has that fixture."""
+    result = workhold.design(WEDGE, VISE, types="I", seating=1)
+    listing = written(result, tmp_path / "r.json")
+    assert not list(pattern_faults(listing.fixtures, listing.query))
+    first = listing.fixtures[0]
+    fields = deepcopy(dict(first.seating.fields))
+    alike = [seat for seat in fields["seats"] if seat["kind"] == "fixture" and not seat["mirrored"]]
+    assert len(alike) > 2
+    found = 0
+    for seat in alike:
+        cut = fields | {"seats": [one for one in fields["seats"] if one is not seat]}
+        claim = attrs.evolve(first.seating, fields=cut)
+        changed = [attrs.evolve(first, seating=claim), *listing.fixtures[1:]]
+        found += bool(list(pattern_faults(changed, listing.query)))
+    assert found > 1
+
+
+def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
+    """Two fixtures with different warnings exchanged, and one told only behind others."""
+    fixtures = list(listing.fixtures)
+    hardly = attrs.evolve(fixtures[0].seating.told, capture_opening=0.5)
+    worse = attrs.evolve(fixtures[0], seating=attrs.evolve(fixtures[0].seating, told=hardly))
+    assert "is better than" in next(order_faults([worse, *fixtures[1:]], listing.query, listing.hardware))
+    untold = [attrs.evolve(fixtures[0], seating=None), *fixtures[1:]]
+    assert "not that of all before it" in next(order_faults(untold, listing.query, listing.hardware))
+
+
+def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_path: Path) -> None:
+    path = tmp_path / "r.json"
+    workhold.save(result, path)
+    assert workhold.verify(path, complete=True).holds
+    text = path.read_text()
+    fields = result.seating[1].as_fields()
+    path.write_text(text.replace(f'"way_out": {fields["way_out"]}', f'"way_out": {fields["way_out"] + 0.5}', 1))
+    assert path.read_text() != text and workhold.verify(path).holds
+    outcome = workhold.verify(path, complete=True)
+    assert any("another way_out of the seating" in words for words in outcome.faults)
+    assert any("lower pass" in words for words in not_shown(VISE, True))
+    assert not any("lower pass" in words for words in not_shown(VISE))
+
+
+def test_the_first_other_key_is_told() -> None:
+    one: Fields = {"a": 1.0, "b": [{"c": 2.0, "d": None}], "e": "word"}
+    assert first_other(one, one) == ""
+    assert first_other(one, one | {"a": 1.0 + 1e-5}) == "a"
+    assert first_other(one | {"b": [{"c": 2.0, "d": 3.0}]}, one) == "b"
+    assert first_other(one | {"b": []}, one) == "b"
+    assert first_other(one | {"e": "other"}, one) == "e"
+
+
+def test_rules_and_counts_of_the_first_must_agree(result: Result, tmp_path: Path) -> None:
+    """Of a file whose rules none of its fixtures keeps, or that tells of fewer than were asked."""
+    path = tmp_path / "r.json"
+    workhold.save(result, path)
+    text = path.read_text()
+    for count, words in (
+        (3, "the seating of more fixtures is told than of the 3"),
+        (2, "the seating of more fixtures is told than of the 2"),
+    ):
+        path.write_text(text.replace('"seating": 4,', f'"seating": {count},', 1))
+        assert any(words in fault for fault in workhold.verify(path).faults)
+    fewer = attrs.evolve(result, seating=result.seating[:3])
+    workhold.save(fewer, path)
+    assert any("asked for, but it is told of 3" in fault for fault in workhold.verify(path).faults)
+    ruled = attrs.evolve(fewer, query=attrs.evolve(result.query, foolproof=True))
+    workhold.save(ruled, path)
+    faults = workhold.verify(path).faults
+    assert any("are listed for their seating, but it is told of 3" in fault for fault in faults)
+    assert any("the note is missing" in fault for fault in faults)
