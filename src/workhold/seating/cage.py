@@ -40,6 +40,7 @@ class Surroundings:
     ----------
     closing : the jaws about the part.
     seat : (4,) configuration.
+    seats : (M, 4) configurations of all seats.
     opening : in mm, a hair less than to the pass.
     way : (3,) from the seat to the pass, which belongs to the cage's edge.
     arm : R, largest distance in mm of a point of the silhouette from the centre of its box.
@@ -47,6 +48,7 @@ class Surroundings:
 
     closing: Closing
     seat: Array
+    seats: Array
     opening: float
     way: Array
     arm: float
@@ -61,7 +63,7 @@ class Surroundings:
 
     def come_home(self, configs: Array) -> NDArray[np.bool_]:
         """Whether closing the jaws from configurations (N, 4) ends in the seat."""
-        ended, how = self.closing.run(configs, FIRST_STEP)
+        ended, how = self.closing.run(configs, FIRST_STEP, self.seats)
         near = distances(ended, self.seat, self.closing.size) < AT_SEAT
         return np.asarray(near & (how == AT_REST) & (np.abs(ended[:, 3] - self.seat[3]) < SAME_LEVEL))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
 from workhold.kernels.seating.leaving import leaves
-from workhold.seating.locus import Locus
+from workhold.seating.locus import PAST_POCKET, Locus
 from workhold.seating.pattern import Pattern
 
 __all__ = ["Closing"]
@@ -19,9 +21,10 @@ Array = NDArray[np.float64]
 LONGEST_STEP = 0.35
 # Directions in which a part may be taken away.
 DIRECTIONS = 48
+NO_SEATS = np.zeros((0, 4))
 
 
-@define(frozen=True, eq=False)
+@define(frozen=True, eq=False, slots=False)
 class Closing:
     """The jaws of a pattern about a part.
 
@@ -35,20 +38,23 @@ class Closing:
     pattern: Pattern
     size: float
 
-    @property
+    @cached_property
     def obstacles(self) -> Obstacles:
         """What kernels are given."""
-        pattern = self.pattern
-        rows = np.array(self.locus.rows)
-        pegs = np.array(pattern.pegs), pattern.right, self.locus.parts
-        return Obstacles(rows, self.locus.spans, *pegs, self.size, pattern.end(2.0 * self.size))
+        locus, pattern = self.locus, self.pattern
+        pieces = np.array(locus.rows), locus.spans, locus.discs + np.array([0.0, 0.0, PAST_POCKET])
+        pegs = np.array(pattern.pegs), pattern.right, locus.parts
+        return Obstacles(*pieces, *pegs, self.size, pattern.end(2.0 * self.size))
 
-    def run(self, configs: Array, first: float, stop: float | None = None) -> tuple[Array, NDArray[np.int8]]:
+    def run(
+        self, configs: Array, first: float, seats: Array = NO_SEATS, stop: float | None = None
+    ) -> tuple[Array, NDArray[np.int8]]:
         """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
 
         Parameters
         ----------
         first : how long the first steps are, in mm.
+        seats : (M, 4) configurations at which closing is known to end.
         stop : S in mm at which the jaws are stopped; where the pattern ends if None.
         """
         obstacles = self.obstacles
@@ -57,8 +63,8 @@ class Closing:
         out = np.array(configs, dtype=np.float64)
         ends = np.zeros(len(out), np.int8)
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
-        work = WorkSpace(np.empty((64, 5)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
-        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, work, ends)
+        work = WorkSpace(np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
+        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, np.array(seats), work, ends)
         return out, ends
 
     def escapes(self, config: Array) -> bool:

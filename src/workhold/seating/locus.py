@@ -29,7 +29,7 @@ from workhold.model.workpiece import Workpiece
 if TYPE_CHECKING:
     from workhold.seating.common_normals import CommonNormal
 
-__all__ = ["Locus", "Touch", "all_contained", "contains"]
+__all__ = ["PAST_POCKET", "Locus", "Touch", "all_contained", "contains"]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.

@@ -89,7 +89,7 @@ def play(
     into = entered(solver, fixture, pattern, start, turned_over)
     # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they stood.
     first = max(FIRST_STEP, into / STEPS_DEEP)
-    configs, how = closing.run(start[None], first, start[3])
+    configs, how = closing.run(start[None], first, stop=start[3])
     if how[0] == GAVE_UP:
         raise InputError("a peg stands in the part there, and there is no room beside it: put the part elsewhere.")
     way = follow(closing, configs[0], is_cancelled)
@@ -172,7 +172,7 @@ def go_down(closing: Closing, way: list[Array], level: float, halvings: int) -> 
     before = way[-1]
     if level >= before[3]:
         return
-    after = closing.run(before[None], FIRST_STEP, level)[0][0]
+    after = closing.run(before[None], FIRST_STEP, stop=level)[0][0]
     if halvings and len(way) < MOST and distances(after[None], before, closing.size)[0] > FAR * closing.size:
         go_down(closing, way, (before[3] + float(after[3])) / 2.0, halvings - 1)
         go_down(closing, way, level, halvings - 1)

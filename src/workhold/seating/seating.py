@@ -322,7 +322,8 @@ class Reading:
         opening = (top[3] - seat[3]) * (1.0 - LESS)
         way = top[:3] - seat[:3]
         way[0] = (way[0] + pi) % tau - pi
-        around = Surroundings(closing, np.array(seat), opening, way, self.solver.outline.arm)
+        seats = np.ascontiguousarray(self.trees[0].seats[:, CONFIG])
+        around = Surroundings(closing, np.array(seat), seats, opening, way, self.solver.outline.arm)
         turns, across, along = around.cage
         corners = self.pattern.door.turned(np.array(list(product(across, along))), back=True)
         x, y = ((float(ends.min()), float(ends.max())) for ends in corners.T)

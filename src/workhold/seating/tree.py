@@ -18,7 +18,7 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
-from workhold.kernels.seating.columns import MOTION, PLACE_X, PLACE_Y, SEPARATION, THETA
+from workhold.kernels.seating.columns import MOTION, PLACE_X, PLACE_Y, SECOND, SEPARATION, THETA
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.families import Family
@@ -27,8 +27,10 @@ __all__ = ["OUTSIDE", "STOP", "Join", "Tree"]
 
 Array = NDArray[np.float64]
 OUTSIDE, STOP = -1, -2
-# mm. How far from a pass a way down begins, and how long its first steps are.
+# mm. How far from a pass a way down begins, and how long its first steps are; how near it begins at least, and by which
+# part of its way the motion may have bent there.
 BESIDE, FIRST_STEP = 0.01, 0.005
+SHORTEST, MOST_BEND = 1e-5, 0.1
 # mm. A way down that ends this near to a seat, with a separation this near, ended in it.
 AT_SEAT, SAME_LEVEL = 0.05, 1e-3
 # mm. What ends lower than a loose set by this much fell off it.
@@ -76,10 +78,14 @@ class Tree:
         """Follow the ways down of all passes and the ends of all loose sets."""
         builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful])
         slack, joins = list[Family](), list[tuple[Array, Array]]()
+        seats = np.ascontiguousarray(found.seats[:, CONFIG])
+        # A flat face may lead on from a curved seat.
+        on_flats = [any(family.holds(seat, closing.size) for family in found.loose) for seat in seats]
+        seats = seats[~np.array(on_flats, np.bool_)]
         for family in found.loose:
             starts = ends_of(family, closing.size)
             low = family.middle[3] - FALLS
-            falling = closing.run(starts, FIRST_STEP)[0][:, 3] < low
+            falling = closing.run(starts, FIRST_STEP, seats)[0][:, 3] < low
             if not falling.any():
                 builder.loose.append(family)
                 continue
@@ -90,14 +96,17 @@ class Tree:
                 builder.falling.append((family, starts[int(np.argmax(falling))]))
             if falling.sum() == 2:
                 joins.append((family.candidate, starts))
+        beside = [BESIDE] * len(joins)
         for row in found.passes:
-            motion = row[MOTION : MOTION + 3]
-            scale = BESIDE / (abs(motion[0]) * closing.size + np.hypot(*motion[1:]))
-            step = np.append(scale * motion, 0.0)
+            step, length = step_off(row, closing.size)
             joins.append((row, row[CONFIG] + np.stack([step, -step])))
-        starts = np.concatenate([np.zeros((0, 4)), *(start for _, start in joins)])
-        configs, how = closing.run(starts, FIRST_STEP)
-        places = [builder.place(config, end) for config, end in zip(configs, how, strict=True)]
+            beside.append(length)
+        configs, how = np.zeros((2 * len(joins), 4)), np.zeros(2 * len(joins), np.int8)
+        starts = np.array([start for _, start in joins]).reshape(-1, 4)
+        for length in set(beside):
+            chosen = np.repeat(np.array(beside) == length, 2)
+            configs[chosen], how[chosen] = closing.run(starts[chosen], length / 2.0, seats)
+        places = [builder.place(config, end) for config, end in zip(configs, how.tolist(), strict=True)]
         made = [
             Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, (row, _) in enumerate(joins)
         ]
@@ -123,6 +132,17 @@ class Tree:
             if root(place) == root(OUTSIDE):
                 return join.separation
         return None
+
+
+def step_off(row: Array, size: float) -> tuple[Array, float]:
+    """The step (4,) along a pass's free motion at which a way down begins, and its length in mm: shorter where the motion
+    bends so much that it would lie elsewhere."""
+    motion, second = row[MOTION : MOTION + 3], abs(float(row[SECOND]))
+    speed = float(abs(motion[0]) * size + np.hypot(*motion[1:]))
+    length = BESIDE
+    if second * BESIDE > 2.0 * MOST_BEND * speed * speed:
+        length = max(2.0 * MOST_BEND * speed * speed / second, SHORTEST)
+    return np.append(length / speed * motion, 0.0), length
 
 
 def ends_of(family: Family, size: float) -> Array:
@@ -165,20 +185,20 @@ class Builder:
         if how == AT_THE_STOP:
             return OUTSIDE if self.closing.escapes(config) else STOP
         size = self.closing.size
-        if how == AT_REST and len(self.seats):
-            away = distances(self.seats[:, CONFIG], config, size)
-            near = int(np.argmin(away))
-            if away[near] < AT_SEAT and abs(self.seats[near, SEPARATION] - config[3]) < SAME_LEVEL:
-                return near
-        for k, family in enumerate(self.loose):
-            if how == AT_REST and family.holds(config, size):
-                return len(self.seats) + k
         for family, beyond in self.falling:
             # On flat faces no step leads down; the way goes on where the part slides off them.
             if how == AT_REST and family.holds(config, size):
                 configs, ends = self.closing.run(beyond[None], FIRST_STEP)
                 if configs[0, 3] < family.middle[3] - FALLS:
-                    return self.place(configs[0], ends[0])
+                    return self.place(configs[0], int(ends[0]))
+        for k, family in enumerate(self.loose):
+            if how == AT_REST and family.holds(config, size):
+                return len(self.seats) + k
+        if how == AT_REST and len(self.seats):
+            away = distances(self.seats[:, CONFIG], config, size)
+            near = int(np.argmin(away))
+            if away[near] < AT_SEAT and abs(self.seats[near, SEPARATION] - config[3]) < SAME_LEVEL:
+                return near
         before = len(self.seats) + len(self.loose)
         if self.doubtful:
             away = distances(np.array(self.doubtful), config, size)

@@ -2,13 +2,13 @@
 
 At a configuration (theta, x, y, S) the clearances of pegs from pieces nearby are linearized. The step that lowers S
 most within a box is a linear program of four unknowns; what it enters to second order is undone by the shortest way
-out. The box grows and shrinks as steps prove good. So the configuration stays free, S only falls, and the way has no
-gap wider than a step.
+out. The box grows and shrinks as steps prove good. Where one peg of each jaw touches, the step is one of Newton
+(``squeezing``). So the configuration stays free, S only falls, and the way has no gap wider than a step.
 """
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, pi, sin, sqrt
+from math import cos, floor, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
 from workhold.kernels.seating.pieces import angle_from_middle
+from workhold.kernels.seating.squeezing import squeeze
 
 Array = NDArray[np.float64]
 
@@ -25,12 +26,14 @@ GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
 # mm. Shorter steps move nothing; pegs this deep in the part are in it; smaller gains are none.
 LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
+# mm. Configurations as near to a seat as this, in place and in separation, go there.
+SAME_PLACE, SAME_LEVEL = 1e-4, 1e-6
 
 
 @inner
 def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) -> int:
     """Write the clearances of pegs from pieces within a reach, after their gradients over (theta size, x, y, S) in mm
-    per mm; return how many."""
+    per mm and before peg and piece; return how many."""
     count = 0
     cosine, sine = cos(config[0]), sin(config[0])
     for peg in range(4):
@@ -39,6 +42,9 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
         x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
         side = obstacles.right[peg]
         for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
+            gx, gy, far = x - obstacles.discs[k, 0], y - obstacles.discs[k, 1], obstacles.discs[k, 2] + reach
+            if gx * gx + gy * gy > far * far:
+                continue
             row = obstacles.rows[k]
             dx, dy = x - row[X], y - row[Y]
             if row[IS_ARC] == 0.0:
@@ -58,6 +64,7 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
             vx, vy = cosine * nx - sine * ny, sine * nx + cosine * ny
             near[count, 0] = (nx * y - ny * x) / obstacles.size
             near[count, 1], near[count, 2], near[count, 3], near[count, 4] = -vx, -vy, vx * moving, off
+            near[count, 5], near[count, 6] = peg, k
             count += 1
     return count
 
@@ -196,16 +203,36 @@ def best_step(count: int, trust: float, work: WorkSpace) -> float:
 
 
 @inner
-def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, work: WorkSpace) -> int:
+def is_in_one_of(config: Array, seats: Array, size: float) -> bool:
+    """Whether a configuration is as good as that of a seat."""
+    for k in range(seats.shape[0]):
+        if abs(config[3] - seats[k, 3]) < SAME_LEVEL:
+            away = abs(config[1] - seats[k, 1]) + abs(config[2] - seats[k, 2])
+            turn = config[0] - seats[k, 0]
+            if away + abs(turn - 2.0 * pi * floor(turn / (2.0 * pi) + 0.5)) * size < SAME_PLACE:
+                return True
+    return False
+
+
+@inner
+def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, seats: Array, work: WorkSpace) -> int:
     """Close the jaws from a configuration, in place; how it ended."""
-    trial = work.trial
+    trial, longest = work.trial, trust
     if not push_out(config, obstacles, 8.0 * trust + 1e-6, work):
         return GAVE_UP
     for _ in range(MOST_STEPS):
         if config[3] <= obstacles.stop + 1e-9:
             config[3] = obstacles.stop
             return AT_THE_STOP
+        if is_in_one_of(config, seats, obstacles.size):
+            return AT_REST
         count = look_around(config, obstacles, 6.0 * trust, work.near)
+        length = squeeze(config, count, longest, most, obstacles, work)
+        if length > 0.0:
+            longest = min(2.0 * length, most)
+            for j in range(4):
+                config[j] = trial[j]
+            continue
         gain = best_step(count, trust, work)
         good = gain >= LEAST_GAIN
         if good:
@@ -215,7 +242,8 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, wo
             trial[3] = max(trial[3], obstacles.stop)
             good = push_out(trial, obstacles, 6.0 * trust + 1e-6, work) and trial[3] < config[3] - 0.1 * gain
         if not good:
-            trust *= 0.4
+            # Where no step leads down, no shorter one does: that is only seen again, against rounding.
+            trust *= 0.4 if gain >= LEAST_GAIN else 0.01
             if trust < LEAST_STEP:
                 return AT_REST
             continue
@@ -228,14 +256,21 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, wo
 
 @compiled
 def close_jaws(
-    configs: Array, first: float, most: float, obstacles: Obstacles, work: WorkSpace, ends: NDArray[np.int8]
+    configs: Array,
+    first: float,
+    most: float,
+    obstacles: Obstacles,
+    seats: Array,
+    work: WorkSpace,
+    ends: NDArray[np.int8],
 ) -> None:
     """Close the jaws from configurations (N, 4) of theta, x, y and S, in place, until nothing moves or the stop is met.
 
     Parameters
     ----------
     first, most : how long the first steps are, and all, in mm.
+    seats : (M, 4) configurations at which closing ends, known beforehand.
     ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
     """
     for k in range(configs.shape[0]):
-        ends[k] = close_one(configs[k], first, most, obstacles, work)
+        ends[k] = close_one(configs[k], first, most, obstacles, seats, work)

@@ -63,6 +63,7 @@ class Obstacles(NamedTuple):
     ----------
     rows : (N, 10) pieces.
     spans : (N, 2) lowest and highest parameter at which each counts: past a pocket it counts a little further.
+    discs : (N, 3) in which they lie, as far as they count: middle and radius in mm.
     pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
     stop : the smallest jaw separation, in mm.
@@ -70,6 +71,7 @@ class Obstacles(NamedTuple):
 
     rows: NDArray[np.float64]
     spans: NDArray[np.float64]
+    discs: NDArray[np.float64]
     pegs: NDArray[np.float64]
     right: NDArray[np.int64]
     parts: NDArray[np.int64]
@@ -82,7 +84,7 @@ class WorkSpace(NamedTuple):
 
     Parameters
     ----------
-    near : (64, 5) gradients and clearances of what is near.
+    near : (64, 7) gradients, clearance, peg and piece of what is near.
     basis, triangle : (5, 4) and (5, 6).
     step, way, trial : (4,).
     members : (8,).

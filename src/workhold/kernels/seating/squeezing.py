@@ -1,0 +1,183 @@
+"""A part that two pegs squeeze, one of each jaw: a step along both pieces on which their distance d on the part falls.
+
+With both pegs at fixed heights the separation grows with d alone, whose slopes and curvatures along the pieces are known in
+closed form: with t the tangents and u the unit vector from one place to the other, d' = -u . t and u . t; d'' is
+(1 - (u . t)^2) / d, with the pieces' own bends, and across it -(t . t - (u . t) (u . t)) / d. A Newton step, its curvatures
+taken as above 0 (P. E. Gill and W. Murray, Mathematical Programming 7, 1974), leads along narrow valleys in which linear
+programs go to and fro.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan2, cos, floor, hypot, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.pieces import angle_from_middle, clearance
+
+Array = NDArray[np.float64]
+
+# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by the last.
+TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
+# 1 / mm. Curvatures below this are counted as this.
+FLATTEST = 1e-9
+# How often a step is halved, at how many places it is looked at, and how much farther than both contacts the part may move.
+HALVINGS, PARTS, FARTHER = 4, 3, 3.0
+
+
+@inner
+def seen(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
+    """Place of a peg on the part."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
+    y = obstacles.pegs[peg, 1] - config[2]
+    return (cosine * x + sine * y, cosine * y - sine * x)
+
+
+@inner
+def tangent_at(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Unit tangent of a piece, counter-clockwise on an arc."""
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_X], row[AXIS_Y])
+    return (-(y - row[Y]) / row[RADIUS], (x - row[X]) / row[RADIUS])
+
+
+@inner
+def bend_at(row: Array, x: float, y: float, ux: float, uy: float) -> float:
+    """Second derivative of the place along a piece, times u, in 1 / mm."""
+    if row[IS_ARC] == 0.0:
+        return 0.0
+    return -(ux * (x - row[X]) + uy * (y - row[Y])) / (row[RADIUS] * row[RADIUS])
+
+
+@inner
+def moved_along(row: Array, x: float, y: float, s: float) -> tuple[float, float]:
+    """The place s mm further along a piece's carrier."""
+    if row[IS_ARC] == 0.0:
+        return (x + s * row[AXIS_X], y + s * row[AXIS_Y])
+    dx, dy = x - row[X], y - row[Y]
+    c, d = cos(s / row[RADIUS]), sin(s / row[RADIUS])
+    return (row[X] + c * dx - d * dy, row[Y] + c * dy + d * dx)
+
+
+@inner
+def is_within(row: Array, low: float, high: float, x: float, y: float) -> bool:
+    """Whether a place of a piece's carrier has a parameter between two."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        return low <= dx * row[AXIS_X] + dy * row[AXIS_Y] <= high
+    return row[HALF_EXTENT] >= pi or low <= angle_from_middle(row, dx, dy) <= high
+
+
+@inner
+def is_free(config: Array, obstacles: Obstacles) -> bool:
+    """Whether no peg is in the part."""
+    for peg in range(4):
+        x, y = seen(config, obstacles, peg)
+        side = obstacles.right[peg]
+        if clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1]) < -ENTERED:
+            return False
+    return True
+
+
+@inner
+def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: float) -> tuple[float, float]:
+    """The step down of slopes g and curvatures h, each counted as above 0, no longer than ``most``."""
+    mean, half = (haa + hbb) / 2.0, hypot((haa - hbb) / 2.0, hab)
+    ca, cb = 1.0, 0.0
+    if half > 0.0:
+        # The eigenvector of mean + half, from the column that is not nearly none.
+        ca, cb = (half + (haa - hbb) / 2.0, hab) if haa >= hbb else (hab, half + (hbb - haa) / 2.0)
+        size = hypot(ca, cb)
+        ca, cb = ca / size, cb / size
+    one = -(ca * ga + cb * gb) / max(abs(mean + half), FLATTEST)
+    two = -(ca * gb - cb * ga) / max(abs(mean - half), FLATTEST)
+    scale = min(1.0, most / max(hypot(one, two), SHORTEST))
+    return (scale * (ca * one - cb * two), scale * (cb * one + ca * two))
+
+
+@inner
+def squeezed(
+    config: Array, p: int, q: int, x: float, y: float, v: float, w: float, obstacles: Obstacles, trial: Array
+) -> bool:
+    """Write the configuration in which pegs p and q stand at two places of the part; whether it is free and near enough."""
+    run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
+    d = hypot(v - x, w - y)
+    if d <= abs(rise):
+        return False
+    omega = asin(rise / d)
+    theta = omega - atan2(w - y, v - x)
+    theta += 2.0 * pi * floor((config[0] - theta) / (2.0 * pi) + 0.5)
+    cosine, sine = cos(theta), sin(theta)
+    trial[0], trial[3] = theta, d * cos(omega) - run
+    trial[1] = obstacles.pegs[p, 0] - (cosine * x - sine * y)
+    trial[2] = obstacles.pegs[p, 1] - (sine * x + cosine * y)
+    return trial[3] > obstacles.stop and is_free(trial, obstacles)
+
+
+@inner
+def squeeze(config: Array, count: int, longest: float, most: float, obstacles: Obstacles, work: WorkSpace) -> float:
+    """Write a configuration further down to ``trial`` where one peg of each jaw touches one piece; how long the way of both
+    contacts is, 0 where there is none.
+
+    Parameters
+    ----------
+    count : how many clearances ``near`` has.
+    longest, most : how far both contacts may go together, and the part by some more, in mm.
+    """
+    near, trial = work.near, work.trial
+    one, two = -1, -1
+    for i in range(count):
+        if near[i, 4] < TOUCHES:
+            if obstacles.right[int(near[i, 5])] == 1:
+                if two >= 0:
+                    return 0.0
+                two = i
+            elif one >= 0:
+                return 0.0
+            else:
+                one = i
+    if one < 0 or two < 0:
+        return 0.0
+    p, q, a_number, b_number = int(near[one, 5]), int(near[two, 5]), int(near[one, 6]), int(near[two, 6])
+    if obstacles.pegs[q, 0] + config[3] <= obstacles.pegs[p, 0]:
+        # The peg that moves pushes outward.
+        return 0.0
+    a, b = obstacles.rows[a_number], obstacles.rows[b_number]
+    ax, ay = seen(config, obstacles, p)
+    bx, by = seen(config, obstacles, q)
+    d = hypot(bx - ax, by - ay)
+    ux, uy = (bx - ax) / d, (by - ay) / d
+    sx, sy = tangent_at(a, ax, ay)
+    tx, ty = tangent_at(b, bx, by)
+    us, ut = ux * sx + uy * sy, ux * tx + uy * ty
+    haa, hbb = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy), (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
+    along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
+    for _ in range(HALVINGS):
+        length = hypot(along_a, along_b)
+        if length <= SHORTEST:
+            return 0.0
+        level, good = config[3], True
+        # No ridge lies between: the way falls, and is free, also before its end.
+        for part in range(1, PARTS + 1):
+            x, y = moved_along(a, ax, ay, along_a * part / PARTS)
+            v, w = moved_along(b, bx, by, along_b * part / PARTS)
+            good = (
+                good
+                and is_within(a, obstacles.spans[a_number, 0], obstacles.spans[a_number, 1], x, y)
+                and is_within(b, obstacles.spans[b_number, 0], obstacles.spans[b_number, 1], v, w)
+                and squeezed(config, p, q, x, y, v, w, obstacles, trial)
+                and trial[3] < level - GAIN
+            )
+            level = trial[3]
+        motion = abs(trial[0] - config[0]) * obstacles.size
+        for j in range(1, 4):
+            motion += abs(trial[j] - config[j])
+        if good and motion < FARTHER * most:
+            return length
+        along_a, along_b = along_a / 2.0, along_b / 2.0
+    return 0.0
