@@ -65,6 +65,7 @@ class Tree:
     slack : loose sets with three contacts or more from which ways lead down: nothing rests there for certain.
     doubtful : (M, 4) configurations of what is not settled, whose places follow.
     joins : in the order of their separations.
+    shared : places of the loose sets that some seats lie on.
     """
 
     seats: Array
@@ -72,16 +73,18 @@ class Tree:
     slack: list[Family]
     doubtful: Array
     joins: tuple[Join, ...]
+    shared: dict[int, int]
 
     @classmethod
     def of(cls, found: Equilibria, closing: Closing) -> Tree:
         """Follow the ways down of all passes and the ends of all loose sets."""
-        builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful])
+        every = np.ones(len(found.seats), np.bool_)
+        builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], every)
         slack, joins = list[Family](), list[tuple[Array, Array]]()
         seats = np.ascontiguousarray(found.seats[:, CONFIG])
-        # A flat face may lead on from a curved seat.
-        on_flats = [any(family.holds(seat, closing.size) for family in found.loose) for seat in seats]
-        seats = seats[~np.array(on_flats, np.bool_)]
+        # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing leads on.
+        builder.strict = np.array([on_one_of(found.loose, seat, closing.size) is None for seat in seats], np.bool_)
+        seats = seats[builder.strict]
         for family in found.loose:
             starts = ends_of(family, closing.size)
             low = family.middle[3] - FALLS
@@ -111,15 +114,22 @@ class Tree:
             Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, (row, _) in enumerate(joins)
         ]
         doubtful = np.array(builder.doubtful).reshape(-1, 4)
-        return cls(found.seats, builder.loose, slack, doubtful, tuple(sorted(made, key=lambda join: join.separation)))
+        shared = {}
+        for k in np.flatnonzero(~builder.strict).tolist():
+            number = on_one_of(builder.loose, found.seats[k, CONFIG], closing.size)
+            if number is not None:
+                shared[k] = len(found.seats) + number
+        joins_made = tuple(sorted(made, key=lambda join: join.separation))
+        return cls(found.seats, builder.loose, slack, doubtful, joins_made, shared)
 
     def join_of(self, place: int) -> Join | None:
         """The first pass at which the cage of a place joins another; None where it never does."""
+        place = self.shared.get(place, place)
         return next((join for join in self.joins if place in join.places and len(set(join.places)) == 2), None)
 
     def way_out(self, place: int) -> float | None:
         """The separation from which on a part can get from a place to the outside; None where it never can."""
-        group: dict[int, int] = {}
+        place, group = self.shared.get(place, place), dict[int, int]()
 
         def root(k: int) -> int:
             while group.setdefault(k, k) != k:
@@ -132,6 +142,14 @@ class Tree:
             if root(place) == root(OUTSIDE):
                 return join.separation
         return None
+
+
+def on_one_of(families: list[Family], config: Array, size: float) -> int | None:
+    """Number of the first loose set that a configuration lies on, with its separation; None of none."""
+    for k, family in enumerate(families):
+        if abs(family.middle[3] - config[3]) < FALLS and family.holds(config, size):
+            return k
+    return None
 
 
 def step_off(row: Array, size: float) -> tuple[Array, float]:
@@ -172,6 +190,7 @@ class Builder:
     closing : the jaws.
     seats, loose, doubtful : as of :class:`Tree`, the last as far as they are known.
     falling : loose sets off which a way leads down, and a configuration on it.
+    strict : (N,) which seats lie on no loose set.
     """
 
     closing: Closing
@@ -179,6 +198,7 @@ class Builder:
     loose: list[Family]
     falling: list[tuple[Family, Array]]
     doubtful: list[Array]
+    strict: NDArray[np.bool_]
 
     def place(self, config: Array, how: int) -> int:
         """The place of the end of a way down; one that is not known is added to what is not settled."""
@@ -191,14 +211,14 @@ class Builder:
                 configs, ends = self.closing.run(beyond[None], FIRST_STEP)
                 if configs[0, 3] < family.middle[3] - FALLS:
                     return self.place(configs[0], int(ends[0]))
+        if how == AT_REST and self.strict.any():
+            away = distances(self.seats[:, CONFIG], config, size)
+            near = int(np.argmin(np.where(self.strict, away, np.inf)))
+            if away[near] < AT_SEAT and abs(self.seats[near, SEPARATION] - config[3]) < SAME_LEVEL:
+                return near
         for k, family in enumerate(self.loose):
             if how == AT_REST and family.holds(config, size):
                 return len(self.seats) + k
-        if how == AT_REST and len(self.seats):
-            away = distances(self.seats[:, CONFIG], config, size)
-            near = int(np.argmin(away))
-            if away[near] < AT_SEAT and abs(self.seats[near, SEPARATION] - config[3]) < SAME_LEVEL:
-                return near
         before = len(self.seats) + len(self.loose)
         if self.doubtful:
             away = distances(np.array(self.doubtful), config, size)
