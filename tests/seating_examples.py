@@ -69,17 +69,19 @@ class Obstacle:
         self.radii, self.center = np.full(len(fixture.pegs), radius), np.array(part.center)
         self.right = np.array([float(peg.carrier == RIGHT) for peg in fixture.pegs])
         # Which way each peg moves as S grows, and whether a smaller S clamps.
-        self.ways, self.clamping = np.outer(self.right, [1.0, 0.0]), 1
+        self.ways, self.clamping, self.has_wall = np.outer(self.right, [1.0, 0.0]), 1, False
         self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - self.ways * fixture.jaw_separation
 
     @classmethod
     def about(cls, part: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Obstacle:
         """The same in any toolkit: S is the travel, along whichever way that goes."""
         out = cls(part, fixture, 0.0)
-        carriers = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
+        pegs = [peg for peg in fixture.pegs if not peg.is_on_wall]
+        out.has_wall = len(pegs) < len(fixture.pegs)
+        carriers = [toolkit.carrier(peg.carrier) for peg in pegs]
         out.radii = np.array([carrier.peg_radius for carrier in carriers])
         out.ways = np.array([carrier.travel.unit if carrier.travel else (0.0, 0.0) for carrier in carriers])
-        out.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - out.ways * fixture.jaw_separation
+        out.pegs = np.array([[peg.x, peg.y] for peg in pegs]) - out.ways * fixture.jaw_separation
         out.clamping = toolkit.clamping
         return out
 
@@ -105,6 +107,18 @@ class Obstacle:
                         vx, vy = c * n[0] - d * n[1], d * n[0] + c * n[1]
                         slope = np.array([n[0] * at[1] - n[1] * at[0], -vx, -vy, vx * wx + vy * wy])
                         out.append((size - radius, slope))
+        return out + [(d, g) for d, g in self.above_wall(config) if d < reach]
+
+    def above_wall(self, config: Array) -> list[tuple[float, Array]]:
+        """Heights above a fence at y = 0 of the part's corners and of the lowest points of its arcs, with their slopes."""
+        out = []
+        for face in self.faces if self.has_wall else ():
+            lowest = -pi / 2 - config[0]
+            low = [] if isinstance(face, Line) else touched(face, face.center + np.array([cos(lowest), sin(lowest)]))
+            # A whole circle, a hole, has no corner and never is the lowest.
+            for x, y in [np.array(face.at(-face.half_extent)), *low] - self.center:
+                up = sin(config[0]) * x + cos(config[0]) * y
+                out.append((config[2] + up, np.array([cos(config[0]) * x - sin(config[0]) * y, 0.0, 1.0, 0.0])))
         return out
 
     def free(self, config: Array) -> float:

@@ -26,6 +26,7 @@ __all__ = ["seat", "seating_words"]
 SIDES = ("both", "drawn", "turned-over")
 # What the friction of dry steel reaches.
 DRY_STEEL = 0.2
+FLUSH = "flush on the fence"
 KINDS = {
     "fixture": "all four pegs on faces",
     "corner": "four pegs, one on a corner",
@@ -186,7 +187,8 @@ def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
     for k, one in enumerate(seats):
         turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         pegs = ", ".join(f"{fixture.pegs[c.peg].hole} {c.words}" for c in one.contacts)
-        words = "right" if one.is_own else "same place" if one.same_place else KINDS[one.kind]
+        flat = one.kind == "fixture" and any(peg.is_on_wall for peg in fixture.pegs)
+        words = "right" if one.is_own else "same place" if one.same_place else FLUSH if flat else KINDS[one.kind]
         table.add_row(
             str(k + 1),
             unit.number(gauge.at(one.jaw_separation)),

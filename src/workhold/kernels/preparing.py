@@ -123,7 +123,8 @@ def seats_and_passes() -> Calls:
     curves = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
     parts = np.zeros((2, 2), np.int64)
     given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides, parts)
-    obstacles = Obstacles(rows, points, np.zeros((0, 3)), pegs, sides, parts, 1.0, 0.0)
+    wall = np.zeros((0, 6)), np.zeros(3)
+    obstacles = Obstacles(rows, points, np.zeros((0, 3)), pegs, sides, parts, 1.0, 0.0, *wall)
     cells, stack, roots = np.zeros((0, CELL_LENGTH)), np.zeros((DEPTH, 2)), np.zeros((0, ROOT_LENGTH))
     none, pockets = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
     yield clearances, (points, rows, 0, 0, one)
@@ -141,7 +142,7 @@ def seats_and_passes() -> Calls:
     yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, np.zeros((0, 4)), work, np.zeros(0, np.int8))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leaves, (np.zeros((0, 2)), obstacles, 1)
+    yield leaves, (np.zeros((0, 2)), obstacles, 1, 0.0, 0.0)
 
 
 # Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.

@@ -44,7 +44,9 @@ class Closing:
         locus, pattern = self.locus, self.pattern
         pieces = np.array(locus.rows), locus.spans, locus.discs + np.array([0.0, 0.0, PAST_POCKET])
         pegs = np.array(pattern.pegs), pattern.right, locus.parts
-        return Obstacles(*pieces, *pegs, self.size, pattern.end(2.0 * self.size))
+        hull = np.zeros((0, 6)) if pattern.wall is None else np.array(locus.hull.rows)
+        wall = np.array(pattern.wall or (0.0, 0.0, 0.0))
+        return Obstacles(*pieces, *pegs, self.size, pattern.end(2.0 * self.size), hull, wall)
 
     def run(
         self, configs: Array, first: float, seats: Array = NO_SEATS, stop: float | None = None
@@ -69,4 +71,7 @@ class Closing:
 
     def escapes(self, config: Array) -> bool:
         """Whether a part can be taken straight away from all pegs, jaws as they stand, in one of many directions."""
-        return leaves(self.pattern.at(config[None])[0], self.obstacles, DIRECTIONS)
+        ux, uy, _ = self.pattern.wall or (0.0, 0.0, 0.0)
+        cosine, sine = float(np.cos(config[0])), float(np.sin(config[0]))
+        wall = cosine * ux + sine * uy, cosine * uy - sine * ux
+        return leaves(self.pattern.at(config[None])[0], self.obstacles, DIRECTIONS, *wall)

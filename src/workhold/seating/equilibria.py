@@ -26,13 +26,16 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.seating.balance import settle_on_wall
 from workhold.seating.common_normals import squeezed
-from workhold.seating.families import Family, families
+from workhold.seating.families import Family, Finder, families
+from workhold.seating.fence import fence_candidates
 from workhold.seating.holdings import Holdings, filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.sliding import slid
 from workhold.seating.tangent import at_tangencies
+from workhold.seating.wall_families import on_wall
 
 __all__ = ["Equilibria", "equilibria"]
 
@@ -68,6 +71,8 @@ class Equilibria:
 
 def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     """All equilibria of a pattern; ``size`` in mm, of the part, is what moments are divided by."""
+    if pattern.wall is not None:
+        return on_fence(locus, pattern, size)
     holdings = Holdings.of(locus, pattern)
     # Curves run past the ends of pieces by a hair, and so do the pieces that their roots are sought on.
     given, sought = holdings.given, holdings.given._replace(rows=np.array(locus.loose))
@@ -89,6 +94,19 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     )
     candidates = candidates[pattern.reaches(candidates[:, SEPARATION])]
     settle(candidates, given, size, np.empty((4, 4)), np.empty((4, 5)))
+    return sorted_out(candidates, families(locus, pattern, holdings.slides))
+
+
+def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
+    """The same between a wall, a locator and a tip."""
+    candidates = np.array(squeezed(pattern, locus.common_normals) + fence_candidates(locus, pattern))
+    candidates = candidates.reshape(-1, CANDIDATE_LENGTH)
+    settle_on_wall(candidates, locus, pattern, size)
+    return sorted_out(candidates, families(locus, pattern, (), on_wall(Finder(locus, pattern))))
+
+
+def sorted_out(candidates: Array, loose: list[Family]) -> Equilibria:
+    """Candidates whose forces are known as seats and passes, beside what is loose."""
     used = np.arange(4) < candidates[:, CONTACTS, None]
     forces = np.where(used, candidates[:, FORCE : FORCE + 4], np.inf)
     pressed, doubt = forces.min(axis=1, initial=np.inf) > LEAST_FORCE, candidates[:, DOUBT] != 0.0
@@ -100,7 +118,7 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     return Equilibria(
         found[four | (found[:, SECOND] > 0.0)],
         found[~four & (found[:, SECOND] < 0.0)],
-        families(locus, pattern, holdings.slides),
+        loose,
         once(candidates[rest][hardest], SAME_DOUBT, SAME_DOUBT),
     )
 

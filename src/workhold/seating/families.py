@@ -3,6 +3,7 @@ arcs."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations, product
 from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
 
@@ -27,7 +28,7 @@ from workhold.seating.holdings import Slide
 from workhold.seating.locus import Locus, all_contained, contains
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Family", "families"]
+__all__ = ["Family", "Finder", "families"]
 
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
@@ -94,13 +95,28 @@ class Finder:
         along = self.rows[:, [AXIS_X, AXIS_Y]]
         return [(a, b) for a, b in product(self.lines, repeat=2) if np.abs(along[a] + along[b]).sum() <= PARALLEL]
 
-    def clearances(self, points: Array) -> Array:
-        """Distances (N, 4) in mm from the boundary of pegs at places (N, 4, 2) on the part."""
-        out = np.empty((4, len(points)))
+    def clearances(self, configs: Array) -> Array:
+        """Distances (N, K) in mm of pegs from the boundary in configurations (N, 4), the last one of a wall."""
+        points = self.pattern.at(configs)
+        out = np.empty((points.shape[1] + (self.pattern.wall is not None), len(points)))
+        if self.pattern.wall is not None:
+            out[-1] = self.locus.hull.clearance(configs, self.pattern.wall)
         for k, side in enumerate(self.pattern.right.tolist()):
             first, end = self.locus.parts[side].tolist()
             clearances(np.ascontiguousarray(points[:, k]), self.rows, first, end, out[k])
         return out.T
+
+    def of_pegs(self, contacts: list[Contact]) -> list[Contact]:
+        """The contacts that are not a wall's."""
+        return [(peg, piece) for peg, piece in contacts if peg < len(self.pattern.pegs)]
+
+    def nearest(self, peg: int, config: Array) -> int:
+        """Number of the piece that a peg, or a wall, touches in a configuration."""
+        if peg < len(self.pattern.pegs):
+            return nearest(self.locus, int(self.pattern.right[peg]), *self.pattern.at(config[None])[0, peg])
+        assert self.pattern.wall is not None
+        angle = atan2(-self.pattern.wall[1], -self.pattern.wall[0]) - config[0]
+        return len(self.rows) + int(self.locus.hull.reach(np.array([angle]))[0].argmax())
 
     def touch(self, contacts: list[Contact]) -> bool:
         """Whether pegs can touch the pieces that they are said to touch."""
@@ -111,9 +127,9 @@ class Finder:
     ) -> list[Family]:
         """The free runs of a set of configurations in which some contacts stay."""
         points = self.pattern.at(configs)
-        clear = self.clearances(points)
+        clear = self.clearances(configs)
         good = np.asarray((clear > -TOUCHES).all(axis=1), np.bool_)
-        for peg, piece in contacts:
+        for peg, piece in self.of_pegs(contacts):
             good &= all_contained(self.rows[piece], points[:, peg])
         out = []
         for numbers in runs(good, closed):
@@ -123,8 +139,7 @@ class Finder:
             middle = numbers[most[len(most) // 2]]
             touching = np.flatnonzero(np.abs(clear[middle]) < TOUCHES).tolist()
             known = dict(contacts)
-            sides = self.pattern.right
-            told = [(peg, known.get(peg, nearest(self.locus, sides[peg], *points[middle, peg]))) for peg in touching]
+            told = [(peg, known[peg] if peg in known else self.nearest(peg, configs[middle])) for peg in touching]
             row = np.zeros(CANDIDATE_LENGTH)
             row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
             row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
@@ -146,8 +161,8 @@ class Finder:
         for _ in range(EDGE_HALVINGS):
             middle = (inner + outer) / 2.0
             points = self.pattern.at(middle[None])
-            clear = self.clearances(points)
-            on = all(contains(self.rows[piece], *points[0, peg]) for peg, piece in contacts)
+            clear = self.clearances(middle[None])
+            on = all(contains(self.rows[piece], *points[0, peg]) for peg, piece in self.of_pegs(contacts))
             inner, outer = (middle, outer) if on and clear.min() > -TOUCHES else (inner, middle)
         return inner
 
@@ -279,7 +294,7 @@ class Finder:
         """Two pegs of one jaw and one of the other on arcs of one centre."""
         out = []
         pegs, right = self.pattern.pegs, self.pattern.right
-        pairs = [(p, q) for p, q in combinations(range(4), 2) if right[p] == right[q]]
+        pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
         for group, (p, q) in product(self.concentric, pairs):
             for a, b in product(group, repeat=2):
                 if not self.touch([(p, a), (q, b)]):
@@ -309,11 +324,11 @@ class Finder:
         return bool((np.linalg.solve(matrix, [0.0, 0.0, 1.0]) > LEAST_SHARE).all())
 
 
-def families(locus: Locus, pattern: Pattern, slides: tuple[Slide, ...]) -> list[Family]:
+def families(locus: Locus, pattern: Pattern, slides: tuple[Slide, ...], on_wall: Sequence[Family] = ()) -> list[Family]:
     """All loose equilibria of a pattern, each once: the one with the most contacts of those that lie in each other."""
     finder = Finder(locus, pattern)
     kept: list[Family] = []
-    found = finder.on_one_line() + finder.on_parallel_lines(slides) + finder.on_one_center()
+    found = finder.on_one_line() + finder.on_parallel_lines(slides) + finder.on_one_center() + list(on_wall)
     for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
         if not any(abs(one.middle[3] - other.middle[3]) < SAME and other.holds(one.middle, 1.0) for other in kept):
             kept.append(one)

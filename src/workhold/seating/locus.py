@@ -25,31 +25,19 @@ from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
 from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.model.workpiece import Workpiece
+from workhold.seating.hull import Hull
+from workhold.seating.touch import Touch
 
 if TYPE_CHECKING:
     from workhold.seating.common_normals import CommonNormal
 
-__all__ = ["PAST_POCKET", "Locus", "Touch", "all_contained", "contains"]
+__all__ = ["PAST_POCKET", "Locus", "all_contained", "contains"]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.
 STRAIGHT_ON = 1e-7
 # mm. How far past a pocket a piece still counts for a peg beside it.
 PAST_POCKET = 0.05
-
-
-@define(frozen=True)
-class Touch:
-    """What of the part a peg on a piece touches.
-
-    Parameters
-    ----------
-    face : number of the face, or of the face that begins at the corner.
-    corner : whether it is the corner rather than the face.
-    """
-
-    face: int
-    corner: bool
 
 
 @define(frozen=True, eq=False, slots=False)
@@ -64,6 +52,7 @@ class Locus:
     touches : what a peg on each piece touches.
     pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
     pocket_pieces : (V, 2) their numbers.
+    hull : what of the part may touch a wall.
     mirrored : whether the part is turned over.
     """
 
@@ -72,6 +61,7 @@ class Locus:
     touches: tuple[Touch, ...]
     pockets: Array
     pocket_pieces: NDArray[np.int64]
+    hull: Hull
     mirrored: bool = False
 
     @classmethod
@@ -90,7 +80,7 @@ class Locus:
         every = np.concatenate(rows)
         every.setflags(write=False)
         parts = np.array([starts[:2], starts[-2:]], dtype=np.int64)
-        return cls(every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose))
+        return cls(every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose), Hull.of(workpiece))
 
     def fits(self, side: int, piece: int) -> bool:
         """Whether pegs that stand still (0), or that move (1), can touch a piece."""
@@ -176,7 +166,9 @@ class Locus:
         rows[~is_arc, AXIS_Y] *= -1.0
         rows.setflags(write=False)
         pockets = self.pockets * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
-        return Locus(rows, self.parts, self.touches, pockets, self.pocket_pieces, not self.mirrored)
+        return Locus(
+            rows, self.parts, self.touches, pockets, self.pocket_pieces, self.hull.turned_over, not self.mirrored
+        )
 
 
 def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Segment]]:

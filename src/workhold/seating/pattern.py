@@ -6,7 +6,7 @@ from math import inf, sqrt
 from typing import Any
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -36,6 +36,9 @@ class Pattern:
     radii : in mm, of the pegs that stand still and of those that move.
     stop, widest : the smallest and the largest separation in mm, infinite where nothing stops what moves.
     door : the way to the toolkit's frame.
+    numbers : their places (4,) in the fixture's pegs.
+    wall : unit vector along which a wall presses the part, along x or y, and how far in mm along it the wall is; None
+        where there is none. Then there are two pegs.
     """
 
     pegs: Array
@@ -44,6 +47,8 @@ class Pattern:
     stop: float
     widest: float
     door: Door
+    numbers: tuple[int, ...] = (0, 1, 2, 3)
+    wall: tuple[float, float, float] | None = None
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
@@ -55,14 +60,20 @@ class Pattern:
             On a fence and with two clamps, for pegs with a flat, and for pegs without a radius.
         """
         refuse_unseated(toolkit)
-        carriers = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
+        numbers = tuple(k for k, peg in enumerate(fixture.pegs) if not peg.is_on_wall)
+        carriers = [toolkit.carrier(fixture.pegs[k].carrier) for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)
         standing = next(carrier for carrier in carriers if carrier.travel is None)
         door = Door.of(toolkit, moving)
         right = np.array([int(carrier.travel is not None) for carrier in carriers], dtype=np.int64)
-        pegs = door.turned(np.array([[peg.x, peg.y] for peg in fixture.pegs], dtype=np.float64))
+        pegs = door.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in numbers], dtype=np.float64))
+        wall = None
+        if toolkit.wall is not None:
+            # It runs along x at y = 0, the part above it.
+            x, y = door.turned(np.array([0.0, 1.0])).tolist()
+            wall = x, y, 0.0
         pegs[:, 0] -= right * (door.sign * fixture.jaw_separation)
-        pattern = cls(pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door)
+        pattern = cls(pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door, numbers, wall)
         stop, widest = pattern.free_of_locators(door.sign * fixture.jaw_separation)
         if toolkit.gap is not None:
             stop, widest = pattern.gap_kept(toolkit.gap)
@@ -71,7 +82,7 @@ class Pattern:
             stop = stop if moving.travel.most is None else max(stop, -moving.travel.most)
         elif toolkit.gap is None:
             stop = max(stop, moving.travel.least)
-        return cls(pegs, right, pattern.radii, stop, widest, door)
+        return evolve(pattern, stop=stop, widest=widest)
 
     def gap_kept(self, gap: float) -> tuple[float, float]:
         """The separations at which pegs of both jaws are a gap apart: the stop as they close, the widest of those that
@@ -94,6 +105,13 @@ class Pattern:
                     stop = max(stop, min(ahead + sqrt(square), separation + APART))
                 else:
                     widest = min(widest, max(ahead - sqrt(square), separation - APART))
+            if self.wall is not None and self.wall[0] != 0.0:
+                # The tip moves toward the wall, or away from it.
+                ahead = self.wall[0] * (self.wall[2] + self.radii[1]) - float(tip[0])
+                if self.wall[0] > 0.0:
+                    stop = max(stop, ahead)
+                else:
+                    widest = min(widest, ahead)
         return stop, widest
 
     def end(self, diameter: float) -> float:
@@ -109,7 +127,10 @@ class Pattern:
         # Where separations are counted from is of no account.
         apart = moved[self.right[order] == 1, 0].min()
         moved[self.right[order] == 1, 0] -= apart
-        ends = self.stop + apart, self.widest + apart
+        ends = [self.stop + apart, self.widest + apart]
+        if self.wall is not None:
+            ux, uy, off = self.wall
+            ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - float(self.pegs[order[0]] @ [ux, uy])]
         told = np.rint(np.array([*ends, *moved.ravel()]) / SAME_PATTERN) + 0.0
         return (*self.radii, *self.right[order].tolist(), *told.tolist())
 
@@ -134,11 +155,9 @@ def refuse_unseated(toolkit: Toolkit) -> None:
         On a fence and with two clamps, for pegs with a flat, and for pegs without a radius.
     """
     asked = "what a part does while it is clamped is told"
-    if toolkit.wall is not None:
-        raise InputError(f"{asked} of vises and of plates without a fence: this result has a fence.")
     if toolkit.needs_pairs:
         raise InputError(f"{asked} of one clamp: neither of the two clamps of this result holds the part alone.")
     if toolkit.has_flats:
         raise InputError(f"{asked} of round pegs: those of this result have flats.")
-    if min(carrier.peg_radius for carrier in toolkit.carriers) <= 0.0:
+    if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")

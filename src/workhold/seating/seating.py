@@ -30,6 +30,7 @@ from workhold.model.result import Result
 from workhold.model.seating import Cage, Contact, Pass, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.seating.balance import contact_normals
 from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
@@ -201,10 +202,10 @@ class Reading:
 
     @property
     def order(self) -> NDArray[np.int64]:
-        """(4,) number of each solved peg among the fixture's."""
+        """(K,) number of each solved peg among the fixture's."""
         here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right)) for p in (self.pattern, self.known))
-        out = np.empty(4, np.int64)
-        out[there] = here
+        out = np.empty(len(there), np.int64)
+        out[there] = np.array(self.pattern.numbers)[here]
         return out
 
     @property
@@ -225,9 +226,11 @@ class Reading:
 
     def contacts(self, row: Array, mirrored: bool) -> tuple[Contact, ...]:
         """What touches in a candidate."""
-        touches = self.solver.closing(self.known, mirrored).locus.touches
-        count = int(row[CONTACTS])
-        told = [(int(self.order[int(row[PEG + k])]), touches[int(row[PIECE + k])]) for k in range(count)]
+        locus = self.solver.closing(self.known, mirrored).locus
+        touches, order = locus.touches + locus.hull.touches, self.order.tolist()
+        # Contacts with a wall come after those of the pegs.
+        order += [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
+        told = [(order[int(row[PEG + k])], touches[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
         return tuple(Contact(peg, touch.face, touch.corner) for peg, touch in told)
 
     def seat(self, row: Array, kind: str, mirrored: bool, depth: float | None, has_forces: bool = True) -> Seat:
@@ -236,7 +239,7 @@ class Reading:
         contacts, sign = self.contacts(row, mirrored), self.pattern.door.sign
         if kind == "fixture" and len({contact.peg for contact in contacts}) < 4:
             kind = "pocket"
-        elif kind == "fixture" and any(contact.corner for contact in contacts):
+        elif kind == "fixture" and any(one.corner and not self.fixture.pegs[one.peg].is_on_wall for one in contacts):
             kind = "corner"
         is_own = not mirrored and distances(config[None], own, self.solver.outline.arm)[0] < AGREES
         is_own = bool(is_own and abs(config[3] - own[3]) < AGREES and kind != "unsettled")
@@ -331,18 +334,9 @@ class Reading:
 
     def sticking(self, row: Array) -> float:
         """The friction below which the part cannot stick near its seat."""
-        closing = self.solver.closing(self.known, False)
-        points = closing.pattern.at(row[CONFIG][None])[0]
-        c, s = cos(row[THETA]), sin(row[THETA])
-        contacts, normals, right = [], [], []
-        for k in range(4):
-            peg = int(row[PEG + k])
-            nx, ny = closing.locus.normal(int(row[PIECE + k]), *points[peg])
-            normals.append((c * nx - s * ny, s * nx + c * ny))
-            x, y = points[peg] - self.pattern.radii[closing.pattern.right[peg]] * np.array([nx, ny])
-            contacts.append((c * x - s * y, s * x + c * y))
-            right.append(int(closing.pattern.right[peg]))
-        return sticking_friction(np.array(contacts), np.array(normals), np.array(right))
+        locus = self.solver.closing(self.known, False).locus
+        places, normals, moves = contact_normals(locus, self.known, row)
+        return sticking_friction(places, normals, moves)
 
 
 def deep(seat: Seat) -> bool:

@@ -18,6 +18,7 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, R
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
 from workhold.kernels.seating.pieces import angle_from_middle
 from workhold.kernels.seating.squeezing import squeeze
+from workhold.kernels.seating.walls import add_wall
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
     per mm and before peg and piece; return how many."""
     count = 0
     cosine, sine = cos(config[0]), sin(config[0])
-    for peg in range(4):
+    for peg in range(obstacles.pegs.shape[0]):
         moving = float(obstacles.right[peg])
         qx, qy = obstacles.pegs[peg, 0] + moving * config[3] - config[1], obstacles.pegs[peg, 1] - config[2]
         x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
@@ -66,7 +67,7 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
             near[count, 1], near[count, 2], near[count, 3], near[count, 4] = -vx, -vy, vx * moving, off
             near[count, 5], near[count, 6] = peg, k
             count += 1
-    return count
+    return add_wall(config, obstacles, reach, near, count)
 
 
 @inner

@@ -67,6 +67,8 @@ class Obstacles(NamedTuple):
     pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
     stop : the smallest jaw separation, in mm.
+    hull : (H, 6) what may touch a wall, see ``seating.walls``; none where there is no wall.
+    wall : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall is.
     """
 
     rows: NDArray[np.float64]
@@ -77,6 +79,8 @@ class Obstacles(NamedTuple):
     parts: NDArray[np.int64]
     size: float
     stop: float
+    hull: NDArray[np.float64]
+    wall: NDArray[np.float64]
 
 
 class WorkSpace(NamedTuple):

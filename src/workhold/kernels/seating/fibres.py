@@ -16,6 +16,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.pieces import angle_from_middle
+from workhold.kernels.seating.walls import cut_by_wall
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def collect_crossings(config: Array, theta: float, y: float, jaw: int, obstacles
     """Write where a part moving along x meets the pegs of a jaw that stands as in a configuration; return how many."""
     cosine, sine = cos(theta), sin(theta)
     count = 0
-    for k in range(4):
+    for k in range(obstacles.pegs.shape[0]):
         if obstacles.right[k] != jaw:
             continue
         ahead = obstacles.pegs[k, 0] + obstacles.right[k] * config[3] - config[1]
@@ -133,6 +134,7 @@ def free_poses(
             shift = lean * turn + (j - cells // 2 + OFF_SHIFT) * step[1]
             theta, y = config[0] + turn, config[2] + shift
             n = free_intervals(config, theta, y, 0, obstacles, crossings, intervals[0])
+            n = cut_by_wall(config, theta, y, obstacles, intervals[0], n)
             m = free_intervals(config, theta, y, 1, obstacles, crossings, intervals[1])
             for a in range(n):
                 for b in range(m):

@@ -39,11 +39,12 @@ def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
 
 
 @compiled
-def leaves(points: Array, obstacles: Obstacles, ways: int) -> bool:
-    """Whether four pegs (4, 2) seen from the part can all move away in one of some directions without entering it."""
+def leaves(points: Array, obstacles: Obstacles, ways: int, ux: float, uy: float) -> bool:
+    """Whether pegs (K, 2) seen from the part can all move away in one of some directions without entering it, and without a
+    wall, from which (ux, uy) points to the part, coming nearer."""
     for k in range(ways):
         wx, wy = cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)
-        blocked = False
+        blocked = wx * ux + wy * uy > LEVEL
         for p in range(points.shape[0]):
             side = obstacles.right[p]
             for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):

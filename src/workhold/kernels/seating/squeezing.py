@@ -18,6 +18,7 @@ from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
 from workhold.kernels.seating.pieces import angle_from_middle, clearance
+from workhold.kernels.seating.walls import off_wall
 
 Array = NDArray[np.float64]
 
@@ -75,13 +76,13 @@ def is_within(row: Array, low: float, high: float, x: float, y: float) -> bool:
 
 @inner
 def is_free(config: Array, obstacles: Obstacles) -> bool:
-    """Whether no peg is in the part."""
-    for peg in range(4):
+    """Whether no peg is in the part, and the part in no wall."""
+    for peg in range(obstacles.pegs.shape[0]):
         x, y = seen(config, obstacles, peg)
         side = obstacles.right[peg]
         if clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1]) < -ENTERED:
             return False
-    return True
+    return off_wall(config, obstacles) >= -ENTERED
 
 
 @inner
@@ -133,6 +134,8 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
     one, two = -1, -1
     for i in range(count):
         if near[i, 4] < TOUCHES:
+            if near[i, 5] < 0.0:
+                return 0.0
             if obstacles.right[int(near[i, 5])] == 1:
                 if two >= 0:
                     return 0.0

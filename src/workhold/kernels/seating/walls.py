@@ -1,0 +1,83 @@
+"""A straight wall that keeps off a part: corners of its hull and convex arcs on it are no nearer to it than they may be.
+
+A row of a hull: centre x and y of a piece about the centre of the part's box, its radius, the unit vector to its middle, and
+the cosine of half its sweep (-2 of a corner, which supports in every direction), see ``geometry.hull_edges``.
+"""
+
+from __future__ import annotations
+
+from math import cos, inf, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.seating.columns import Obstacles
+
+Array = NDArray[np.float64]
+
+
+@inner
+def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, count: int) -> int:
+    """Write clearances from the wall within a reach after ``count`` others, see ``closing.look_around``; the new count. In
+    the place of a peg stands -1."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    ux, uy = obstacles.wall[0], obstacles.wall[1]
+    px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
+    for k in range(obstacles.hull.shape[0]):
+        row = obstacles.hull[k]
+        if -(px * row[3] + py * row[4]) < row[5] or count >= near.shape[0]:
+            continue
+        wx, wy = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
+        off = ux * (wx + config[1]) + uy * (wy + config[2]) - row[2] - obstacles.wall[2]
+        if abs(off) <= reach:
+            near[count, 0] = (uy * wx - ux * wy) / obstacles.size
+            near[count, 1], near[count, 2], near[count, 3], near[count, 4] = ux, uy, 0.0, off
+            near[count, 5], near[count, 6] = -1.0, k
+            count += 1
+    return count
+
+
+@inner
+def off_wall(config: Array, obstacles: Obstacles) -> float:
+    """Distance in mm of the part from the wall, infinite where there is none."""
+    cosine, sine, best = cos(config[0]), sin(config[0]), inf
+    ux, uy = obstacles.wall[0], obstacles.wall[1]
+    px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
+    for k in range(obstacles.hull.shape[0]):
+        row = obstacles.hull[k]
+        if -(px * row[3] + py * row[4]) >= row[5]:
+            wx, wy = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
+            best = min(best, ux * (wx + config[1]) + uy * (wy + config[2]) - row[2] - obstacles.wall[2])
+    return best
+
+
+@inner
+def cut_by_wall(config: Array, theta: float, y: float, obstacles: Obstacles, intervals: Array, count: int) -> int:
+    """Cut intervals of x, counted from the part's place in a configuration, to where the part is off a wall; how
+    many are left."""
+    cosine, sine = cos(theta), sin(theta)
+    ux, uy = obstacles.wall[0], obstacles.wall[1]
+    px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
+    for k in range(obstacles.hull.shape[0]):
+        row = obstacles.hull[k]
+        if -(px * row[3] + py * row[4]) < row[5]:
+            continue
+        wx, wy = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
+        least = obstacles.wall[2] + row[2] - uy * (wy + y) - ux * (wx + config[1])
+        if abs(uy) > 0.5:
+            if least > 0.0:
+                return 0
+            continue
+        left = 0
+        for i in range(count):
+            low, high = intervals[i, 0], intervals[i, 1]
+            if ux > 0.0:
+                low = max(low, least)
+            else:
+                high = min(high, -least)
+            if low <= high:
+                intervals[left, 0], intervals[left, 1] = low, high
+                left += 1
+        count = left
+    return count
