@@ -1,9 +1,11 @@
 """Settings of the whole suite: property tests draw the same examples every time and know no deadline; kernels that only
-kernels call can be called by tests too."""
+kernels call can be called by tests too, and are compiled once before several processes share the tests."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 # Before the first kernel is imported.
 os.environ.setdefault("WORKHOLD_KERNELS", "callable")
@@ -11,6 +13,7 @@ os.environ.setdefault("WORKHOLD_KERNELS", "callable")
 # Commands that tests run have buffered streams, as a user's have.
 os.environ.pop("PYTHONUNBUFFERED", None)
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
@@ -22,3 +25,20 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("workhold")
+
+
+PREPARE = "import sys; from workhold.kernels.preparing import prepared; [list(prepared(part)) for part in sys.argv[1:]]"
+# Parts of the kernels that take about as long to compile.
+SHARES = (("crossings", "seating"), ("others", "distances"))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the kernels in two processes: on a first run each that shares the tests would compile all of them."""
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None) or config.getoption("collectonly"):
+        return
+    from workhold.kernels.base.compiling import is_first_run
+
+    if is_first_run():
+        # What cannot be compiled is told by the first test that needs it.
+        for process in [subprocess.Popen([sys.executable, "-c", PREPARE, *share]) for share in SHARES]:
+            process.wait()
