@@ -17,6 +17,7 @@ from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.door import Door
 from workhold.seating.pattern import Pattern
+from workhold.seating.playing import play
 from workhold.seating.seating import Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -271,6 +272,22 @@ def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):
     fixture = Fixture("I", (), Pose(0, 0, 0), 0.0, {})
     with pytest.raises(InputError, match=message):
         Solver(WEDGE, toolkit).of(fixture)
+
+
+def test_a_part_put_above_a_fence_comes_home_and_none_is_put_into_it():
+    """Played from a little off its pose, the tip drawn back by half of what catches; never in the fence on the way."""
+    name = "onto a fence"
+    (result, solver), told = listed(name), told_of(name, 0)
+    fixture, at = result[0], result[0].pose
+    off = min(0.3 * told.drop_room, 0.5)
+    played = play(solver, fixture, told.seats, evolve(at, y=at.y + off), 0.5 * told.capture_opening)
+    assert played.ending == "right"
+    obstacle = Obstacle.about(result.workpiece, fixture, result.toolkit)
+    for pose, travelled in zip(played.poses, played.travels, strict=True):
+        config = np.array([np.radians(pose.theta_deg), *pose.apply(*result.workpiece.center), travelled])
+        assert obstacle.free(config) > -1e-6
+    with pytest.raises(InputError, match="lies in the fence"):
+        play(solver, fixture, told.seats, evolve(at, y=at.y - 5.0), 0.5 * told.capture_opening)
 
 
 def test_on_a_fence_seating_stands_in_no_result():

@@ -134,7 +134,7 @@ class Center:
 
 
 def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
-    """How deep in mm a peg stands in the part in a configuration; 0 where none does.
+    """How deep in mm a peg, or a wall, stands in the part in a configuration; 0 where none does.
 
     Raises
     ------
@@ -145,7 +145,13 @@ def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, t
     points = pattern.at(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
     away = outline_distances(np.ascontiguousarray(points), rows)
     deepest = 0.0
-    for (x, y), off, peg in zip(points.tolist(), away.tolist(), fixture.pegs, strict=True):
+    if pattern.wall is not None:
+        hull = solver.closing(pattern, turned_over).locus.hull
+        deepest = max(-float(hull.clearance(config[None], pattern.wall)[0]), 0.0)
+        if deepest > ENTERS * min(pattern.radii):
+            raise InputError("the part lies in the fence there: put it clear of the fence.")
+    pegs = [fixture.pegs[number] for number in pattern.numbers]
+    for (x, y), off, peg in zip(points.tolist(), away.tolist(), pegs, strict=True):
         radius = solver.toolkit.carrier(peg.carrier).peg_radius
         depth = radius + off if is_inside(x, y, rows) else radius - off
         if depth > ENTERS * radius:
