@@ -14,10 +14,14 @@ import attrs
 import pytest
 
 import workhold
+from seating_examples import solved
 from workhold import InputError, Plate, Query, Result, Vise, Workpiece
+from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
-from workhold.seating.seating import Solver
+from workhold.seating.settled import is_equilibrium
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import NO_PASS, Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
@@ -198,3 +202,26 @@ def test_what_needs_seating_is_refused_without_it() -> None:
         workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
     with pytest.raises(InputError, match="neither of the two clamps"):
         workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, clamps=2), seating=2)
+
+
+def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Passes are equilibria, and are none a little beside; without one nothing is claimed, and that is warned of."""
+    solver, fixture, _ = solved(1)
+    pattern = Pattern.of(fixture, solver.toolkit)
+    closing = solver.closing(pattern, False)
+    for join in solver.trees(pattern)[0].joins:
+        assert is_equilibrium(join.candidate, closing)
+        for column in (THETA, PLACE_X, SEPARATION):
+            beside = join.candidate.copy()
+            beside[column] += 1e-6
+            assert not is_equilibrium(beside, closing)
+        pulling = join.candidate.copy()
+        pulling[[PEG, PEG + 1]] = pulling[[PEG + 1, PEG]]
+        assert not is_equilibrium(pulling, closing)
+    monkeypatch.setattr("workhold.seating.seating.is_equilibrium", lambda *_: False)
+    result = workhold.design(WEDGE, VISE, seating=2, best=2)
+    for told in result.seating:
+        assert (told.capture_opening, told.lowest_pass, told.cage, told.placing) == (0.0, None, None, None)
+        assert told.unsettled == (NO_PASS,) and not told.is_foolproof and told.warning_count >= 3
+    workhold.save(result, tmp_path / "r.json")
+    assert workhold.verify(tmp_path / "r.json").holds

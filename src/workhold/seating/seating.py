@@ -37,6 +37,7 @@ from workhold.seating.equilibria import equilibria
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
+from workhold.seating.settled import is_equilibrium
 from workhold.seating.sticking import sticking_friction
 from workhold.seating.tree import CONFIG, Join, Tree, distances
 
@@ -49,6 +50,7 @@ AGREES = 1e-5
 SHALLOW = 1e-3
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
+NO_PASS = "The pass at which its cage opens could not be settled, so no opening is told from which the part is caught."
 # Those that are listed all the same: nothing is known of their depth, or they are fixtures of a complete list.
 ALWAYS = ("fixture", "loose", "unsettled")
 KINDS = {2: "curved", 3: "curved", 4: "fixture"}
@@ -294,10 +296,13 @@ class Reading:
         seats = self.seats()
         factor = float(row[FORCE : FORCE + 4].sum())
         capture = None if join is None else float(join.separation - row[SEPARATION])
+        doubts = unsettled_words(sum(seat.kind == "unsettled" for seat in seats))
+        if join is not None and not is_equilibrium(join.candidate, self.solver.closing(self.known, False)):
+            # Nothing is told that was not seen to be so; from no opening at all the part comes home for certain.
+            join, capture, doubts = None, 0.0, (*doubts, NO_PASS)
         cage, placing = (None, None)
         if join is not None and with_cage:
             cage, placing = self.freedom(row[CONFIG], join)
-        unsettled = sum(seat.kind == "unsettled" for seat in seats)
         return Seating(
             capture_opening=capture,
             room_factor=factor,
@@ -309,7 +314,7 @@ class Reading:
             stop=self.pattern.door.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
             seats=seats,
             clamping=int(self.pattern.door.sign),
-            unsettled=() if not unsettled else (f"{unsettled} places where the part may rest could not be settled.",),
+            unsettled=doubts,
             most=travel.most if (travel := self.solver.toolkit.moving.travel) else None,
         )
 
@@ -337,6 +342,13 @@ class Reading:
         locus = self.solver.closing(self.known, False).locus
         places, normals, moves = contact_normals(locus, self.known, row)
         return sticking_friction(places, normals, moves)
+
+
+def unsettled_words(count: int) -> tuple[str, ...]:
+    """What is said of so many places that could not be settled."""
+    if count == 0:
+        return ()
+    return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
 
 
 def deep(seat: Seat) -> bool:
