@@ -80,9 +80,10 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
     one = seated.seating[0]
     small = attrs.evolve(one, capture_opening=0.5)
     assert [words.partition("less than ")[2] for words in small.warnings] == ["0.500 mm"]
-    lost = attrs.evolve(one, unsettled=("one place.",))
-    assert (small.warning_count, lost.warning_count, one.warning_count) == (2, 1, 0)
-    assert len(lost.warnings) == 1 and not lost.is_foolproof
+    nearest = min((seat for seat in one.seats if seat.is_wrong), key=lambda seat: abs(seat.difference))
+    near = attrs.evolve(one, seats=(*one.seats, attrs.evolve(nearest, kind="unsettled", difference=-0.09)))
+    assert (small.warning_count, near.warning_count, one.warning_count) == (2, 1, 0)
+    assert "reads only 0.090 mm otherwise" in near.warnings[0] and not near.is_foolproof and one.is_foolproof
     free = attrs.evolve(one, capture_opening=None)
     assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
     assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))
@@ -160,7 +161,8 @@ def test_seating_is_a_figure_to_rank_by(seated: Result) -> None:
 
 def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
     best = workhold.design(WEDGE, VISE, seating=LOOKED_AT, best=3)
-    assert best[:] == seated[:3] and best.seating == seated.seating[:3]
+    assert best[:] == seated[:3]
+    assert [told.as_fields() for told in best.seating] == [told.as_fields() for told in seated.seating[:3]]
     assert "Only the best 3 were sought" in best.notes[0]
 
 
@@ -222,6 +224,6 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.Mon
     result = workhold.design(WEDGE, VISE, seating=2, best=2)
     for told in result.seating:
         assert (told.capture_opening, told.lowest_pass, told.cage, told.placing) == (0.0, None, None, None)
-        assert told.unsettled == (NO_PASS,) and not told.is_foolproof and told.warning_count >= 3
+        assert told.unsettled == (NO_PASS,) and told.warning_count >= 2 and not told.catches(0.001)
     workhold.save(result, tmp_path / "r.json")
     assert workhold.verify(tmp_path / "r.json").holds

@@ -82,11 +82,10 @@ def figures_told(fixture: Fixture) -> dict[str, float] | None:
 
 
 def warning_count(told: Seating) -> int:
-    """As how many warnings of quality a seating counts: two for a small opening, one for a close reading, and one where
-    something is unsettled."""
+    """As how many warnings of quality a seating counts: two for a small opening, one for a close reading."""
     opening, reading = told.capture_opening, told.reading_of()
     small = opening is not None and opening < SMALL_CAPTURE
-    return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING) + bool(told.unsettled)
+    return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING)
 
 
 def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
