@@ -52,6 +52,16 @@ def force(page: Any) -> None:
     page.wait_for_selector("#resist-words button")
 
 
+def tried(page: Any) -> None:
+    """A part in the hand that came to rest in a wrong seat."""
+    on_a_plate(page)
+    page.click("#try")
+    page.click("#seats .seat >> nth=3")
+    page.fill("#try-opening", "0.05")
+    page.click("#try-close")
+    page.wait_for_selector("#try-words.bad:has-text('wrong')")
+
+
 def compare(page: Any) -> None:
     """Two fixtures in a vise, side by side."""
     page.select_option("#preset", "plate-20mm")
@@ -89,6 +99,7 @@ def phone(page: Any) -> None:
 PICTURES = {
     "page-fixture": (fixture, DESK, "light"),
     "page-force": (force, DESK, "light"),
+    "page-try": (tried, DESK, "light"),
     "page-compare-dark": (compare, DESK, "dark"),
     "page-none": (none, DESK, "light"),
     "page-question": (question, DESK, "light"),

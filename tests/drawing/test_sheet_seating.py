@@ -123,6 +123,12 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     assert len(near.wrong) < len(words.wrong) and "opened by no more than" in near.wrong_words()[0]
 
 
+def test_it_is_told_whether_the_reading_tells(result: Result, told: list[Seating]) -> None:
+    """The first fixture's wrong seats read like the right one, those of the second do not."""
+    first, second = (words_for(result, told[k], k).wrong_words()[0] for k in (0, 1))
+    assert "the reading alone does not tell" in first and second.endswith(": the reading tells.")
+
+
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
     for friction, sticks in ((0.19, True), (0.21, False)):
         steps = words_for(result, evolve(told[0], sticking_friction=friction)).steps(WEDGE)

@@ -34,6 +34,8 @@ ENDINGS = "right", "same place", "wrong", "elsewhere", "stop", "outside", "lost"
 ENTERS = 0.5
 # mm. Steps of closing at first; a peg is pushed out of the part from as deep as so many of them.
 FIRST_STEP, STEPS_DEEP = 0.05, 8.0
+# mm. Ends whose S differs by less are one.
+LEVEL = 1e-6
 # Levels of S; of the part's size how far it moves between two of them; how often a stretch is halved, and how many
 # configurations there are at most.
 LEVELS, FAR, HALVINGS, MOST = 60, 0.02, 6, 400
@@ -164,12 +166,19 @@ def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, t
 
 def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
     """The way down from a configuration, at levels of S."""
-    low = closing.run(config[None], FIRST_STEP)[0][0, 3]
     way = [config]
-    for level in np.linspace(config[3], low, LEVELS + 1)[1:-1]:
-        if is_cancelled() or len(way) >= MOST:
+    while not is_cancelled() and len(way) < MOST:
+        before = float(way[-1][3])
+        low = float(closing.run(way[-1][None], FIRST_STEP)[0][0, 3])
+        # A way with stops may take another turn than one without, and end lower.
+        if before - low < LEVEL:
             break
-        go_down(closing, way, float(level), HALVINGS)
+        for level in np.linspace(before, low, LEVELS + 1)[1:]:
+            if is_cancelled() or len(way) >= MOST:
+                break
+            go_down(closing, way, float(level), HALVINGS)
+        if before - way[-1][3] < LEVEL:
+            break
     return way
 
 

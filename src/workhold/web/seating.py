@@ -82,8 +82,8 @@ def seating_answer(held: Held, told: Seating, unit: str) -> dict[str, Any]:
     words, seats = words_of(held, told, unit), list(told.seats)
     travel = words.gauge.carrier.travel
     assert travel is not None
-    # The farthest that it opens, counted as its separation is in ``seating.door``.
-    end = -travel.least if told.clamping < 0 else inf if travel.most is None else travel.most
+    # Of what clamps by opening, pegs that meet are the end.
+    end = travel.most if told.clamping > 0 and travel.most is not None else inf
     widest = min(Pattern.of(held[0], held[2]).widest, end) - told.clamping * held[0].jaw_separation
     return {
         **told.as_fields(),

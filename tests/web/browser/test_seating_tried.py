@@ -75,6 +75,7 @@ def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
     page.fill("#try-opening", str(max(seat["difference"], 0.0) + 0.02))
     page.click("#try-close")
     words = verdict(walk, "wrong place", "bad")
+    assert page.locator("#drawing-fixture .peg.entered").count() == 0
     assert f"{abs(seat['difference']):.3f} mm {'more' if seat['difference'] > 0 else 'less'} than" in words
     page.click("#try")
     page.wait_for_selector("#seating", state="hidden")

@@ -8,6 +8,8 @@ import { lyingMatrix, pegsOpen } from "./trial.js";
 
 /** Room around part and pegs, as a share of their extent. */
 const RIM = 0.05;
+/** How thick a fence is drawn, in mm. */
+const FENCE = 4;
 
 /** How the part lies in a seat. */
 export function lyingIn({ pose, mirrored }) {
@@ -32,7 +34,9 @@ export function seatPictures(part, row, told, chosen, pick) {
     const pegs = pegsOpen(row, told.clamping * seat.difference);
     const [a, b, c, d, x, y] = lyingMatrix(lying).slice(7, -1).split(" ").map(Number);
     const box = boundsOf(segments, ([px, py]) => [a * px + c * py + x, b * px + d * py + y]);
+    if (row.flush.length) extend(box, [box[0], -FENCE]);
     for (const [k, [px, py]] of pegs.entries()) {
+      if (row.flush.includes(k)) continue;
       const r = radii.get(k) ?? 0;
       extend(box, [px - r, py - r]);
       extend(box, [px + r, py + r]);
@@ -46,7 +50,8 @@ export function seatPictures(part, row, told, chosen, pick) {
     const corner = [(box[0] + box[2] - wide) / 2, -(box[1] + box[3] + high) / 2];
     const world = draw("g.world", { transform: "scale(1 -1)" },
       draw("path.part-fill", { d: outline, transform: lyingMatrix(lying) }), draw("path.outline", { d: outline, transform: lyingMatrix(lying) }),
-      ...pegs.map(([cx, cy], k) => draw(touching.has(k) ? "circle.peg-body" : "circle.peg-idle", { cx, cy, r: Math.max(radii.get(k) ?? 0, wide / 60) })));
+      ...(row.flush.length ? [draw("rect.plate.wall", { x: box[0], y: -FENCE, width: box[2] - box[0], height: FENCE })] : []),
+      ...pegs.flatMap(([cx, cy], k) => (row.flush.includes(k) ? [] : [draw(touching.has(k) ? "circle.peg-body" : "circle.peg-idle", { cx, cy, r: Math.max(radii.get(k) ?? 0, wide / 60) })])));
     const svg = draw(`svg.seat-picture${seat.mirrored ? ".over" : ""}`, { viewBox: `${corner[0]} ${corner[1]} ${wide} ${high}`, "aria-hidden": "true" }, world);
     const [reads, ...rest] = told.captions[number];
     const button = make(`button.seat${number === told.own ? ".right" : ""}`, { type: "button", "data-seat": number, click: () => pick(number) },

@@ -9,7 +9,7 @@ import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
 import { TrialDrawing } from "./trial-drawing.js";
-import { armOf, entered, lyingOf, offsetsOf } from "./trial.js";
+import { armOf, entered, inFence, lyingOf, offsetsOf } from "./trial.js";
 import { fieldLength, length, readLength, readNumber } from "./units.js";
 
 /** Fields of what is off, by their keys in the trial. */
@@ -189,12 +189,18 @@ function putBack() {
 function tellEntered(lying, opening) {
   const { part, selected } = state;
   const pegs = entered(part, selected, lying, opening);
+  markEntered(pegs);
+  const holes = pegs.map((k) => selected.holes[k]).join(" and ");
+  if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
+  else if (inFence(part, selected, lying)) say("The part lies in the fence here.", "bad");
+  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}. Drag the part and let go.`);
+}
+
+/** Mark some pegs, and no others. @param {number[]} pegs */
+function markEntered(pegs) {
   for (const peg of byId("drawing-fixture").querySelectorAll(".peg")) {
     peg.classList.toggle("entered", pegs.includes(Number(/** @type {HTMLElement} */ (peg).dataset.peg)));
   }
-  const holes = pegs.map((k) => selected.holes[k]).join(" and ");
-  if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
-  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}. Drag the part and let go.`);
 }
 
 /** Close the jaws from where the part is. */
@@ -209,6 +215,7 @@ async function close() {
     const answer = await send(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/closing`, body, { signal: mine.signal });
     if (mine !== asked) return;
     say("Closing \u2026");
+    markEntered([]);
     drawing.play(answer.way, over, () => {
       say(answer.words, answer.ending === "right" ? "good" : "bad");
       markSeat(answer.seat);
@@ -262,7 +269,7 @@ function showSeat(number) {
   const seat = answer.seats[number];
   change({ trial: { ...state.trial, ...offsetsOf(state.part, state.selected, lyingIn(seat)) } });
   drawing.show(state.part, lyingIn(seat), answer.clamping * seat.difference, true);
-  for (const peg of byId("drawing-fixture").querySelectorAll(".peg.entered")) peg.classList.remove("entered");
+  markEntered([]);
   writeFields();
   say(answer.captions[number].join(", "), number === answer.own ? "good" : "bad");
   markSeat(number);

@@ -4,7 +4,7 @@
  * A trial is told by how far the part is off its place: `x` and `y` in mm of the middle of its box, `turn` in degrees, from
  * where the fixture has it; turned over it is first turned about an upright line through that middle.
  */
-import { inside, nearest } from "./geometry.js";
+import { boundsOf, inside, nearest } from "./geometry.js";
 import { partSegments } from "./pose.js";
 
 /** @typedef {{x: number, y: number, turn: number, over: boolean, opening: number}} Trial */
@@ -99,13 +99,20 @@ export function pegsOpen(row, opening) {
  */
 export function entered(part, row, lying, opening) {
   const back = intoLying(lying);
-  const radii = row.carriers.flatMap((each) => each.pegs.map((k) => [k, each.peg_radius]));
+  const radii = row.carriers.flatMap((each) => each.pegs.map((k) => [k, each.peg_radius])).filter(([k]) => !row.flush.includes(k));
   const pegs = pegsOpen(row, opening);
   return radii.flatMap(([k, radius]) => {
     const point = back(pegs[k]);
     const away = Math.min(...partSegments(part).map(({ segment }) => nearest(segment, point).distance));
     return away < radius - 0.02 * radius || inside(part.loops, point) ? [k] : [];
   });
+}
+
+/** Whether a part stands in the fence, which runs along x at y = 0. */
+export function inFence(part, row, lying) {
+  if (!row.flush.length) return false;
+  const map = (point) => carried(lying, [lying.over ? -point[0] : point[0], point[1]]);
+  return boundsOf(partSegments(part).map(({ segment }) => segment), map)[1] < -0.02;
 }
 
 /** A part turned by some degrees about its middle. */
