@@ -192,5 +192,10 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
     assert right - capture <= least < right - capture + 0.01
     assert any(step.startswith("Tighten it. Right is stroke = ") and "While less is read" in step for step in steps)
+    # Readings as long as that stand on the sheet uncut.
+    pages = draw_sheet(plate[0], WEDGE, plate.toolkit, evolve(DETAILS, seating=told))
+    written = [word for page in pages for word in texts(page)]
+    assert words.reads(right) in written and words.reads(words.reading(words.wrong[0])) in written
+    assert all(collisions(page) == [] for page in pages)
     lower = next(seat for seat in told.seats if seat.difference > 0.1)
     assert words.difference(lower).endswith("less")

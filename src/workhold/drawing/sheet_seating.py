@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from workhold.drawing.fonts import shortened
+from workhold.drawing.fonts import text_width
 from workhold.drawing.panel import Column
 from workhold.drawing.scene import BLACK, GREY, Box, View
 from workhold.drawing.seating_words import SeatingWords
@@ -56,8 +56,8 @@ def write_wrong_seats(column: Column, sheet: Sheet) -> None:
         draw_lying(group, one, View.fitting(one.extent, room, scale), 0.9)
         for k, line in enumerate(lines):
             size, colour = (READING if k == 0 else SMALL), RIGHT if seat.is_own and k == 1 else BLACK
-            text = shortened(line, size, width, bold=k == 0)
-            group.text((cell.x0 + 2, cell.y1 + 11 + LINE * k), text, size, bold=k == 0, fill=colour, middle=False)
+            size = min(size, size * (width - 2) / text_width(line, size, bold=k == 0))
+            group.text((cell.x0 + 2, cell.y1 + 11 + LINE * k), line, size, bold=k == 0, fill=colour, middle=False)
     column.y = cells[-1].y1 + below
     rest = len(words.wrong) - (len(shown) - 1)
     if rest:
