@@ -12,10 +12,13 @@ from attrs import evolve
 import workhold
 from seating_examples import Obstacle, closed
 from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
+from workhold.kernels.base.distance import outline_distances
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
+from workhold.seating.balance import contact_normals
 from workhold.seating.door import Door
+from workhold.seating.fence import Fence as OnFence
 from workhold.seating.pattern import Pattern
 from workhold.seating.playing import play
 from workhold.seating.seating import Solver
@@ -91,7 +94,11 @@ def test_every_seat_lies_free_where_its_pose_says(name):
     result, _ = listed(name)
     fixture, told = result[0], told_of(name, 0)
     assert len(told.seats) > 1 and any(seat.mirrored for seat in told.seats)
+    # What is reached with what moves open by a millimetre.
+    rises = [told.clamping * (seat.jaw_separation - fixture.jaw_separation) for seat in told.seats if seat.is_wrong]
+    assert len(told.wrong_within(1.0)) == sum(rise < 1.0 for rise in rises)
     for seat in told.seats:
+        assert seat.difference == pytest.approx(seat.jaw_separation - fixture.jaw_separation, abs=1e-9)
         part = result.workpiece.turned_over if seat.mirrored else result.workpiece
         obstacle = Obstacle.about(part, fixture, result.toolkit)
         config = np.array([np.radians(seat.pose.theta_deg), *seat.pose.apply(*part.center), seat.jaw_separation])
@@ -324,3 +331,46 @@ def test_a_disc_turns_on_a_fence(direction):
     # Its centre 15 above the fence and 18 from the locator; the tip straight ahead, or above and to one side.
     expected = ahead + 18.0 - 40.0 if direction == "-x" else 15.0 + np.sqrt(18.0**2 - (20.0 - ahead) ** 2) - 40.0
     assert any(family.middle[3] == pytest.approx(expected) for family in tree.loose)
+
+
+def test_pegs_pressed_apart_in_a_slot_rest_at_its_ends():
+    """Two contacts whose normals point at each other: S is largest with both pegs at the ends of the slot's middle line."""
+    slotted = Workpiece.from_loops(
+        "slotted",
+        [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]], [[35, 20, 0], [65, 20, 1], [65, 40, 0], [35, 40, 1]]],
+    )
+    vise = OpeningVise(pitch=10, columns=2, peg_radius=3, min_gap=6)
+    at = (("left", 0, 0), ("left", 0, -200), ("right", 10, 0), ("right", 10, 200))
+    fixture = Fixture("I", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    seats = Solver(slotted, vise).trees(Pattern.of(fixture, vise))[0].seats
+    # 30 between the ends' centres and 10 - 3 beyond each, less the 10 by which the right peg stands ahead.
+    assert [row[4] for row in seats if abs(row[3] + 30.0 + 14.0 - 10.0) < 1e-9] == [2.0, 2.0]
+
+
+def test_the_tip_stops_at_the_fence_and_touches_with_its_own_radius():
+    at = (("plate", -100.0, 10.0), ("wall", 0.0, 0.0), ("wall", 1.0, 0.0))
+    for way, stop, widest in (("-y", -36.0, np.inf), ("+y", -np.inf, 36.0)):
+        pegs = tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in (*at, (f"clamp {way}", 0.0, 40.0)))
+        fence = Fence(**{**DOWN, "directions": [way]}, clamp_radius=4)
+        pattern = Pattern.of(Fixture("edge", pegs, Pose(0, 0, 0), 0.0, {}), fence)
+        assert (pattern.stop, pattern.widest) == (stop, widest)
+    for name in ("left", "along a fence"):
+        result, solver = listed(name)
+        pattern, outline = Pattern.of(result[0], result.toolkit), solver.outline
+        locus = solver.closing(pattern, False).locus
+        for row in solver.trees(pattern)[0].seats:
+            places, _, _ = contact_normals(locus, pattern, row)
+            c, s = np.cos(row[0]), np.sin(row[0])
+            assert outline_distances(places @ np.array([[c, -s], [s, c]]), outline.rows).max() < 1e-7
+
+
+def test_between_hull_edges_and_ends_of_arcs_a_part_stands_on_one_piece():
+    result, solver = listed("onto a fence")
+    pattern = Pattern.of(result[0], result.toolkit)
+    fence = OnFence(solver.closing(pattern, False).locus, pattern)
+    for piece, thetas in fence.runs:
+        reach = fence.locus.hull.reach(fence.outward() - thetas)
+        assert reach[:, piece] == pytest.approx(reach.max(axis=1), abs=1e-9)
+    # All of a turn but next to nothing, and each piece's turn once.
+    assert sum(thetas[-1] - thetas[0] for _, thetas in fence.runs) == pytest.approx(2 * np.pi, abs=1e-6)
+    assert len({piece for piece, _ in fence.runs}) == len(fence.runs)
