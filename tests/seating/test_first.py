@@ -12,6 +12,7 @@ from threading import Event
 from typing import Any
 
 import attrs
+import numpy as np
 import pytest
 
 import workhold
@@ -241,9 +242,16 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.Mon
             beside = join.candidate.copy()
             beside[column] += 1e-6
             assert not is_equilibrium(beside, closing)
-        pulling = join.candidate.copy()
-        pulling[[PEG, PEG + 1]] = pulling[[PEG + 1, PEG]]
-        assert not is_equilibrium(pulling, closing)
+        other = join.candidate.copy()
+        other[[PEG, PEG + 1]] = other[[PEG + 1, PEG]]
+        assert not is_equilibrium(other, closing)
+        # The same places with the jaws exchanged: what moves would have to pull.
+        there = pattern.pegs + join.separation * np.stack([pattern.right, 0 * pattern.right], axis=1)
+        pulling = attrs.evolve(closing, pattern=attrs.evolve(pattern, pegs=there, right=1 - pattern.right))
+        still = join.candidate.copy()
+        still[SEPARATION] = 0.0
+        assert not is_equilibrium(still, pulling)
+        assert is_equilibrium(still, attrs.evolve(closing, pattern=attrs.evolve(pattern, pegs=there)))
     monkeypatch.setattr("workhold.seating.seating.is_equilibrium", lambda *_: False)
     result = workhold.design(WEDGE, VISE, seating=2, best=2)
     for told in result.seating:

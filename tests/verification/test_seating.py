@@ -16,13 +16,14 @@ from workhold.completeness import first_other
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
 from workhold.verification.patterns import pattern_faults
-from workhold.verification.seating import SeatingJudge
+from workhold.verification.seating import Judged, SeatingJudge
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 # With an arc, an inner corner and loose rest.
 NOTCH = Workpiece.from_loops("notch", [[[0, 0, 0], [60, 0, 0], [60, 25, 0.3], [35, 30, 0], [35, 45, 0], [0, 45, 0]]])
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
+NOTCH_VISE = Vise(15, 2, 2)
 Fields = dict[str, Any]
 
 
@@ -67,7 +68,7 @@ def told(fields: Fields, fixture: Any) -> Any:
 @pytest.mark.parametrize("form", ["json", "npz"])
 @pytest.mark.parametrize(
     ("part", "toolkit"),
-    [(WEDGE, VISE), (NOTCH, Vise(15, 2, 2)), (WEDGE, Plate(pitch=20, peg_radius=3, columns=6, rows=6))],
+    [(WEDGE, VISE), (NOTCH, NOTCH_VISE), (WEDGE, Plate(pitch=20, peg_radius=3, columns=6, rows=6))],
     ids=["wedge", "notch", "plate"],
 )
 def test_what_is_so_holds(part: Workpiece, toolkit: Any, form: str, tmp_path: Path) -> None:
@@ -212,3 +213,16 @@ def test_rules_and_counts_of_the_first_must_agree(result: Result, tmp_path: Path
     faults = workhold.verify(path).faults
     assert any("are listed for their seating, but it is told of 3" in fault for fault in faults)
     assert any("the note is missing" in fault for fault in faults)
+
+
+def test_a_seat_with_a_peg_in_the_part_is_refuted(tmp_path: Path) -> None:
+    """Two faces slide between two pegs, and a third peg would be inside, below an inner corner."""
+    listing = written(solved(NOTCH, NOTCH_VISE), tmp_path / "r.json")
+    judge, own = SeatingJudge(listing.query), {"jaw_separation": 16.246149047}
+    pose = {"theta_deg": 232.247998694, "x": 9.972944769, "y": 39.612640625}
+    contacts = [{"peg": 1, "face": 0}, {"peg": 3, "face": 4}]
+    seat = {"kind": "loose", "pose": pose, "difference": 7.496592209, "mirrored": False, "same_place": False}
+    seat |= {"jaw_separation": 23.742741256, "contacts": contacts, "forces": []}
+    # On the pegs of one of the two, which are the same part held twice, turned by half.
+    found = [list(Judged(judge, one, one.seating).seat_faults(seat, own)) for one in listing.fixtures]
+    assert ["has a peg in the part"] in found

@@ -32,7 +32,7 @@ from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.rules import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
-__all__ = ["SeatingJudge"]
+__all__ = ["Judged", "SeatingJudge"]
 
 Array = NDArray[np.float64]
 # Files have nine decimals, of numbers that follow from others that are rounded so.
