@@ -41,7 +41,7 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
         for chosen in combinations(range(wrenches.shape[1]), count):
             some, target = wrenches[:, chosen], np.array([0.0, 0.0, 0.0, 1.0])
             forces = np.linalg.lstsq(some, target, rcond=None)[0]
-            if forces.min() > -PULLS and np.abs(some @ forces - target).max() < SETTLED * (1.0 + forces.sum()):
+            if forces.min() > -PULLS and np.abs(some @ forces - target).max() < SETTLED * (1.0 + np.abs(forces).sum()):
                 return True
     return False
 
