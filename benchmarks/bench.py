@@ -20,6 +20,7 @@ import many
 import memory
 import processes
 import pruning
+import seating
 import table_one
 import threads
 import toolkits
@@ -47,6 +48,7 @@ def main() -> None:
         many.run,
         toolkits.run,
         pruning.run,
+        seating.run,
         batch.run,
         batch_queue.run,
         batch_estimate.run,

@@ -4,6 +4,7 @@ arcs."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import combinations, product
 from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
 
@@ -33,10 +34,10 @@ __all__ = ["Family", "Finder", "families"]
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
 SLIDE_STEPS, TURN_STEPS = 144, 384
-# By how many halvings the end of a slide is found.
-EDGE_HALVINGS = 24
-# mm. Pegs this near touch all along; shorter slides are none; separations this near are one.
-TOUCHES, SHORTEST, SAME = 1e-7, 1e-6, 1e-6
+# How often, and into how many parts, the step in which a slide ends is cut to find where.
+EDGE_ROUNDS, EDGE_PARTS = 5, 32
+# mm. Pegs this near touch all along; shorter slides are none; separations this near are one, or one where ways end.
+TOUCHES, SHORTEST, SAME, SAME_LEVEL = 1e-7, 1e-6, 1e-6, 1e-3
 # A force's share below this is none.
 LEAST_SHARE = 1e-9
 Contact = tuple[int, int]
@@ -66,13 +67,15 @@ class Family:
 
     def holds(self, config: Array, arm: float) -> bool:
         """Whether a configuration lies in the set, as far as its steps tell."""
+        if abs(config[3] - self.candidate[SEPARATION]) >= SAME_LEVEL:
+            return False
         turn = (self.configs[:, 0] - config[0] + pi) % tau - pi
         away = np.abs(turn) * arm + np.hypot(*(self.configs[:, 1:3] - config[1:3]).T)
         steps = np.abs(np.diff(self.configs, axis=0)) @ np.array([arm, 1.0, 1.0, 0.0])
-        return bool(abs(config[3] - self.candidate[SEPARATION]) < 1e-3 and away.min() <= steps.max(initial=0.0) + 0.02)
+        return bool(away.min() <= steps.max(initial=0.0) + 0.02)
 
 
-@define(frozen=True, eq=False)
+@define(frozen=True, eq=False, slots=False)
 class Finder:
     """What families are sought with."""
 
@@ -84,12 +87,12 @@ class Finder:
         """The pieces."""
         return self.locus.rows
 
-    @property
+    @cached_property
     def lines(self) -> list[int]:
         """Numbers of the straight pieces."""
         return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
 
-    @property
+    @cached_property
     def opposed(self) -> list[tuple[int, int]]:
         """Pairs of straight pieces that face away from each other."""
         along = self.rows[:, [AXIS_X, AXIS_Y]]
@@ -158,12 +161,15 @@ class Finder:
 
     def edge(self, inner: Array, outer: Array, contacts: list[Contact]) -> Array:
         """The last free configuration on the straight way from one that is free to one that is not."""
-        for _ in range(EDGE_HALVINGS):
-            middle = (inner + outer) / 2.0
-            points = self.pattern.at(middle[None])
-            clear = self.clearances(middle[None])
-            on = all(contains(self.rows[piece], *points[0, peg]) for peg, piece in self.of_pegs(contacts))
-            inner, outer = (middle, outer) if on and clear.min() > -TOUCHES else (inner, middle)
+        for _ in range(EDGE_ROUNDS):
+            between = inner + np.linspace(0.0, 1.0, EDGE_PARTS + 1)[:, None] * (outer - inner)
+            points = self.pattern.at(between)
+            good = np.asarray((self.clearances(between) > -TOUCHES).all(axis=1), np.bool_)
+            for peg, piece in self.of_pegs(contacts):
+                good &= all_contained(self.rows[piece], points[:, peg])
+            good[0], good[-1] = True, False
+            last = int(np.argmin(good)) - 1
+            inner, outer = between[last], between[last + 1]
         return inner
 
     def sliding(
@@ -244,7 +250,7 @@ class Finder:
             nx, ny = ty, -tx
             if one[IS_ARC] != 0.0 or abs(nx) < 1e-9:
                 continue
-            for k, other in product(np.flatnonzero(right != right[slide.first]).tolist(), self.parallel_to(a)):
+            for k, other in product(np.flatnonzero(right != right[slide.first]).tolist(), self.parallel_to[a]):
                 two = self.rows[other]
                 thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
                 run, rise = pegs[k] - pegs[slide.first]
@@ -261,11 +267,12 @@ class Finder:
                 out += self.sliding(theta, start, one, low, high, s, contacts)
         return out
 
-    def parallel_to(self, a: int) -> list[int]:
-        """Numbers of the straight pieces parallel to one."""
+    @cached_property
+    def parallel_to(self) -> dict[int, list[int]]:
+        """Numbers of the straight pieces parallel to each of them."""
         along = self.rows[:, [AXIS_X, AXIS_Y]]
-        cross = along[:, 0] * along[a, 1] - along[:, 1] * along[a, 0]
-        return [k for k in self.lines if abs(cross[k]) <= PARALLEL]
+        cross = np.abs(np.outer(along[:, 0], along[:, 1]) - np.outer(along[:, 1], along[:, 0]))
+        return {a: [k for k in self.lines if cross[a, k] <= PARALLEL] for a in self.lines}
 
     def opposes(self, contacts: list[Contact], places: Array, push: float) -> bool:
         """Whether of three parallel forces the middle one is against the outer two, and the last presses its jaw outward.
@@ -280,7 +287,7 @@ class Finder:
         (p, one), (q, middle), (r, other) = sorted(zip((places[peg] for peg, _ in contacts), sides, strict=True))
         return q - p > SHORTEST and r - q > SHORTEST and one == other == -middle and sides[2] * push > 0.0
 
-    @property
+    @cached_property
     def concentric(self) -> list[list[int]]:
         """Arcs by their centres."""
         groups: list[list[int]] = []

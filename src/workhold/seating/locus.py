@@ -125,6 +125,16 @@ class Locus:
         """Chord curves by the length of the chord and the first piece, as far as they have been asked for."""
         return {}
 
+    @cached_property
+    def parallels(self) -> dict[int, list[int]]:
+        """See ``seating.tangent``, which fills it."""
+        return {}
+
+    @cached_property
+    def tangents(self) -> dict[tuple[float, int], list[tuple[int, int, tuple[float, float], float]]]:
+        """Tangencies by the length of the chord and the jaw; see ``seating.tangent``, which fills it."""
+        return {}
+
     def curves(self, length: float, side: int) -> CurveTable:
         """The curves of chords of a length in mm of pegs that stand still (0), or that move (1), tail on the piece of the
         lower number, their direction being the angle."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import acos, atan2, cos, hypot, pi, sin, sqrt, tau
 
 import numpy as np
@@ -39,7 +40,7 @@ Array = NDArray[np.float64]
 HAIR, LEVEL = 1e-12, 1e-12
 
 
-@define(frozen=True, eq=False)
+@define(frozen=True, eq=False, slots=False)
 class Track:
     """A slide as a curve: places of its first peg over the parameter.
 
@@ -52,17 +53,17 @@ class Track:
     slide: Slide
     row: Array
 
-    @property
+    @cached_property
     def is_circle(self) -> bool:
         """Whether the part goes round rather than straight."""
         return bool(self.row[IS_ARC] != 0.0)
 
-    @property
+    @cached_property
     def up(self) -> tuple[float, float]:
         """The y axis of the vise in the part's frame."""
         return -sin(self.slide.psi), cos(self.slide.psi)
 
-    @property
+    @cached_property
     def middle(self) -> float:
         """Direction in radians of the middle of an arc."""
         return atan2(self.row[AXIS_Y], self.row[AXIS_X])
@@ -129,6 +130,8 @@ def three_contacts(track: Track, locus: Locus, pattern: Pattern, peg: int) -> li
         piece = locus.rows[number]
         found: list[tuple[float, float, float]] = []
         curved = piece[IS_ARC] != 0.0
+        if not (curved or track.is_circle):
+            continue
         bend = piece[SIGN] * piece[RADIUS] if curved else 0.0
         for side in (1.0, -1.0):
             if not track.is_circle and curved:

@@ -3,7 +3,8 @@ cones.
 
 Contact i presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches is zero; with
 three unknown ratios, one of them up to scale, the least largest ratio has all three equal, or one of the contacts without
-force (V.-D. Nguyen, International Journal of Robotics Research 7, 1988). A determinant of signs is a cubic in mu.
+force (V.-D. Nguyen, International Journal of Robotics Research 7, 1988). A determinant of signs is a cubic in mu. Where less
+friction does, the jaw's share of the forces vanishes at the least: the three lock whatever its force. Halving finds that.
 """
 
 from __future__ import annotations
@@ -21,6 +22,10 @@ SIGNS = np.array(list(product((1.0, -1.0), repeat=3)))
 # Points at which a cubic is told by its values, and back.
 AT = np.array([0.0, 1.0, -1.0, 2.0])
 TO_CUBIC = np.linalg.inv(np.vander(AT, 4))
+# Sets of four of the six edges of three cones.
+FOURS = np.array(list(combinations(range(6), 4)))
+# No unit. A share by which less friction is less, how often it is halved, and determinants that are none.
+LESS, HALVINGS, SINGULAR = 1e-7, 60, 1e-14
 
 
 def sticking_friction(points: Array, normals: Array, right: Array) -> float:
@@ -70,7 +75,30 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
         moving = line / span if right[i] == 1 else -line / span
         if len(ratios) == 2 and moving[0] < -1e-12:
             least = min(least, max(ratios))
-    return float(least)
+    low, high = 0.0, float(least)
+    if high == np.inf or not balance(straight, across, right, high * (1.0 - LESS)):
+        return high
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if balance(straight, across, right, middle) else (middle, high)
+    return high
+
+
+def balance(straight: Array, across: Array, right: Array, friction: float) -> bool:
+    """Whether three of four contacts balance the jaw inside cones of a friction: some four of their six edges do, then.
+
+    Parameters
+    ----------
+    straight, across : (4, 3) wrenches along the normals into the part, and along the tangents.
+    """
+    edges = np.concatenate(
+        [straight[TRIPLES] + friction * across[TRIPLES], straight[TRIPLES] - friction * across[TRIPLES]], 1
+    )
+    on_jaw = edges[..., 0] * np.tile(right[TRIPLES], 2)
+    matrices = np.swapaxes(np.concatenate([edges, on_jaw[..., None]], axis=2)[:, FOURS], 2, 3).reshape(-1, 4, 4)
+    matrices = matrices[np.abs(np.linalg.det(matrices)) > SINGULAR]
+    forces = np.linalg.solve(matrices, np.array([0.0, 0.0, 0.0, -1.0])[:, None])[..., 0]
+    return bool((forces >= 0.0).all(axis=1).any())
 
 
 def real_roots(cubic: Array) -> list[float]:

@@ -39,23 +39,40 @@ STEP = 1e-6
 def at_tangencies(locus: Locus, pattern: Pattern) -> list[Array]:
     """Candidates of all pairs of pegs of one jaw, lines and arcs, with a third peg on a line parallel to the first."""
     out = []
-    lines = np.flatnonzero(locus.rows[:, IS_ARC] == 0.0).tolist()
-    arcs = np.flatnonzero(locus.rows[:, IS_ARC] != 0.0).tolist()
-    opposed = {a: [c for c in lines if parallel(locus.rows[a], locus.rows[c]) and c != a] for a in lines}
     for i, j in permutations(range(4), 2):
         if pattern.right[i] != pattern.right[j]:
             continue
         dx, dy = pattern.pegs[j] - pattern.pegs[i]
-        for a, b, side in product((a for a in lines if opposed[a]), arcs, (1.0, -1.0)):
-            if not (locus.fits(pattern.right[i], a) and locus.fits(pattern.right[i], b)):
-                continue
-            for tail, alpha in tangencies(locus.rows[a], locus.rows[b], hypot(dx, dy), side):
-                for k, c in product(np.flatnonzero(pattern.right != pattern.right[i]).tolist(), opposed[a]):
-                    if not locus.fits(pattern.right[k], c):
-                        continue
-                    theta = atan2(dy, dx) - alpha
+        others = [k for k in range(4) if pattern.right[k] != pattern.right[i]]
+        for a, b, tail, alpha in chords_at_tangencies(locus, hypot(dx, dy), int(pattern.right[i])):
+            theta = atan2(dy, dx) - alpha
+            for k, c in product(others, parallels(locus)[a]):
+                if locus.fits(pattern.right[k], c):
                     out += with_third(locus, pattern, theta, tail, (i, j, k), (a, b, c), hypot(dx, dy))
     return out
+
+
+def parallels(locus: Locus) -> dict[int, list[int]]:
+    """Numbers of the other lines parallel to each line that has some."""
+    if not locus.parallels:
+        lines = np.flatnonzero(locus.rows[:, IS_ARC] == 0.0).tolist()
+        found = {a: [c for c in lines if c != a and parallel(locus.rows[a], locus.rows[c])] for a in lines}
+        locus.parallels.update((a, others) for a, others in found.items() if others)
+    return locus.parallels
+
+
+def chords_at_tangencies(locus: Locus, d: float, jaw: int) -> list[tuple[int, int, tuple[float, float], float]]:
+    """Lines, arcs, tails and directions of the chords of a length that are tangencies, for pegs of a jaw."""
+    key = round(d, 9), jaw
+    if key not in locus.tangents:
+        arcs = [b for b in np.flatnonzero(locus.rows[:, IS_ARC] != 0.0).tolist() if locus.fits(jaw, b)]
+        lines = [a for a in parallels(locus) if locus.fits(jaw, a)]
+        locus.tangents[key] = [
+            (a, b, tail, alpha)
+            for a, b, side in product(lines, arcs, (1.0, -1.0))
+            for tail, alpha in tangencies(locus.rows[a], locus.rows[b], d, side)
+        ]
+    return locus.tangents[key]
 
 
 def parallel(one: Array, two: Array) -> bool:

@@ -191,6 +191,7 @@ class Builder:
     seats, loose, doubtful : as of :class:`Tree`, the last as far as they are known.
     falling : loose sets off which a way leads down, and a configuration on it.
     strict : (N,) which seats lie on no loose set.
+    below : what ways off the falling sets end in, as far as it was asked for.
     """
 
     closing: Closing
@@ -199,18 +200,21 @@ class Builder:
     falling: list[tuple[Family, Array]]
     doubtful: list[Array]
     strict: NDArray[np.bool_]
+    below: dict[int, tuple[Array, int]] = field(factory=dict)
 
     def place(self, config: Array, how: int) -> int:
         """The place of the end of a way down; one that is not known is added to what is not settled."""
         if how == AT_THE_STOP:
             return OUTSIDE if self.closing.escapes(config) else STOP
         size = self.closing.size
-        for family, beyond in self.falling:
+        for k, (family, beyond) in enumerate(self.falling):
             # On flat faces no step leads down; the way goes on where the part slides off them.
             if how == AT_REST and family.holds(config, size):
-                configs, ends = self.closing.run(beyond[None], FIRST_STEP)
-                if configs[0, 3] < family.middle[3] - FALLS:
-                    return self.place(configs[0], int(ends[0]))
+                if k not in self.below:
+                    configs, ends = self.closing.run(beyond[None], FIRST_STEP)
+                    self.below[k] = configs[0], int(ends[0])
+                if self.below[k][0][3] < family.middle[3] - FALLS:
+                    return self.place(*self.below[k])
         if how == AT_REST and self.strict.any():
             away = distances(self.seats[:, CONFIG], config, size)
             near = int(np.argmin(np.where(self.strict, away, np.inf)))

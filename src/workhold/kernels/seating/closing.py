@@ -27,6 +27,8 @@ GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
 # mm. Shorter steps move nothing; pegs this deep in the part are in it; smaller gains are none.
 LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
+# Steps of linear programs that follow where squeezing found something in the way.
+WAIT = 3
 # mm. Configurations as near to a seat as this, in place and in separation, go there.
 SAME_PLACE, SAME_LEVEL = 1e-4, 1e-6
 
@@ -218,7 +220,7 @@ def is_in_one_of(config: Array, seats: Array, size: float) -> bool:
 @inner
 def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, seats: Array, work: WorkSpace) -> int:
     """Close the jaws from a configuration, in place; how it ended."""
-    trial, longest = work.trial, trust
+    trial, longest, wait = work.trial, trust, 0
     if not push_out(config, obstacles, 8.0 * trust + 1e-6, work):
         return GAVE_UP
     for _ in range(MOST_STEPS):
@@ -228,9 +230,13 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
         if is_in_one_of(config, seats, obstacles.size):
             return AT_REST
         count = look_around(config, obstacles, 6.0 * trust, work.near)
-        length = squeeze(config, count, longest, most, obstacles, work)
-        if length > 0.0:
-            longest = min(2.0 * length, most)
+        length = squeeze(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
+        if length <= 0.0:
+            # What is in the way is a matter of linear programs, for a while.
+            wait = WAIT if wait == 0 else wait - 1
+        if length > 0.9 * longest:
+            longest = min(2.0 * longest, most)
+        if length != 0.0:
             for j in range(4):
                 config[j] = trial[j]
             continue

@@ -27,7 +27,7 @@ TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
 # 1 / mm. Curvatures below this are counted as this.
 FLATTEST = 1e-9
 # How often a step is halved, at how many places it is looked at, and how much farther than both contacts the part may move.
-HALVINGS, PARTS, FARTHER = 4, 3, 3.0
+HALVINGS, PARTS, FARTHER = 3, 3, 3.0
 
 
 @inner
@@ -123,7 +123,7 @@ def squeezed(
 @inner
 def squeeze(config: Array, count: int, longest: float, most: float, obstacles: Obstacles, work: WorkSpace) -> float:
     """Write a configuration further down to ``trial`` where one peg of each jaw touches one piece; how long the way of both
-    contacts is, 0 where there is none.
+    contacts is, negative where something is in the way of a longer one, 0 where there is none.
 
     Parameters
     ----------
@@ -160,6 +160,7 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
     us, ut = ux * sx + uy * sy, ux * tx + uy * ty
     haa, hbb = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy), (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
     along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
+    asked = hypot(along_a, along_b)
     for _ in range(HALVINGS):
         length = hypot(along_a, along_b)
         if length <= SHORTEST:
@@ -181,6 +182,6 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
         for j in range(1, 4):
             motion += abs(trial[j] - config[j])
         if good and motion < FARTHER * most:
-            return length
+            return length if length == asked else -length
         along_a, along_b = along_a / 2.0, along_b / 2.0
     return 0.0
