@@ -208,8 +208,8 @@ class Builder:
             return OUTSIDE if self.closing.escapes(config) else STOP
         size = self.closing.size
         for k, (family, beyond) in enumerate(self.falling):
-            # On flat faces no step leads down; the way goes on where the part slides off them.
-            if how == AT_REST and family.holds(config, size):
+            # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
+            if how == AT_REST and config[3] >= family.middle[3] - FALLS and family.holds(config, size):
                 if k not in self.below:
                     configs, ends = self.closing.run(beyond[None], FIRST_STEP)
                     self.below[k] = configs[0], int(ends[0])
