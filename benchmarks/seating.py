@@ -49,12 +49,9 @@ def run(quick: bool) -> Section:
         f"{worst:.1f} ms at most",
         worst < MOST_MILLISECONDS,
     )
-    section.target(
-        11,
-        f"the best {MANY} of a bracket with seating, without cage and placing, in under {MOST_SECONDS:g} s",
-        f"{hundred:.2f} s",
-        hundred < MOST_SECONDS,
-    )
+    if not quick:
+        words = f"the best {MANY} of a bracket with seating, without cage and placing, in under {MOST_SECONDS:g} s"
+        section.target(11, words, f"{hundred:.2f} s", hundred < MOST_SECONDS)
     return section
 
 
@@ -93,4 +90,4 @@ def source(name: str) -> str:
 
 
 if __name__ == "__main__":
-    run_alone(run)
+    run_alone(__doc__, run)
