@@ -121,8 +121,10 @@ def comes_home(name: str, rank: int, seed: int, share: float, steps: int) -> boo
     size, seat, sign = solver.outline.arm, obstacle.start(fixture), obstacle.clamping
     generator, config = np.random.default_rng(seed), seat.copy()
     config[3] += 0.5 * sign * share * told.capture_opening
+    # So short that no step leaps over what bounds the cage.
+    step = min(0.3 * told.drop_room, 0.1)
     for _ in range(steps):
-        after = config + generator.normal(size=4) * 0.3 * told.drop_room * np.array([1.0 / size, 1.0, 1.0, 1.0])
+        after = config + generator.normal(size=4) * step * np.array([1.0 / size, 1.0, 1.0, 1.0])
         if sign * (after[3] - seat[3]) < share * told.capture_opening and obstacle.free(after) >= 0.0:
             config = after
     end = closed(obstacle, config, size, -np.inf if told.stop is None else told.stop)
