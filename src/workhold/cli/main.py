@@ -57,8 +57,9 @@ COMMANDS = {
         "quality, and what loads do to it (those of the result, if none are given here)."
     ),
     "seat": (
-        "Tell whether the part ends up in the pose of fixture N when the vise is closed: how wide open the jaws may be "
-        "when it is let go and how far off it may lie, where else it can come to rest, and what the jaws read then."
+        "Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened: how wide "
+        "open that may be when the part is let go and how far off it may lie, where else it can come to rest, and what is "
+        "read then."
     ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
