@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from math import pi, tau
 from queue import Empty, SimpleQueue
 from threading import Event
+from time import sleep
 
 import numpy as np
 from attrs import define
@@ -24,6 +25,10 @@ Records = NDArray[np.float64]
 FIRST_ORIENTATION = -0.7320508075688772
 # A block is told the closure margin known so many blocks before it; as many may run at the same time.
 LAG = 8
+# Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and time to wake up.
+NAP = 5e-4
+# Blocks handed out for each thread beyond those that are done: more than end in a nap.
+AHEAD = 32
 # Curves are of a cell that they end so near to.
 SLACK = 1e-9
 
@@ -134,6 +139,8 @@ def finished_blocks(
     margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
+    # In a pool that does other work too, that work is not to wait behind many blocks.
+    most = threads * (AHEAD if pool is None else 2)
     # Told by the threads themselves: asking each future what has become of it takes longer than a small block.
     ended = SimpleQueue[Future[Records]]()
     with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:
@@ -141,10 +148,12 @@ def finished_blocks(
             while True:
                 if whole and cancel is not None and cancel.is_set():
                     whole = False
+                    # Those that wait are not begun.
+                    running = {future: index for future, index in running.items() if not future.cancel()}
                     if stop is not None:
                         stop()
                 # Short naps between looks at the flag keep Ctrl-C alive; the queue is kept just full enough.
-                while whole and first < len(blocks) and len(running) < 2 * threads:
+                while whole and first < len(blocks) and len(running) < most:
                     known = max(first - LAG, 0)
                     if margins is not None and known >= len(margins):
                         break
@@ -155,11 +164,14 @@ def finished_blocks(
                     first += 1
                 if not running:
                     return
+                if ended.empty():
+                    sleep(NAP)
                 try:
                     future = ended.get(timeout=0.1)
                 except Empty:
                     continue
-                yield running.pop(future), future.result(), whole
+                if future in running:
+                    yield running.pop(future), future.result(), whole
         finally:
             # The pool waits for its threads, also when this is left by a signal.
             for future in running:
