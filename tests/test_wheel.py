@@ -26,6 +26,7 @@ DESIGNS = (
     ("widget.json", "widget", "--pitch", "10", "--columns", "1", *VISE, "1"),
     ("oblong.json", "oblongPart", "--pitch", "8", "--columns", "5", *VISE, "2"),
     ("bracket.json", "bracket.dxf", "--pitch", "10", "--columns", "1", "--load", "force=200 at=10,5", *VISE, "2"),
+    ("seats.json", "widget", "--pitch", "8", "--columns", "1", "--best", "20", "--seating", "2", *VISE, "2"),
     ("flange.csv", "flange", "--pitch", "8", "--columns", "2", *VISE, "1"),
 )
 

@@ -29,8 +29,6 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks
 from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
-from workhold.search.fence import answer_on_fence
-from workhold.search.fence_pairs import answer_of_pairs_on_fence
 from workhold.search.preview import Preview, Previews
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 from workhold.seating.first import Receiver, receive_seated, seated_answer
@@ -146,6 +144,9 @@ def answer(
         return answer_with_seating(query, workers, progress, cancel, preview, receiver)
     if query.toolkit.needs_pairs:
         if query.toolkit.wall is not None:
+            # What searches fences loads ball arithmetic, which no other toolkit needs beforehand.
+            from workhold.search.fence_pairs import answer_of_pairs_on_fence
+
             return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
         return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
     ways = query.toolkit.ways
@@ -186,6 +187,8 @@ def answer_of_a_way(
 ) -> Result:
     """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
     if query.toolkit.wall is not None:
+        from workhold.search.fence import answer_on_fence
+
         return handed_over(answer_on_fence(query, progress, cancel), receiver)
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)

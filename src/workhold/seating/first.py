@@ -29,7 +29,6 @@ from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.pattern import refuse_unseated
-from workhold.seating.seating import Solver
 
 __all__ = ["Receiver", "receive_seated", "seated_answer"]
 
@@ -195,6 +194,9 @@ def order_of(table: FixtureTable, told: Sequence[Seating], query: Query) -> NDAr
 def seatings_of(result: Result, work: Seats) -> list[Seating | None]:
     """The seating of all fixtures of a result; None of those that were left undone."""
     progress, count = work.progress, sum(result.found.values())
+    # Loading it takes longer than many a search.
+    from workhold.seating.seating import Solver
+
     told = Solver(result.workpiece, result.toolkit).as_many(
         result,
         threads=work.threads,

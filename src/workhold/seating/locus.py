@@ -96,7 +96,7 @@ class Locus:
         """Discs (N, 3) in which the pieces lie: middle and radius in mm."""
         rows, whole = self.loose, self.loose[:, HALF_EXTENT] >= pi / 2.0
         is_arc = rows[:, IS_ARC] != 0.0
-        out = np.array(rows[:, [X, Y, HALF_EXTENT]])
+        out = np.array(rows[:, [X, Y, HALF_EXTENT]], order="C")
         out[is_arc, 2] = rows[is_arc, RADIUS]
         # Shorter arcs about their own middle, from which the ends are farthest.
         short = is_arc & ~whole
