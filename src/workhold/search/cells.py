@@ -139,8 +139,9 @@ def finished_blocks(
     margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
-    # In a pool that does other work too, that work is not to wait behind many blocks.
-    most = threads * (AHEAD if pool is None else 2)
+    # Other work in the pool is not to wait behind many blocks, and margins are told to blocks as they are known.
+    alone = pool is None and margins is None
+    most = threads * (AHEAD if alone else 2)
     # Told by the threads themselves: asking each future what has become of it takes longer than a small block.
     ended = SimpleQueue[Future[Records]]()
     with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:
@@ -164,7 +165,7 @@ def finished_blocks(
                     first += 1
                 if not running:
                     return
-                if ended.empty():
+                if alone and ended.empty():
                     sleep(NAP)
                 try:
                     future = ended.get(timeout=0.1)
