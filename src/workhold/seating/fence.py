@@ -11,7 +11,7 @@ That function is looked at in steps of the orientation, between hull edges; wher
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from functools import cached_property, partial
 from math import acos, atan2, cos, hypot, pi, sin, tau
 
 import numpy as np
@@ -158,7 +158,7 @@ class Fence:
         there = one.there & two.there & np.isfinite(slope)
         return Standing(place, separation, slope, bx * steep, pressed, there, np.stack([cx, cy]))
 
-    @property
+    @cached_property
     def runs(self) -> list[tuple[int, Array]]:
         """Pieces of the hull, and orientations, between hull edges and ends of arcs, in which the part stands on them."""
         count = len(self.locus.hull.rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import acos, atan2, cos, hypot, sin, tau
 
 import numpy as np
@@ -87,7 +88,7 @@ class Hull:
         reach = self.reach(atan2(-uy, -ux) - configs[:, 0]).max(axis=1)
         return np.asarray(configs[:, 1] * ux + configs[:, 2] * uy - off - reach)
 
-    @property
+    @cached_property
     def sides(self) -> list[HullSide]:
         """The hull edges, by their angles."""
         found: list[tuple[float, int]] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cached_property
 from itertools import product
 from math import cos, isfinite, pi, radians, sin, tau
 from threading import Event
@@ -193,7 +194,7 @@ class Reading:
     known: Pattern
     trees: tuple[Tree, Tree]
 
-    @property
+    @cached_property
     def shift(self) -> Array:
         """(4,) by which configurations of the solved pattern become the fixture's."""
         here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right))[0] for p in (self.pattern, self.known))
@@ -202,7 +203,7 @@ class Reading:
         dx, dy = self.pattern.pegs[here] - self.known.pegs[there]
         return np.array([0.0, dx, dy, dx - (self.pattern.pegs[right, 0] - self.known.pegs[other, 0])])
 
-    @property
+    @cached_property
     def order(self) -> NDArray[np.int64]:
         """(K,) number of each solved peg among the fixture's."""
         here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right)) for p in (self.pattern, self.known))
@@ -210,7 +211,7 @@ class Reading:
         out[there] = np.array(self.pattern.numbers)[here]
         return out
 
-    @property
+    @cached_property
     def own(self) -> Array:
         """(4,) configuration of the fixture."""
         pose = self.fixture.pose
