@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Event
@@ -15,6 +15,7 @@ from time import sleep
 from types import SimpleNamespace
 
 import pytest
+from attrs import define
 from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
 from test_command import run, started, wait_for_records
 from test_run import square
@@ -25,6 +26,7 @@ from workhold.batch.report import Summary
 from workhold.batch.results import write_results
 from workhold.batch.store import FolderStore
 from workhold.batch.tables import table_names
+from workhold.batch.tasks import Outcome
 from workhold.batch.url_store import UrlStore, store_at
 from workhold.errors import InputError
 
@@ -132,6 +134,42 @@ def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(tmp_path: P
     done = [outcome.record for name, outcome in outcomes.items() if name != "task2"]
     assert all(record is not None and "was done" in plain_record(record)["refusal"] for record in done)
     assert sum("is lost" in sentence for sentence in onlooker.sentences) >= 3
+
+
+@define(eq=False)
+class Remade:
+    """A task's future whose worker is lost after it was done; another one does it again, or three more are lost."""
+
+    key: str
+    task: Fatal
+    states: list[str]
+
+    @property
+    def status(self) -> str:
+        return self.states.pop(0) if len(self.states) > 1 else self.states[0]
+
+    def add_done_callback(self, call: Callable[[Remade], None]) -> None:
+        call(self)
+
+    def result(self) -> Outcome:
+        return Outcome(self.task.name, refusal_record("done again"), "")
+
+
+@pytest.mark.parametrize("states", [["finished"], ["lost", "lost", "finished"], ["pending", "lost", "finished"]])
+def test_what_is_lost_with_its_worker_before_it_is_fetched_is_made_again(tmp_path: Path, states: list[str]) -> None:
+    from workhold.batch.cluster import ClusterWorkers
+
+    onlooker = Onlooker()
+    queue = ClusterWorkers(onlooker)
+    queue.client = SimpleNamespace(
+        submit=lambda call, task, store, key, pure: Remade(key, task, list(states)),
+        nthreads=lambda: {"worker": 1},
+        cancel=lambda futures: None,
+        status="running",
+    )
+    tasks = [Fatal(f"task{n}", "title", tmp_path, 0) for n in range(5)]
+    assert {one.name for one in queue.run(iter(tasks), Event())} == {task.name for task in tasks}
+    assert not queue.gone and not onlooker.sentences
 
 
 @contextmanager

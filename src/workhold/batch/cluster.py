@@ -34,6 +34,8 @@ LOOK, COUNT, PATIENCE = 0.1, 2.0, 20.0
 ANSWER = 20
 # Tasks at the scheduler for each thread of a worker, so that none waits for the next one.
 AHEAD = 3
+# What the library says of a task that was done and is to be done again.
+UNDONE = ("pending", "lost")
 # What ends the key of a task that is tried alone.
 ALONE = "-alone"
 
@@ -111,6 +113,8 @@ class ClusterWorkers:
         pending: dict[str, tuple[Any, Task]] = {}
         # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once more, each alone.
         suspects: deque[Task] = deque()
+        # Lost with their workers before they were fetched: others make them anew.
+        remade: list[Any] = []
         exhausted = False
         self.idle_since = monotonic()
         while not stop.is_set():
@@ -126,8 +130,14 @@ class ClusterWorkers:
                 pending[f"{task.name}{ALONE}"] = (self.submit(task, f"{task.name}{ALONE}", finished), task)
             if not pending and not self.gone:
                 return
+            for future in [future for future in remade if future.status not in UNDONE]:
+                remade.remove(future)
+                finished.put(future)
             with suppress(Empty):
                 future = finished.get(timeout=LOOK)
+                if future.status in UNDONE:
+                    remade.append(future)
+                    continue
                 taken = pending.pop(future.key, None)
                 if taken is None:
                     continue
