@@ -36,6 +36,9 @@ IntArray = NDArray[np.int64]
 
 # Half a unit in the last place of a double.
 ROUNDING = 1.2e-16
+# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line does not graze
+# the arc, its place is off by less.
+PAST_END = 1e-4
 # Pairs of lines and features looked at together.
 TOGETHER = 1 << 19
 
@@ -165,9 +168,6 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     branch = np.tile([-1.0, 1.0], len(line) // 2)
     up, some = up[line, which], some[which]
     half = np.sqrt(np.maximum((some[:, RADIUS] - up) * (some[:, RADIUS] + up), 0.0))
-    ray = np.empty((len(up), 2))
-    upright = along[0] == Y
-    ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
     with np.errstate(divide="ignore", invalid="ignore"):
         reach = 4.0 * laid.off * some[:, RADIUS] / half
     # Beside a grazing line the square root is of what rounding leaves: the place is off by no more than both roots. Its
@@ -175,6 +175,14 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     least = 16.0 * laid.off * some[:, RADIUS]
     grazing = ~(half * half > least)
     reach[grazing] = (half + np.sqrt(2.0 * least))[grazing]
+    ahead = some[:, across[0]] * branch * half + some[:, across[1]] * up
+    near = grazing | (ahead >= least_ahead(rows[round_])[which])
+    line, which, branch, up, half, reach, some = (
+        values[near] for values in (line, which, branch, up, half, reach, some)
+    )
+    ray = np.empty((len(up), 2))
+    upright = along[0] == Y
+    ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
     angle = np.arctan2(
         some[:, AXIS_X] * ray[:, 1] - some[:, AXIS_Y] * ray[:, 0],
         some[:, AXIS_X] * ray[:, 0] + some[:, AXIS_Y] * ray[:, 1],
@@ -187,3 +195,10 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     normal = some[:, [SIGN]] * ray / some[:, [RADIUS]]
     swing = 2.0 * (laid.turn + (reach + laid.off) / some[:, RADIUS])
     return Places(line, round_[which], some[:, [X, Y]] + ray, normal, slack, reach, swing, branch)
+
+
+def least_ahead(rows: Array) -> Array:
+    """By how many mm (F,) a contact lies along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
+    past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
+    angle = np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi)
+    return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))

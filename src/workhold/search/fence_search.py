@@ -9,6 +9,7 @@ the hull edge strictly between its ends), with bounds of its error; what these l
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
 from math import ceil, floor, inf
 
 import numpy as np
@@ -347,14 +348,15 @@ def closure(
     wall = laid.length / length
     last = ahead * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + across * (q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0])
     both = wall * (ahead * a[:, 1] + across * b[:, 1])
-    null = np.stack([both - last, last, ahead * wall, across * wall], axis=1)
+    forces = both - last, last, ahead * wall, across * wall
+    null = np.stack(forces, axis=1)
     reach = np.maximum(one.reach[locator], two.reach)
     swing = np.maximum(one.swing[locator], two.swing)
     pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
     with np.errstate(invalid="ignore"):
         band = 20.0 * swing + 4.0 * (reach + laid.off) / length + ROUNDING
-        size = np.abs(null).sum(axis=1)
-        least = np.minimum(null.min(axis=1, initial=1.0) - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        size = sum(map(np.abs, forces))
+        least = np.minimum(reduce(np.minimum, forces, 1.0) - LEAST_CLOSURE * size, size - LEAST_SPAN)
         force = null[:, 3] * pushes - LEAST_CLAMPING * size
         slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
         worst = np.minimum(least / band, force / (3.0 * band + size * swing))
