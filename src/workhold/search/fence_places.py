@@ -198,7 +198,7 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
 
 
 def least_ahead(rows: Array) -> Array:
-    """By how many mm (F,) a contact lies along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
+    """By how many mm (F,) contacts lie along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
     past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
     angle = np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi)
     return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))

@@ -9,7 +9,6 @@ the hull edge strictly between its ends), with bounds of its error; what these l
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import reduce
 from math import ceil, floor, inf
 
 import numpy as np
@@ -356,7 +355,8 @@ def closure(
     with np.errstate(invalid="ignore"):
         band = 20.0 * swing + 4.0 * (reach + laid.off) / length + ROUNDING
         size = sum(map(np.abs, forces))
-        least = np.minimum(reduce(np.minimum, forces, 1.0) - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        smallest = np.minimum(np.minimum(*forces[:2]), np.minimum(*forces[2:]))
+        least = np.minimum(smallest - LEAST_CLOSURE * size, size - LEAST_SPAN)
         force = null[:, 3] * pushes - LEAST_CLAMPING * size
         slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
         worst = np.minimum(least / band, force / (3.0 * band + size * swing))
