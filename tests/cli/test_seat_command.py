@@ -7,9 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from attrs import evolve
 
 import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.seating_words import SeatingWords
+from workhold.model.units import MILLIMETRE
+from workhold.seating.missed import WAS_NOT_FOUND
 from workhold.seating.seating import Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -21,6 +26,25 @@ def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("seat") / "r.json"
     workhold.save(workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=12), path)
     return path
+
+
+def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_path: Path) -> None:
+    """Of a fixture that was not found among its own seats; the sheet says so too."""
+    result = workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=1, seating=1)
+    [told] = result.seating
+    untold = evolve(
+        told, capture_opening=0.0, lowest_pass=None, way_out=0.0, cage=None, placing=None, unsettled=(WAS_NOT_FOUND,)
+    )
+    path = tmp_path / "r.json"
+    workhold.save(evolve(result, seating=(untold,)), path)
+    outcome = run("seat", path, 1)
+    text = " ".join(outcome.stdout.split())
+    assert outcome.exit_code == 0 and "a fault of the program" in " ".join(outcome.stderr.split())
+    assert "From where on it is caught is not known: put the part in its place, hold it there" in text
+    assert "of room" not in text and "Open the jaws to" not in text and "When it has come home" in text
+    assert "Beware: from where on the part is caught is not known." in " ".join(run("show", path, 1).stdout.split())
+    words = SeatingWords(untold, result[0], result.toolkit, LengthUnit.suiting(MILLIMETRE, 20.0))
+    assert "is not known" in words.steps(WEDGE)[0] and "is not known" in words.cautions()[0][1]
 
 
 def test_it_tells_what_to_do_and_what_to_read(run: Any, result_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -299,12 +299,6 @@ def test_a_part_put_above_a_fence_comes_home_and_none_is_put_into_it():
         play(solver, fixture, told.seats, evolve(at, y=at.y - 5.0), 0.5 * told.capture_opening)
 
 
-def test_on_a_fence_seating_stands_in_no_result():
-    part, toolkit = KITS["along a fence"]
-    with pytest.raises(InputError, match="each fixture by itself"):
-        workhold.design(part, toolkit, seating=1)
-
-
 def test_a_part_slides_along_a_fence_under_the_clamp():
     """A rectangle that the tip presses flat against the fence, away from the locator: loose, between its edge's ends."""
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 30, 0], [0, 30, 0]]])

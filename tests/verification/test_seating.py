@@ -11,7 +11,7 @@ import attrs
 import pytest
 
 import workhold
-from workhold import Plate, Result, Vise, Workpiece
+from workhold import Fence, Plate, Result, Vise, Workpiece
 from workhold.completeness import first_other
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
@@ -24,6 +24,12 @@ WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 NOTCH = Workpiece.from_loops("notch", [[[0, 0, 0], [60, 0, 0], [60, 25, 0.3], [35, 30, 0], [35, 45, 0], [0, 45, 0]]])
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
 NOTCH_VISE = Vise(15, 2, 2)
+PLATE = Plate(pitch=20, peg_radius=3, columns=6, rows=6)
+# With arcs on its hull; the clamp's stroke ends, or its tip meets the fence.
+BOWED = Workpiece.from_loops(
+    "bowed", [[[0, 0, 0], [60, 0, 0.3], [66, 25, 0.2], [35, 30, 0], [30, 48, 0.4], [4, 45, 0]]]
+)
+FENCE = Fence(pitch=12, peg_radius=2.5, wall_offset=5, clamp_radius=4, travel=(5, 40))
 Fields = dict[str, Any]
 
 
@@ -68,8 +74,8 @@ def told(fields: Fields, fixture: Any) -> Any:
 @pytest.mark.parametrize("form", ["json", "npz"])
 @pytest.mark.parametrize(
     ("part", "toolkit"),
-    [(WEDGE, VISE), (NOTCH, NOTCH_VISE), (WEDGE, Plate(pitch=20, peg_radius=3, columns=6, rows=6))],
-    ids=["wedge", "notch", "plate"],
+    [(WEDGE, VISE), (NOTCH, NOTCH_VISE), (WEDGE, PLATE), (BOWED, FENCE)],
+    ids=["wedge", "notch", "plate", "fence"],
 )
 def test_what_is_so_holds(part: Workpiece, toolkit: Any, form: str, tmp_path: Path) -> None:
     made = solved(part, toolkit)
@@ -99,8 +105,12 @@ def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any,
 BOUNDED = ("way_out", "cage", "placing", "depth")
 
 
-def test_every_number_that_is_off_a_little_is_refuted(listing: Listing, judge: SeatingJudge) -> None:
-    fields = listing.fixtures[0].seating.fields
+@pytest.mark.parametrize(
+    ("part", "toolkit"), [(WEDGE, VISE), (WEDGE, PLATE), (BOWED, FENCE)], ids=["vise", "plate", "fence"]
+)
+def test_every_number_that_is_off_a_little_is_refuted(part: Workpiece, toolkit: Any, tmp_path: Path) -> None:
+    listing = written(solved(part, toolkit), tmp_path / "r.json")
+    judge, fields = SeatingJudge(listing.query), listing.fixtures[0].seating.fields
     assert judge.fault(listing.fixtures[0]) == ""
     missed = []
     for place, value in leaves(fields):

@@ -127,7 +127,9 @@ def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
     named = f"a {setting.name} of " if carrier.on else ""
     more, less = ("more", "less") if gauge.grows else ("less", "more")
-    if told.capture_opening is None:
+    if told.is_untold:
+        words = [f"From where on it is caught is not known: put the part in its place, hold it there and {ways.close}."]
+    elif told.capture_opening is None:
         words = [f"However {ways.far}, the part cannot get to another place: put it in and {ways.close}."]
     else:
         wide = gauge.at(gauge.fixture.jaw_separation + told.clamping * told.capture_opening)
@@ -140,7 +142,7 @@ def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         f"When it has come home the {setting.name} is {unit.text(setting.length)}. While that is {more}, the part is stuck "
         "short of its pose."
     )
-    if told.drop_room is not None:
+    if told.drop_room is not None and not told.is_untold:
         words.append(f"{ways.done} so far, there is about {unit.text(told.drop_room)} of room at every peg at once.")
     if told.cage is not None and told.placing is not None:
         low, high = told.cage.theta_deg
@@ -162,7 +164,8 @@ def wrong_words(told: Seating, seats: list[Seat], opened: float | None, gauge: G
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
     if told.capture_opening is not None and opened is not None and opened < told.capture_opening:
-        words.append("Let go in its cage at this opening, the part reaches no other place; let go elsewhere it may.")
+        done = f"{gauge.ways.done} so far, a part let go in its cage reaches no other place; let go elsewhere it may."
+        words.append(done)
     if not wrong:
         words.append("There is no wrong place where it can come to rest.")
     else:

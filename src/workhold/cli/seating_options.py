@@ -32,14 +32,14 @@ class SeatingWords:
     seating: str | None = option(
         SEATING,
         "K",
-        "Of the first K fixtures tell from how wide open the vise catches the part and where else it can rest, and order "
-        "them by that too (see workhold seat).",
+        "Of the first K fixtures tell from how far open, or with the clamp how far drawn back, the part is caught and where "
+        "else it can rest, and order them by that too (see workhold seat).",
     )
     opening: str | None = option(
         SEATING,
         "LENGTH",
-        "List only those of them that catch the part with the jaws open by so much more than they close to; places beyond "
-        "it do not count.",
+        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so much more than "
+        "where they hold it; places beyond it do not count.",
     )
     foolproof: FoolproofOption = False
 

@@ -124,7 +124,9 @@ class SeatingWords:
         ways, (most, more) = self.gauge.ways, ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room = told.capture_opening, told.drop_room
         widest = inf if told.most is None else told.most
-        if capture is None or room is None:
+        if told.is_untold:
+            steps = ["From where on the part is caught is not known: put it in its place and hold it there."]
+        elif capture is None or room is None:
             steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
         elif self.own.jaw_separation + self.told.clamping * capture > widest:
             steps = [f"{ways.open} as far as possible: nowhere on the way can the part get to another place."]
@@ -194,7 +196,9 @@ class SeatingWords:
     def cautions(self) -> list[tuple[str, str]]:
         """What to beware of: a word for it, "capture" or "reading", and a sentence."""
         told, found = self.told, list[tuple[str, str]]()
-        if told.capture_opening is not None and told.is_hardly_caught:
+        if told.is_untold:
+            found.append(("capture", "From where on the part is caught is not known: hold it in its place meanwhile."))
+        elif told.capture_opening is not None and told.is_hardly_caught:
             found.append(
                 (
                     "capture",

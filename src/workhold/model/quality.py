@@ -105,14 +105,19 @@ EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_F
 # Of the fixtures whose seating is asked for (docs/seating.md).
 SEATING_FIGURES = (
     Figure(
-        "capture_opening", "mm", True, "How far the jaws may stand open when the part is let go, and it comes home."
+        "capture_opening",
+        "mm",
+        True,
+        "How far jaws may stand open, or a clamp be drawn back, for the part to come home.",
     ),
-    Figure("drop_room", "mm", True, "The room at every peg when the jaws are open so far."),
-    Figure("way_out", "mm", True, "How far the jaws open before the part can leave all pegs."),
+    Figure("drop_room", "mm", True, "The room at every peg when that is done so far."),
+    Figure("way_out", "mm", True, "How far it is done before the part can leave all pegs."),
     Figure("placing", "mm", True, "How near to its place every point must be put for the part to come home."),
     Figure("sticking_friction", "", True, "The friction below which the part cannot stick near its seat."),
     Figure("wrong_seats", "", False, "In how many other places the same pegs can hold the part.", 0),
-    Figure("reading", "mm", True, "What a measurement of the opening must resolve to tell a wrong seat."),
+    Figure(
+        "reading", "mm", True, "What a measurement of the opening, or of the clamp, must resolve to tell a wrong seat."
+    ),
 )
 # All figures that fixtures can be ranked by.
 RANKED = FIGURES + SEATING_FIGURES

@@ -127,8 +127,8 @@ class Query:
         of clamps there, or "all" of them; None is "best", and of other toolkits nothing.
     seating : of so many of the first fixtures tell what else their pegs can do with the part, and order them anew (see
         ``workhold.seating``); None of none.
-    opening : with seating, list only fixtures that catch the part with the jaws open by so much more than they close to, in
-        mm; wrong seats beyond it do not count.
+    opening : with seating, list only fixtures that catch the part with the jaws open, or the clamp drawn back, by so much
+        in mm more than where they hold it; wrong seats beyond it do not count.
     foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right one.
 
     Raises

@@ -9,6 +9,7 @@ from typing import Any
 from attrs import evolve, frozen
 
 from workhold.model.fixture import Pose
+from workhold.model.toolkit import Toolkit
 
 __all__ = ["CLOSE_READING", "DECIMALS", "SMALL_CAPTURE", "Cage", "Contact", "Pass", "Seat", "Seating"]
 
@@ -19,6 +20,9 @@ DECIMALS = 9
 SMALL_CAPTURE = 1.0
 # mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
 CLOSE_READING = 0.1
+# What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
+JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
+CLAMP = "the clamp is drawn back"
 # A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
 IS_OWN = 1e-5
 
@@ -169,6 +173,7 @@ class Seating:
     opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
         separation; in mm, without end if None.
     clamping : 1 where S gets less as it clamps, -1 where it gets more.
+    opened : what is done so that the part can be put in, such as "the jaws are opened".
     """
 
     capture_opening: float | None
@@ -184,6 +189,18 @@ class Seating:
     opening: float | None = None
     most: float | None = None
     clamping: int = 1
+    opened: str = JAWS[1]
+
+    def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
+        """The same with what a toolkit tells, and an opening up to which seats count."""
+        travel, sign = toolkit.moving.travel, toolkit.clamping
+        most, opened = None if travel is None else travel.most, JAWS[sign] if toolkit.moving.on is None else CLAMP
+        return evolve(self, opening=opening, most=most, clamping=sign, opened=opened)
+
+    @property
+    def is_untold(self) -> bool:
+        """Whether it is not known from where on the part is caught, so that nothing is claimed."""
+        return self.lowest_pass is None and self.capture_opening is not None
 
     @property
     def drop_room(self) -> float | None:
@@ -226,9 +243,10 @@ class Seating:
     def warnings(self) -> tuple[str, ...]:
         """What there is to beware of, one sentence each without a full stop; lengths in mm."""
         out, reading = list[str](), self.reading_of()
-        if self.is_hardly_caught:
-            opened = f"{self.capture_opening:.3f} mm"
-            out.append(f"the part is caught only when opened by less than {opened}")
+        if self.is_untold:
+            out.append("from where on the part is caught is not known")
+        elif self.is_hardly_caught:
+            out.append(f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm")
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
             out.append(f"a wrong seat reads only {reading:.3f} mm otherwise, which a caliper hardly tells")
         return tuple(out)

@@ -1,4 +1,4 @@
-"""Forces of candidates on a fence, how well they balance, and how near everything else is."""
+"""Forces of candidates, how well they balance and, on a fence, how near everything else is."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from workhold.kernels.seating.pieces import clearances
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["contact_normals", "settle_on_wall"]
+__all__ = ["contact_normals", "forces_of", "settle_on_wall"]
 
 Array = NDArray[np.float64]
 
@@ -68,10 +68,16 @@ def settle_on_wall(candidates: Array, locus: Locus, pattern: Pattern, size: floa
                 first, end = locus.parts[side].tolist()
                 clearances(pegs[peg : peg + 1], locus.rows, first, end, touched)
                 row[CLEAR] = min(row[CLEAR], float(touched[0]))
-        places, normals, moves = contact_normals(locus, pattern, row)
-        moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
-        balance = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves])
-        forces, _, rank, _ = np.linalg.lstsq(balance, np.array([0.0, 0.0, 0.0, 1.0]), rcond=1e-10)
+        forces, residual, rank = forces_of(locus, pattern, row, size)
         if rank == count:
-            row[FORCE : FORCE + count] = forces
-            row[RESIDUAL] = float(np.abs(balance @ forces - [0.0, 0.0, 0.0, 1.0]).max())
+            row[FORCE : FORCE + count], row[RESIDUAL] = forces, residual
+
+
+def forces_of(locus: Locus, pattern: Pattern, row: Array, size: float) -> tuple[Array, float, int]:
+    """Forces (n,) of the contacts of a candidate, per unit of that on what moves, how well they balance, and how many of
+    the contacts are independent; moments are divided by a size in mm."""
+    places, normals, moves = contact_normals(locus, pattern, row)
+    moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
+    balance, target = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves]), [0.0, 0.0, 0.0, 1.0]
+    forces, _, rank, _ = np.linalg.lstsq(balance, np.array(target), rcond=1e-10)
+    return forces, float(np.abs(balance @ forces - target).max()), int(rank)

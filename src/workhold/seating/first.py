@@ -19,7 +19,6 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
-from workhold.errors import InputError
 from workhold.listing.listed import stage
 from workhold.listing.ranking import rank
 from workhold.model.notes import best_note, seated_note
@@ -27,7 +26,6 @@ from workhold.model.quality import SEATING_FIGURES, WARNINGS
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
 from workhold.seating.pattern import refuse_unseated
 
 __all__ = ["Receiver", "receive_seated", "seated_answer"]
@@ -89,7 +87,7 @@ def seated_answer(
     InputError
         For a toolkit of which no seating is worked out, and what the search raises.
     """
-    refuse_unlisted(query.toolkit)
+    refuse_unseated(query.toolkit)
     result = search(query.without_seating, stage(progress, 0.0, SEARCHED))
     return seated(result, Seats(query, threads, stage(progress, SEARCHED, 1.0), cancel))
 
@@ -114,26 +112,11 @@ def receive_seated(
     InputError
         As :func:`seated_answer`.
     """
-    refuse_unlisted(query.toolkit)
+    refuse_unseated(query.toolkit)
     told = None if progress is None else rising(progress)
     work = Seats(query, threads, stage(told, SEARCHED, 1.0), cancel)
     result = search(query.without_seating, stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work))
     return evolve(result, query=query)
-
-
-def refuse_unlisted(toolkit: Toolkit) -> None:
-    """Refuse a toolkit of which no seating stands in results.
-
-    Raises
-    ------
-    InputError
-        As ``Pattern.of``, and on a fence, where no file's seating is verified yet.
-    """
-    refuse_unseated(toolkit)
-    if toolkit.wall is not None:
-        raise InputError(
-            "seating stands in results of vises and plates: on a fence ask for that of each fixture by itself."
-        )
 
 
 def rising(progress: Progress) -> Progress:

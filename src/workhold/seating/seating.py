@@ -10,10 +10,9 @@ from math import cos, isfinite, pi, radians, sin, tau
 from threading import Event
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.errors import WorkholdError
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CONTACTS,
@@ -36,6 +35,7 @@ from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.locus import Locus
+from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND, as_candidate
 from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
 from workhold.seating.settled import is_equilibrium
@@ -51,7 +51,7 @@ AGREES = 1e-5
 SHALLOW = 1e-3
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
-NO_PASS = "The pass at which its cage opens could not be settled, so no opening is told from which the part is caught."
+NO_PASS = "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
 # Those that are listed all the same: nothing is known of their depth, or they are fixtures of a complete list.
 ALWAYS = ("fixture", "loose", "unsettled")
 KINDS = {2: "curved", 3: "curved", 4: "fixture"}
@@ -69,7 +69,7 @@ class Solver:
     workpiece: Workpiece
     toolkit: Toolkit
     loci: dict[tuple[float, float], Locus] = field(factory=dict)
-    solved: dict[tuple[object, ...], tuple[Pattern, tuple[Tree, Tree]]] = field(factory=dict)
+    solved: dict[tuple[object, ...], tuple[Pattern, tuple[Tree, Tree], tuple[Array, ...]]] = field(factory=dict)
     outline: Silhouette = field(init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -82,13 +82,15 @@ class Solver:
         locus = self.loci[pattern.radii]
         return Closing(locus.turned_over if turned_over else locus, pattern, self.outline.arm)
 
-    def trees(self, pattern: Pattern) -> tuple[Tree, Tree]:
-        """What can be reached from where, as drawn and turned over."""
-        one, two = (
-            Tree.of(equilibria(closing.locus, pattern, closing.size), closing)
-            for closing in (self.closing(pattern, turned_over) for turned_over in (False, True))
-        )
-        return one, two
+    def trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[Tree, Tree]:
+        """What can be reached from where, as drawn and turned over, with further seats (24,) of the part as drawn."""
+        out = list[Tree]()
+        for closing in (self.closing(pattern, turned_over) for turned_over in (False, True)):
+            found = equilibria(closing.locus, pattern, closing.size)
+            if missed and not out:
+                found = evolve(found, seats=np.vstack([found.seats, *missed]))
+            out.append(Tree.of(found, closing))
+        return out[0], out[1]
 
     def of(self, fixture: Fixture, with_cage: bool = True) -> Seating:
         """The seating of a fixture.
@@ -101,18 +103,24 @@ class Solver:
         ------
         InputError
             As ``Pattern.of``.
-        WorkholdError
-            When the fixture is not found among the seats of its own pegs, which is a mistake of the program.
         """
         return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
 
     def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
         """The seating of a fixture of a pattern."""
+        return self.reading(fixture, pattern).seating(with_cage)
+
+    def reading(self, fixture: Fixture, pattern: Pattern) -> Reading:
+        """What a pattern, solved once, says of a fixture, which is among its seats from then on."""
         key = pattern.key()
         if key not in self.solved:
-            self.solved[key] = pattern, self.trees(pattern)
-        known, trees = self.solved[key]
-        return Reading(self, fixture, pattern, known, trees).seating(with_cage)
+            self.solved[key] = pattern, self.trees(pattern), ()
+        reading = Reading(self, fixture, pattern, *self.solved[key])
+        if reading.nearest(reading.trees[0].seats) is not None:
+            return reading
+        missed = (*reading.missed, reading.as_candidate())
+        self.solved[key] = reading.known, self.trees(reading.known, missed), missed
+        return Reading(self, fixture, pattern, *self.solved[key])
 
     def of_all(self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None) -> list[Seating]:
         """The seatings of many fixtures, in their order; patterns are shared out among threads.
@@ -126,8 +134,6 @@ class Solver:
         ------
         InputError
             As ``Pattern.of``, and for a number of threads that is too large.
-        WorkholdError
-            As :meth:`of`.
         """
         return [told for told in self.as_many(fixtures, with_cage, thread_count(threads)) if told is not None]
 
@@ -148,7 +154,7 @@ class Solver:
 
         Raises
         ------
-        InputError, WorkholdError
+        InputError
             As :meth:`of`.
         """
         given = [(fixture, Pattern.of(fixture, self.toolkit)) for fixture in fixtures]
@@ -161,6 +167,9 @@ class Solver:
         def tell(numbers: list[int]) -> int:
             if cancel is not None and cancel.is_set():
                 return 0
+            # All that stand on the pegs are known before any is told.
+            for number in numbers[1:]:
+                self.reading(*given[number])
             for number, one in [(number, self.read(*given[number], with_cage)) for number in numbers]:
                 told[number] = one
             return len(numbers)
@@ -186,6 +195,8 @@ class Reading:
     Parameters
     ----------
     pattern, known : the fixture's, and the one that was solved.
+    trees : what can be reached from where, as drawn and turned over.
+    missed : (24,) candidates of fixtures that were not found among the seats, to which they were added.
     """
 
     solver: Solver
@@ -193,6 +204,7 @@ class Reading:
     pattern: Pattern
     known: Pattern
     trees: tuple[Tree, Tree]
+    missed: tuple[Array, ...] = ()
 
     @cached_property
     def shift(self) -> Array:
@@ -217,6 +229,18 @@ class Reading:
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
         return self.pattern.door.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation]))
+
+    def nearest(self, rows: Array) -> int | None:
+        """Which of some candidates (N, 24) is the fixture; None if none is."""
+        configs = rows[:, CONFIG] + self.shift
+        away = distances(configs, self.own, self.solver.outline.arm) + np.abs(configs[:, 3] - self.own[3])
+        return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
+
+    def as_candidate(self) -> Array:
+        """The fixture as a candidate of the solved pattern."""
+        closing, faces = self.solver.closing(self.known, False), [peg.face for peg in self.fixture.pegs]
+        touched = [faces[number] for number in self.order]
+        return as_candidate(closing.locus, self.known, self.own - self.shift, touched, closing.size)
 
     def pose(self, config: Array, mirrored: bool) -> Pose:
         """The pose of a configuration, in the toolkit's frame."""
@@ -284,14 +308,9 @@ class Reading:
 
     def seating(self, with_cage: bool) -> Seating:
         """The seating of the fixture."""
-        tree, own = self.trees[0], self.own
-        configs = tree.seats[:, CONFIG] + self.shift
-        away = distances(configs, own, self.solver.outline.arm) + np.abs(configs[:, 3] - own[3])
-        if not len(away) or away.min() > AGREES:
-            raise WorkholdError(
-                f"the fixture at {self.fixture.pose.theta_deg:.3f} degrees was not found among the seats of its own pegs."
-            )
-        place = int(np.argmin(away))
+        tree = self.trees[0]
+        place = self.nearest(tree.seats)
+        assert place is not None
         row, join = tree.seats[place], tree.join_of(place)
         way_out = tree.way_out(place)
         seats = self.seats()
@@ -301,6 +320,11 @@ class Reading:
         if join is not None and not is_equilibrium(join.candidate, self.solver.closing(self.known, False)):
             # Nothing is told that was not seen to be so; from no opening at all the part comes home for certain.
             join, capture, doubts = None, 0.0, (*doubts, NO_PASS)
+        if self.missed and self.nearest(np.array(self.missed)) is not None:
+            # Whatever missed the seat may have missed a pass out of it.
+            join, capture, way_out, doubts = None, 0.0, float(row[SEPARATION]), (*doubts, WAS_NOT_FOUND)
+        elif self.missed:
+            doubts = (*doubts, OTHERS_MAY_BE)
         cage, placing = (None, None)
         if join is not None and with_cage:
             cage, placing = self.freedom(row[CONFIG], join)
@@ -314,10 +338,8 @@ class Reading:
             sticking_friction=self.sticking(row),
             stop=self.pattern.door.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
             seats=seats,
-            clamping=int(self.pattern.door.sign),
             unsettled=doubts,
-            most=travel.most if (travel := self.solver.toolkit.moving.travel) else None,
-        )
+        ).in_toolkit(self.solver.toolkit)
 
     def lowest_pass(self, join: Join) -> Pass:
         """A join as the fixture's pass."""

@@ -44,9 +44,7 @@ def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: in
         When they cannot be used.
     """
     told = checked_seating(fields, pose, Path(path), number)
-    travel, clamping = query.toolkit.moving.travel, query.toolkit.clamping
-    most = None if travel is None else travel.most
-    return Claim(fields, evolve(told, opening=query.opening, most=most, clamping=clamping))
+    return Claim(fields, told.in_toolkit(query.toolkit, query.opening))
 
 
 def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:

@@ -71,6 +71,15 @@ class FloatOutline:
         x, y = points[:, 0] * (-1.0 if mirrored else 1.0), points[:, 1]
         return np.stack([c * x - s * y + pose["x"], s * x + c * y + pose["y"]], axis=1)
 
+    def lowest(self, pose: Mapping[str, float], mirrored: bool) -> float:
+        """How high in mm the lowest point of the part is in a pose."""
+        turn = radians(pose["theta_deg"])
+        down = np.array([-sin(turn) * (-1.0 if mirrored else 1.0), -cos(turn)])
+        x, y, radius, middle, half = self.arcs.T
+        away = np.abs((np.arctan2(down[1], down[0]) - middle + pi) % (2.0 * pi) - pi)
+        below = np.stack([x, y], axis=1)[away <= half] + radius[away <= half, None] * down
+        return float(self.placed(np.concatenate([self.points, below]), pose, mirrored)[:, 1].min())
+
     def local(self, points: Array, pose: Mapping[str, float], mirrored: bool) -> Array:
         """The way back."""
         c, s = cos(radians(pose["theta_deg"])), sin(radians(pose["theta_deg"]))

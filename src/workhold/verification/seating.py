@@ -20,7 +20,7 @@ from math import hypot, radians, sin
 from typing import Any
 
 import numpy as np
-from attrs import define, frozen
+from attrs import define
 from flint import arb
 from numpy.typing import NDArray
 
@@ -28,9 +28,13 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, norm, turned
 from workhold.verification.claims import Claim
+from workhold.verification.contacts import Pose
+from workhold.verification.kinds import hardware_of
 from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.rules import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
+from workhold.verification.seating_contacts import Touching, touching_faults, touching_wall
+from workhold.verification.seating_stop import stop_of, travelled
 
 __all__ = ["Judged", "SeatingJudge"]
 
@@ -42,25 +46,6 @@ BALANCED, PRESSES = 1e-6, 1e-9
 # No unit. Friction at which the part can stick is told to this part of it; where it never can, not below the second.
 FRICTION, MOST_FRICTION = 1e-5, 50.0
 STRICT = ("fixture", "corner", "pocket", "curved")
-
-
-@frozen
-class Touching:
-    """A contact of a seat or a pass.
-
-    Parameters
-    ----------
-    peg : its number.
-    at, normal : in the toolkit's frame, in mm from its origin, where the part is touched, and the outward unit normal there.
-    off : how far in mm the peg is from touching, at most.
-    is_inside : whether what is touched is the inside of a face, or a corner.
-    """
-
-    peg: int
-    at: Point
-    normal: Point
-    off: float
-    is_inside: bool
 
 
 @define(slots=False)
@@ -113,6 +98,18 @@ class Judged:
         assert travel is not None
         return travel.unit
 
+    @cached_property
+    def on_wall(self) -> list[int]:
+        """Which of the pegs are ends of the contact with a wall."""
+        return [number for number, peg in enumerate(self.fixture.pegs) if peg.is_on_wall]
+
+    @property
+    def travel(self) -> float:
+        """How far in mm what moves has gone, of a clamp told by where its tip is."""
+        if self.fixture.direction is None:
+            return self.fixture.jaw_separation
+        return travelled(self.fixture.pegs[self.moving.index(True)], self.judge.query.toolkit)
+
     @property
     def clamping(self) -> int:
         """1 where the travel gets less as it clamps, -1 where it gets more."""
@@ -126,11 +123,11 @@ class Judged:
             yield f"it tells {len(own)} seats in the fixture's own pose"
             return
         mine = seats[own[0]]
-        if self.fixture.direction is None and abs(mine["jaw_separation"] - self.fixture.jaw_separation) > AGREEMENT:
+        if abs(mine["jaw_separation"] - self.travel) > AGREEMENT:
             yield "the separation of the fixture's own seat is not the fixture's"
-        faces = {peg: face.face for peg, face in enumerate(self.fixture.pegs)}
-        told = {contact["peg"]: contact.get("face") for contact in mine["contacts"]}
-        if mine["kind"] != "fixture" or told != faces or len(mine["contacts"]) != len(faces):
+        told = {contact["peg"]: contact for contact in mine["contacts"]}
+        is_own = len(told) == len(mine["contacts"]) == len(self.fixture.pegs) and all(map(self.is_own, told.values()))
+        if mine["kind"] != "fixture" or not is_own:
             yield "the fixture's own seat does not have the fixture's contacts"
         order = [seat["jaw_separation"] for seat in seats]
         if any(one > other + ROUNDED for one, other in pairwise(order)):
@@ -157,8 +154,8 @@ class Judged:
         if not self.is_free(seat["pose"], seat["mirrored"], apart):
             yield "has a peg in the part"
         contacts = [self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]]
-        yield from touching_faults(contacts)
-        if kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
+        yield from touching_faults(contacts, self.on_wall)
+        if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
             yield "does not have a force for each contact"
@@ -166,6 +163,33 @@ class Judged:
             yield "is no equilibrium of its forces"
         elif seat["kind"] == "loose" and not self.can_balance(contacts, seat["pose"], seat["mirrored"]):
             yield "is no equilibrium of its contacts"
+
+    def is_own(self, contact: Mapping[str, int]) -> bool:
+        """Whether a contact in the fixture's pose is one of the fixture's: on its face, on a wall where its end is."""
+        peg = self.fixture.pegs[contact["peg"]]
+        if not peg.is_on_wall:
+            return contact.get("face") == peg.face
+        (x, y), (u, v) = self.touching(contact, vars_of(self.fixture), False, 0.0).at, self.ends[contact["peg"]]
+        return bool(norm((x - u, y - v)) < AGREEMENT)
+
+    @cached_property
+    def ends(self) -> list[Point]:
+        """Where each peg of the fixture, or an end of its wall, touches; not every form of a file tells it of a wall."""
+        theta = arb(self.fixture.pose.theta_deg) * arb.pi() / 180
+        pose = Pose.of(theta, arb(self.fixture.pose.x), arb(self.fixture.pose.y), arb(0))
+        contacts = hardware_of(self.judge.query.toolkit).contacts(self.fixture, self.judge.outline)
+        return [contact.place(pose) for contact in contacts]
+
+    def kind_of(self, seat: Mapping[str, Any]) -> str:
+        """What a seat is called with its contacts."""
+        contacts = seat["contacts"]
+        if len(contacts) < 4:
+            return "curved"
+        if len({contact["peg"] for contact in contacts}) < 4:
+            return "pocket"
+        # Where a part lies flush on a wall it has corners on it.
+        is_corner = any("corner" in one and one["peg"] not in self.on_wall for one in contacts)
+        return "corner" if is_corner else "fixture"
 
     def figure_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """Figures that do not follow from seats and contacts."""
@@ -189,9 +213,8 @@ class Judged:
         if out is not None and (opening is None or out < opening - ROUNDED):
             yield "the way out is nearer than the capture opening"
         yield from self.friction_faults(told.sticking_friction, own)
-        stop = self.stop
-        if stop is not None and not agree(stop, fields["stop"], AGREEMENT):
-            yield "stop is not where pegs of both jaws are the smallest gap apart"
+        if not agree(stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT):
+            yield "stop is not where what moves is stopped without the part"
 
     def counts(self, place: int, seat: Mapping[str, Any]) -> bool:
         """Whether a seat is a wrong one that counts."""
@@ -201,15 +224,6 @@ class Judged:
         if query.opening is not None and not self.clamping * seat["difference"] < query.opening:
             return False
         return told.most is None or seat["jaw_separation"] <= told.most
-
-    @property
-    def stop(self) -> float | None:
-        """The smallest separation of a vise that closes; None of another toolkit, which is not looked at."""
-        toolkit = self.judge.query.toolkit
-        if toolkit.gap is None or self.clamping < 0:
-            return None
-        still, moved = ([p.x for p, m in zip(self.fixture.pegs, self.moving, strict=True) if m == s] for s in (0, 1))
-        return toolkit.gap + max(still) - min(moved) + self.fixture.jaw_separation
 
     def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """What is wrong with the pass, the cage and the placing."""
@@ -230,7 +244,7 @@ class Judged:
         contacts = [self.touching(contact, top["pose"], False, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
-        yield from (f"the pass {words}" for words in touching_faults(contacts))
+        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall))
         if not self.is_free(top["pose"], False, rise):
             yield "the pass has a peg in the part"
         if not self.can_balance(contacts, top["pose"], False):
@@ -275,10 +289,12 @@ class Judged:
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
     def is_free(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> bool:
-        """Whether no peg is in the part."""
-        pegs = np.array([self.peg(number, apart) for number in range(len(self.moving))])
-        carriers = (self.judge.query.toolkit.carrier(peg.carrier) for peg in self.fixture.pegs)
-        radii = np.array([carrier.peg_radius for carrier in carriers])
+        """Whether no peg is in the part, and the part in no wall."""
+        numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
+        pegs, toolkit = np.array([self.peg(number, apart) for number in numbers]), self.judge.query.toolkit
+        radii = np.array([toolkit.carrier(self.fixture.pegs[number].carrier).peg_radius for number in numbers])
+        if toolkit.wall is not None and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
+            return False
         return self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored)
 
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
@@ -289,6 +305,8 @@ class Judged:
     def touching(self, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool, apart: float) -> Touching:
         """A contact in a pose, in balls."""
         number = contact["peg"]
+        if number in self.on_wall:
+            return touching_wall(self.judge.outline, contact, pose, mirrored)
         x, y = self.peg(number, apart)
         sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
         local = turned(exact_point(x - pose["x"], y - pose["y"]), cosine, -sine)
@@ -341,25 +359,6 @@ class Judged:
 def vars_of(fixture: Fixture) -> dict[str, float]:
     """The pose of a fixture by its fields."""
     return {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y}
-
-
-def touching_faults(contacts: Sequence[Touching]) -> Iterator[str]:
-    """Contacts that do not touch what they are said to touch, or are told twice."""
-    if len({(one.peg, *(round(float(part.mid()), 5) for part in one.at)) for one in contacts}) < len(contacts):
-        yield "has a contact twice"
-    for one in contacts:
-        if not (one.off < AGREEMENT and one.is_inside):
-            yield f"has peg {one.peg} not where it is said to touch"
-
-
-def kind_of(seat: Mapping[str, Any]) -> str:
-    """What a seat is called with its contacts."""
-    contacts = seat["contacts"]
-    if len(contacts) < 4:
-        return "curved"
-    if len({contact["peg"] for contact in contacts}) < 4:
-        return "pocket"
-    return "corner" if any("corner" in contact for contact in contacts) else "fixture"
 
 
 def agree(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:

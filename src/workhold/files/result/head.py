@@ -110,11 +110,7 @@ def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Resu
             f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of {query.seating or 0} and "
             f"{len(result)} are listed."
         )
-    travel = query.toolkit.moving.travel
-    most = None if travel is None else travel.most
-    clamping = query.toolkit.clamping
-    told = (evolve(one, opening=query.opening, most=most, clamping=clamping) for one in seating)
-    return evolve(result, seating=tuple(told))
+    return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
 
 
 def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:

@@ -1,5 +1,5 @@
 /**
- * Will it end up there? The part is put between the pegs by hand, the jaws close, and it comes home or does not; with from how
+ * Will it end up there? The part is put between the pegs by hand, what moves closes, and it comes home or does not; with from how
  * wide open it is caught, and every other place where the same pegs can hold it.
  */
 import { ApiError, ask, send } from "./api.js";

@@ -1,0 +1,89 @@
+"""A fixture that is not found among its own seats is told with what is known of it, and the rest goes on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+import workhold
+from workhold import Fence, Fixture, Result, Vise, Workpiece
+from workhold.kernels.seating.columns import THETA
+from workhold.seating import seating
+from workhold.seating.equilibria import Equilibria
+from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND
+from workhold.seating.pattern import Pattern
+
+WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
+KITS = {
+    "vise": Vise(pitch=20, columns=2, peg_radius=3),
+    "fence": Fence(pitch=15, peg_radius=3, wall_offset=6, directions=["-x"]),
+}
+FIND = seating.equilibria
+
+
+def missing(fixture: Fixture, toolkit: Any) -> Any:
+    """What looks for seats, but on the pegs of a fixture finds none in its orientation."""
+    own = Pattern.of(fixture, toolkit)
+    turn = own.door.enter(np.radians([fixture.pose.theta_deg, 0, 0, 0]))[0]
+
+    def find(locus: Any, pattern: Pattern, size: float) -> Equilibria:
+        found = FIND(locus, pattern, size)
+        if locus.mirrored or pattern.key() != own.key():
+            return found
+        away = np.abs(np.angle(np.exp(1j * (found.seats[:, THETA] - turn))))
+        return evolve(found, seats=found.seats[away > 1e-6])
+
+    return find
+
+
+@pytest.fixture(scope="module", params=list(KITS))
+def result(request: pytest.FixtureRequest) -> Result:
+    """Two fixtures with their seating."""
+    return workhold.design(WEDGE, KITS[request.param], seating=2, best=2)
+
+
+def test_it_is_named_and_tells_what_is_known(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    first, other = result[:]
+    monkeypatch.setattr(seating, "equilibria", missing(first, result.toolkit))
+    made = workhold.design(WEDGE, result.toolkit, seating=2, best=2)
+    assert len(made.seating) == 2 and made.complete
+    told, kept = (made.seating[made[:].index(one)] for one in (first, other))
+    assert (told.capture_opening, told.lowest_pass, told.way_out, told.placing) == (0.0, None, 0.0, None)
+    assert WAS_NOT_FOUND in told.unsettled and told.is_hardly_caught and not told.catches(1e-6)
+    # It is a seat all the same, with the contacts, forces and friction that it has, and what else is known stays.
+    whole = first.seating
+    assert told.sticking_friction == pytest.approx(whole.sticking_friction, abs=1e-9)
+    seats = [
+        sorted(one.seats, key=lambda seat: (seat.mirrored, round(seat.pose.theta_deg, 4))) for one in (told, whole)
+    ]
+    for one, right in zip(*seats, strict=True):
+        assert (one.kind, one.is_own, one.mirrored) == (right.kind, right.is_own, right.mirrored)
+        assert {*one.contacts} == {*right.contacts}
+        assert one.jaw_separation == pytest.approx(right.jaw_separation, abs=1e-6)
+        assert sorted(one.forces) == pytest.approx(sorted(right.forces), abs=1e-6)
+    assert kept.as_fields() == other.seating.as_fields()
+    path = tmp_path / "r.json"
+    workhold.save(made, path)
+    assert workhold.verify(path).holds
+
+
+def test_others_on_the_same_pegs_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first of two that stand alike: both are told with it among their seats, whichever was asked for first."""
+    every = workhold.design(WEDGE, KITS["vise"])
+    groups: dict[Any, list[Fixture]] = {}
+    for fixture in every:
+        groups.setdefault(Pattern.of(fixture, every.toolkit).key(), []).append(fixture)
+    one, other = next(
+        pair[:2]
+        for pair in groups.values()
+        if len(pair) > 1 and abs(pair[0].pose.theta_deg - pair[1].pose.theta_deg) > 1
+    )
+    monkeypatch.setattr(seating, "equilibria", missing(other, every.toolkit))
+    here, there = seating.Solver(WEDGE, every.toolkit).of_all([one, other])
+    assert OTHERS_MAY_BE in here.unsettled and here.capture_opening and WAS_NOT_FOUND in there.unsettled
+    assert sum(seat.is_at(other.pose) for seat in there.seats) == 1
+    assert len(here.seats) == len(there.seats)
