@@ -2,7 +2,7 @@
 
     python benchmarks/first_choice.py            all parts, and docs/first-choice.md with its pictures
     python benchmarks/first_choice.py --only hinge --pictures /tmp
-    python benchmarks/first_choice.py --seating 100
+    python benchmarks/first_choice.py --seating 100     the same with seating, and its table on that page
 
 Targets: no warnings wherever a fixture without exists; contacts at least 1 mm from edges wherever one has that; square where
 a square fixture is within 25 % of the best location error; a clamp amplification of at most 1.5 where that is attainable
@@ -10,7 +10,6 @@ within the same, among square ones where the part is to be square. "The best" is
 
 With --seating K the first choice is that of the first K fixtures ordered by their seating, and a fifth target is that it
 catches the part from at least 1 mm of opening where one of the K does that is within 25 % of their best location error.
-Nothing is then written into the docs.
 """
 
 from __future__ import annotations
@@ -44,6 +43,7 @@ from workhold.model.seating import SMALL_CAPTURE
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs" / "first-choice.md", ROOT / "docs" / "figures" / "first-choice"
 PLACE = "<!-- first choices -->\n", "<!-- end of first choices -->"
+SEATED_PLACE = "<!-- with seating -->\n", "<!-- end of with seating -->"
 SHOWN = (LOCATION_ERROR, CLAMP_AMPLIFICATION, CLOSURE_MARGIN, EDGE_DISTANCE)
 WITHIN = 1.25
 TARGETS = ("warnings", "edges", "square", "gentle")
@@ -65,20 +65,22 @@ def judged(quality: NDArray[np.float64]) -> dict[str, bool]:
     }
 
 
-def seated(result: workhold.Result) -> tuple[dict[str, bool], str]:
-    """Whether the first fixture is caught from far enough open, and a sentence about how far; nothing without seating."""
+def seated(result: workhold.Result) -> dict[str, Any]:
+    """From how far open the first fixture and the best within 25 % catch the part, what wrong seats read otherwise, how many
+    there are, and whether that meets the target; nothing without seating."""
     if not result.seating:
-        return {}, ""
+        return {}
     error = result.table.quality[: len(result.seating), LOCATION_ERROR]
     caught = np.array([told.figures["capture_opening"] for told in result.seating])
-    close = caught[error <= WITHIN * error.min()]
+    attainable = float(caught[error <= WITHIN * error.min()].max())
     first = result.seating[0]
-    reading = first.figures["reading"]
-    return (
-        {"caught": bool(caught[0] >= SMALL_CAPTURE) or not bool((close >= SMALL_CAPTURE).any())},
-        f"Caught from {caught[0]:.3f} mm of opening, of {close.max():.3f} mm attainable; a wrong seat reads "
-        f"{reading:.3f} mm otherwise; {len(first.wrong_within())} wrong seats.",
-    )
+    return {
+        "caught": float(caught[0]),
+        "attainable": attainable,
+        "reading": first.figures["reading"],
+        "wrong": len(first.wrong_within()),
+        "met": bool(caught[0] >= SMALL_CAPTURE) or attainable < SMALL_CAPTURE,
+    }
 
 
 def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
@@ -88,9 +90,10 @@ def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
     good = quality[quality[:, WARNINGS] == quality[:, WARNINGS].min()]
     best = {n: float((good[:, n].max if FIGURES[n].more_is_better else good[:, n].min)()) for n in SHOWN}
     first = result[0]
-    met, sentence = seated(result)
+    seating_told = seated(result)
+    met = {"caught": seating_told["met"]} if seating_told else {}
     return {
-        "seating": sentence,
+        "seating": seating_told,
         "part": part,
         "count": len(result),
         "first": {n: float(quality[0, n]) for n in (*SHOWN, TILT, WARNINGS)},
@@ -119,7 +122,6 @@ def section(choice: dict[str, Any]) -> str:
         f"{part.words[:1].upper()}{part.words[1:]}. First of {choice['count']:,}: {choice['holes']}, {lies} at "
         f"{choice['angle']:.3f}°, {first[WARNINGS]:.0f} warnings. "
         + (f"**Short of: {', '.join(short)}.**" if short else "All targets met."),
-        *([choice["seating"]] if choice["seating"] else []),
         "",
         "| figure | first choice | best of the list |",
         "|---|---:|---:|",
@@ -130,22 +132,55 @@ def section(choice: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def seated_row(choice: dict[str, Any]) -> str:
+    """The row of a part in the table of seating."""
+    told, unit = choice["seating"], choice["part"].unit
+
+    def length(found: float, endless: str) -> str:
+        return endless if np.isinf(found) else f"{unit.text(found, unit.decimals)}"
+
+    return (
+        f"| {choice['part'].name} | {choice['holes']} | {choice['angle']:.3f}° | {length(told['caught'], 'any')} "
+        f"| {length(told['attainable'], 'any')} | {told['wrong']} | {length(told['reading'], 'none')} "
+        f"| {'met' if all(choice['targets'].values()) else '**short**'} |"
+    )
+
+
+def seated_table(choices: list[dict[str, Any]], missed: int) -> str:
+    """What the page says of first choices with seating."""
+    lines = [
+        f"{(len(TARGETS) + 1) * len(choices) - missed} of {(len(TARGETS) + 1) * len(choices)} targets are met.",
+        "",
+        "| part | first choice | angle | caught from | attainable | wrong seats | nearest reads | targets |",
+        "|---|---|---:|---:|---:|---:|---:|---|",
+        *map(seated_row, choices),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def written(text: str, place: tuple[str, str]) -> None:
+    """Put a text into its place on the page."""
+    page = PAGE.read_text(encoding="utf-8")
+    head, tail = page.partition(place[0])[0], page.partition(place[1])[2]
+    PAGE.write_text(head + place[0] + text + place[1] + tail, encoding="utf-8")
+
+
 def main() -> None:
     """Run the bench."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", action="append", help="a part's name; nothing is written into the docs")
-    parser.add_argument("--seating", type=int, help="order the first so many by their seating; nothing is written")
+    parser.add_argument("--seating", type=int, help="order the first so many by their seating")
     parser.add_argument("--pictures", type=Path, help="also write pictures as PNG into this folder")
     asked = parser.parse_args()
-    sections = []
+    choices = list[dict[str, Any]]()
     missed = 0
     for part in PARTS:
         if asked.only and part.name not in asked.only:
             continue
         choice = chosen(part, asked.seating)
-        sections.append(section(choice))
+        choices.append(choice)
         missed += sum(not met for met in choice["targets"].values())
-        sys.stdout.write(section(choice) + "\n")
+        sys.stdout.write(section(choice) + (seated_row(choice) + "\n" if asked.seating else "") + "\n")
         sys.stdout.flush()
         if asked.pictures:
             asked.pictures.mkdir(parents=True, exist_ok=True)
@@ -154,11 +189,14 @@ def main() -> None:
             PICTURES.mkdir(parents=True, exist_ok=True)
             (PICTURES / f"{part.name}.svg").write_text(choice["picture"], encoding="utf-8")
     targets = len(TARGETS) + (asked.seating is not None)
-    sys.stdout.write(f"{missed} targets missed of {targets * len(sections)}\n")
-    if not (asked.only or asked.seating):
-        head, tail = (PAGE.read_text(encoding="utf-8").partition(mark) for mark in PLACE)
-        total = f"{len(TARGETS) * len(sections) - missed} of {len(TARGETS) * len(sections)} targets are met.\n\n"
-        PAGE.write_text(head[0] + PLACE[0] + total + "\n".join(sections) + PLACE[1] + tail[2], encoding="utf-8")
+    targets = (len(TARGETS) + (asked.seating is not None)) * len(choices)
+    sys.stdout.write(f"{missed} targets missed of {targets}\n")
+    if asked.only:
+        return
+    if asked.seating:
+        written(seated_table(choices, missed), SEATED_PLACE)
+    else:
+        written(f"{targets - missed} of {targets} targets are met.\n\n" + "\n".join(map(section, choices)), PLACE)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from workhold.files.result.writer import write_result
 from workhold.model.workpiece import Workpiece
 
 NO_MEMORY = "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
+EXAMPLES = Path(__file__).parents[2] / "examples"
 INTERRUPTED_AT_START = """
 import sys
 class Interrupt:
@@ -45,10 +46,11 @@ def features(part: object, prepare: Callable[[], None] | None = None, **changes:
     )
 
 
+@pytest.mark.parametrize("part", ["widget", EXAMPLES / "rectangle.dxf"])
 @pytest.mark.parametrize("home", [None, "/dev/null", "/proc/nowhere"])
-def test_without_a_home_nothing_is_kept_and_nothing_fails(home: str | None) -> None:
-    """HOME unset, no folder, or one that cannot be made."""
-    done = features("widget", HOME=home, XDG_CACHE_HOME=home, WORKHOLD_CACHE_DIR=None)
+def test_without_a_home_nothing_is_kept_and_nothing_fails(part: object, home: str | None) -> None:
+    """HOME unset, no folder, or one that cannot be made; the library that reads drawings says nothing of it either."""
+    done = features(part, HOME=home, XDG_CACHE_HOME=home, WORKHOLD_CACHE_DIR=None)
     assert (done.returncode, done.stderr) == (0, "")
 
 

@@ -8,7 +8,6 @@ label : entity kind and handle (the hexadecimal name every CAD program shows), t
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -135,8 +134,6 @@ def opened(path: Path) -> tuple[Any, list[str]]:
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
 
-    # ezdxf reports each oddity of a file to its logger; without a handler Python would print them.
-    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     try:
         return readfile(path), []
     except Exception as first:  # a damaged file may fail anywhere inside
