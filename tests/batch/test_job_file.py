@@ -26,11 +26,14 @@ part_number = 2
 part = "widget"
 toolkit = "fence-20mm"
 contact_margin = 0.5
+seating = 5
+opening = "0.1in"
+foolproof = true
 """
-CSV = """part;Toolkit;unit;avoid;keep out;load;loads;tolerance;part-number;contact_margin
-a.json;plate-20mm|own.toml;inch;3|7;circle=1,2,3;force=200 at=1,0.5|moment=5000;loads.toml;0.01,0.02;2;
+CSV = """part;Toolkit;unit;avoid;keep out;load;loads;tolerance;part-number;contact_margin;Seating;opening;foolproof
+a.json;plate-20mm|own.toml;inch;3|7;circle=1,2,3;force=200 at=1,0.5|moment=5000;loads.toml;0.01,0.02;2;;;;
 
-widget;fence-20mm;inch;;;;;;;0.5
+widget;fence-20mm;inch;;;;;;;0.5;5;0.1in;Yes
 """
 
 
@@ -54,6 +57,7 @@ def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
         "tolerance": "0.01,0.02",
     }
     assert (second.part, second.toolkits, second.query) == ("widget", ("fence-20mm",), {"contact_margin": "0.5"})
+    assert (first.seating, second.seating) == ({}, {"seating": "5", "opening": "0.1in", "foolproof": True})
 
 
 @pytest.mark.parametrize(
@@ -67,6 +71,7 @@ def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
             "job 2 has an unknown word 'angel': give",
         ),
         ("j.toml", '[[job]]\npart = "a"\navoid = [true]\n', "job 1: avoid is neither text nor a number"),
+        ("j.toml", '[[job]]\npart = "a"\nfoolproof = "maybe"\n', "job 1: foolproof is neither true nor false"),
         ("j.toml", "job = 3\n", "its jobs are no tables"),
         ("j.toml", "[[job]\n", "not valid TOML"),
         ("j.csv", "part\n", "has no jobs"),

@@ -14,6 +14,7 @@ from workhold.batch import naming
 from workhold.batch.naming import name_of, program
 from workhold.batch.records import is_whole, plain_record, workpiece_of
 from workhold.batch.store import FolderStore
+from workhold.batch.tables import BEST, seating_figures
 from workhold.batch.tasks import Answering, Reading, done
 from workhold.errors import InputError
 from workhold.files.part.builtin import builtin_path
@@ -59,6 +60,23 @@ def test_an_answer_is_the_first_of_all_fixtures_and_counts_all(part: bytes) -> N
     first = evolve(whole, query=evolve(whole.query, best=3), table=whole.table.take(slice(0, 3)))
     assert outcome.record == "".join(result_text(first)).encode()
     assert done(Answering("other", "title", part, COARSE.query, 3)).record == outcome.record
+
+
+def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes) -> None:
+    """Of the first two of three kept, and of one where only one is; in the order that it gives them, and in the tables."""
+    assert isinstance(COARSE.query, Query)
+    query = evolve(COARSE.query, seating=2, opening=0.001)
+    whole = answer(evolve(query, workpiece=evolve(load("flange"), name="part")))
+    for kept in (3, 1):
+        record = done(Answering("name", "title", part, query, kept)).record
+        first = evolve(whole.part(slice(0, kept)), query=evolve(whole.query, best=kept))
+        assert len(first.seating) == min(kept, 2) and first.notes and record == "".join(result_text(first)).encode()
+        fixtures = plain_record(record)["fixtures"]
+        told = [seating_figures(fixture.get("seating")) for fixture in fixtures]
+        assert told[: len(first.seating)] == [
+            {key: pytest.approx(value, abs=1e-9) for key, value in one.figures.items()} for one in first.seating
+        ]
+        assert not any(told[2:]) and all(set(one) < set(BEST) for one in told)
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,24 @@ def test_the_whole_way(folder: Path) -> None:
     assert "SHA-256" in Path("setup.svg").read_text()
 
 
+def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
+    """Of the first of a design, which then stand in its order; of any fixture; and only with what it needs."""
+    made = told("design", folder, part="wedge.json", **VISE, seating=2, count=3, out="some.json")
+    assert all(("seating" in fixture) == (fixture["rank"] <= 2) for fixture in made["fixtures"])
+    assert made["fixtures"][0]["seating"]["capture_opening"] > 0.0
+    assert workhold.open("some.json").query.seating == 2
+    shown = [
+        told("show", folder, result_file="some.json", rank=3, seating=asked, picture=False) for asked in (True, False)
+    ]
+    [right] = workhold.seatings(workhold.open("some.json"), [workhold.open("some.json")[2]])
+    assert shown[0]["fixture"]["seating"]["reading"] == pytest.approx(right.reading_of(), abs=1e-8)
+    assert "seating" not in shown[1]["fixture"]
+    told("sheet", folder, result_file="some.json", rank=3, path="setup.svg", seating=True)
+    assert "Will it end up there?" in Path("setup.svg").read_text()
+    data, _, failed = outcome("design", {"part": "wedge.json", **VISE, "foolproof": True}, folder, Event())
+    assert failed and "such as seating 100" in json.dumps(data)
+
+
 def test_design_keeps_results_apart(folder: Path) -> None:
     first, second = (told("design", folder, part="wedge.json", **VISE, best=1)["result_file"] for _ in range(2))
     assert first != second and workhold.open(first) == workhold.open(second)

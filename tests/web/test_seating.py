@@ -71,6 +71,20 @@ def test_figures_and_sentences_are_the_programs(server: RunningServer, place: st
     assert " in at most" in inches["steps"][0] and inches["capture_opening"] == answer["capture_opening"]
 
 
+def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer, result: Result) -> None:
+    """As the program does, in the order that it gives them; what cannot be asked is refused before it begins."""
+    made = workhold.design(result.workpiece, result.toolkit, seating=3, opening=0.5)
+    job = server.done(request(workpiece=WEDGE, vise=VISE, seating=3, opening=0.5))
+    told = json.loads(server.client.get(f"{job}/result.json").content)
+    assert (told["seating"], told["opening"], told["foolproof"]) == (3, 0.5, False)
+    fields = [fixture["seating"] for fixture in told["fixtures"]]
+    assert fields == json.loads(json.dumps([one.as_fields() for one in made.seating])) and len(fields) > 1
+    plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
+    for asked in ({"opening": 1.0}, {"foolproof": True}, {"seating": 0}, {"seating": 3, "opening": -1}):
+        refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, vise=VISE, **asked)), 400)
+    refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, vise=plate, seating=3)), 400)
+
+
 def test_a_closing_comes_home_from_the_cage(server: RunningServer, place: str, result: Result, told: Seating) -> None:
     """A way from where the part was put to where the fixture has it; the jaws only close."""
     opening = 0.5 * (told.capture_opening or 0.0)

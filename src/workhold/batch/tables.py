@@ -20,7 +20,7 @@ from workhold.batch.measured import Measured
 from workhold.batch.records import plain_record
 from workhold.batch.store import Store
 from workhold.files.atomic import binary_file, text_file
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.statics.judging import is_unfit
@@ -29,7 +29,7 @@ __all__ = ["BEST", "MARK", "RESULTS", "JobRow", "has_parquet", "job_rows", "tabl
 
 # By which a table is known as one of workhold's own, see ``cli.outputs``.
 MARK = "workhold-table/1"
-FIGURE_COLUMNS = {figure.key: float for figure in FIGURES}
+FIGURE_COLUMNS = {figure.key: float for figure in (*FIGURES, *SEATING_FIGURES)}
 RESULTS: Mapping[str, type] = {
     **dict.fromkeys(("part", "file", "toolkit", "kind", "state"), str),
     **dict.fromkeys(("fixtures", "distinct"), int),
@@ -138,7 +138,18 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
         "holes": " ".join(holes),
         "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
         **fixture["quality"],
+        **seating_figures(fixture.get("seating")),
     }
+
+
+def seating_figures(told: Mapping[str, Any] | None) -> Row:
+    """What a table tells of the seating of a fixture of a result file: infinite where there is no end, and nothing where
+    it is not told."""
+    if told is None:
+        return {}
+    from workhold.files.result.seating_forms import figures_told
+
+    return figures_told(told)
 
 
 def has_parquet() -> bool:

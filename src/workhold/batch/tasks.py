@@ -125,7 +125,8 @@ class Answering(Task):
             result = answer(query, threads=1, receiver=kept)
         table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
         text = StringIO()
-        write_result_to(evolve(result, query=evolve(query, best=self.best), table=table), text)
+        made = kept.result or result
+        write_result_to(evolve(made, query=evolve(query, best=self.best), table=table), text)
         return text.getvalue().encode()
 
 
@@ -138,14 +139,17 @@ class FirstFixtures:
     most : how many to keep.
     folder : where there is room for what is being sorted.
     table : those kept.
+    result : that they are of, with the seating that is told of them.
     """
 
     most: int
     folder: Path
     table: FixtureTable | None = None
+    result: Result | None = None
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
         """Take them, best first."""
+        self.result = evolve(result, seating=result.seating[: self.most])
         for table in tables:
             first = table.take(np.arange(min(self.most - self.count, len(table))))
             self.table = first if self.table is None else FixtureTable.joined([self.table, first])

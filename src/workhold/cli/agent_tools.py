@@ -132,6 +132,9 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         loads,
         asked.best,
         asked.jaw_force,
+        seating=asked.seating,
+        opening=asked.opening,
+        foolproof=asked.foolproof,
     )
     clock = Timer(asked.seconds, cancel.set)
     clock.start()
@@ -181,8 +184,12 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
-    data = {"fixture": fixture_data(fixture, result.toolkit, asked.rank), **told}
-    return Answer(data, fixture.draw() if asked.picture else None)
+    shown = fixture_data(fixture, result.toolkit, asked.rank)
+    if asked.seating and fixture.seating is None:
+        from workhold.seating.seating import Solver
+
+        shown["seating"] = Solver(result.workpiece, result.toolkit).of(fixture).as_fields()
+    return Answer({"fixture": shown, **told}, fixture.draw() if asked.picture else None)
 
 
 def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,6 +18,7 @@ from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output_folder
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords
+from workhold.cli.seating_options import SeatingWords
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
 
@@ -32,8 +33,12 @@ if TYPE_CHECKING:
     from workhold.batch.store import Store
     from workhold.batch.workers import LocalWorkers
     from workhold.cli.batch_progress import BatchProgress
+    from workhold.model.units import Unit
 
 __all__ = ["batch"]
+
+# What is asked of the fixtures, and of their seating.
+AskedWords = tuple[QueryWords, SeatingWords]
 
 TOOLKITS, WORK = "Toolkits to try", "The work"
 # Fixtures that are kept of each job.
@@ -72,6 +77,7 @@ def batch(
     columns: str | None = option(TOOLKITS, "LIST", "Numbers of columns, such as 1,2,4."),
     peg_radius: str | None = option(TOOLKITS, "LIST", "Peg radii, such as 2.5,3."),
     words: QueryWords,
+    seated_by: SeatingWords,
     out: str = option(
         "Results", "DIR", "The folder for tables, report and records; the same again goes on.", default=""
     ),
@@ -112,7 +118,7 @@ def batch(
 
     names = (*table_names(), REPORT)
     refuse_output_folder(folder, names, (*parts, words.loads), force)
-    requests = requests_of(parts, toolkit, pitch, columns, peg_radius, words, reading, folder)
+    requests = requests_of(parts, toolkit, pitch, columns, peg_radius, (words, seated_by), reading, folder)
     from workhold.batch.measured import Measured
     from workhold.batch.run import Work, run_batch
     from workhold.batch.store import FolderStore
@@ -191,7 +197,7 @@ def requests_of(
     pitch: str | None,
     columns: str | None,
     peg_radius: str | None,
-    words: QueryWords,
+    words: AskedWords,
     reading: PartWords,
     folder: Path,
 ) -> list[Request]:
@@ -211,7 +217,7 @@ def requests_of(
     unit = length_unit(reading.unit)
     lists = pitch is not None or toolkit is not None
     named = asked_toolkits(toolkit, pitch, columns, peg_radius, reading) if lists else None
-    words.asked(unit)
+    asked_of(words, unit)
     requests = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
@@ -224,7 +230,8 @@ def requests_of(
             continue
         for job in read_jobs(Path(name)):
             try:
-                own_reading, own_words = evolve(reading, **job.reading), evolve(words, **job.query)
+                own_reading = evolve(reading, **job.reading)
+                own_words = evolve(words[0], **job.query), evolve(words[1], **job.seating)
                 own = named
                 if job.toolkits is not None:
                     own = asked_toolkits(list(job.toolkits), None, None, None, own_reading)
@@ -260,7 +267,19 @@ def asked_toolkits(
     return asked_vises(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
 
 
-def held_in_all(named: Sequence[Named], words: QueryWords, reading: PartWords) -> list[HeldIn]:
+def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:
+    """Keyword arguments of a query.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    wishes, seated_by = words
+    return wishes.asked(unit) | seated_by.asked(unit)
+
+
+def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:
     """What is asked in each toolkit.
 
     Raises
@@ -270,7 +289,7 @@ def held_in_all(named: Sequence[Named], words: QueryWords, reading: PartWords) -
     """
     from workhold.batch.jobs import ANY_PART, HeldIn
 
-    asked = words.asked(length_unit(reading.unit))
+    asked = asked_of(words, length_unit(reading.unit))
     return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
 
 

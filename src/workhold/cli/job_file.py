@@ -24,6 +24,7 @@ from attrs import fields_dict, frozen
 
 from workhold.cli.options import PartWords
 from workhold.cli.search_options import QueryWords
+from workhold.cli.seating_options import SeatingWords
 from workhold.errors import InputError
 
 __all__ = ["JOB_ENDINGS", "JobWords", "read_jobs"]
@@ -32,8 +33,10 @@ JOB_ENDINGS = (".csv", ".toml")
 # Bytes; a job takes a hundred.
 LARGEST_FILE = 100_000_000
 PART, TOOLKIT = "part", "toolkit"
-OF_PART, OF_QUERY = tuple(fields_dict(PartWords)), tuple(fields_dict(QueryWords))
-KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY)
+OF_PART, OF_QUERY, OF_SEATING = (tuple(fields_dict(words)) for words in (PartWords, QueryWords, SeatingWords))
+KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY, *OF_SEATING)
+# Words that are true or false.
+FLAGS = {"foolproof": {"true": True, "yes": True, "false": False, "no": False}}
 # Words of which there may be several.
 LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
 FILES = (PART, TOOLKIT, "loads")
@@ -48,7 +51,8 @@ class JobWords:
     place : where it stands, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    reading, query : what the file says of reading the part, and of its fixtures, by the names of options.
+    reading, query, seating : what the file says of reading the part, of its fixtures and of their seating, by the names of
+        options.
     """
 
     place: str
@@ -56,6 +60,7 @@ class JobWords:
     toolkits: tuple[str, ...] | None
     reading: Mapping[str, Any]
     query: Mapping[str, Any]
+    seating: Mapping[str, Any]
 
 
 def read_jobs(path: Path) -> list[JobWords]:
@@ -132,15 +137,32 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
         name = named(key)
         if name not in KEYS:
             raise InputError(f"{place} has an unknown word {key[:40]!r}: give {', '.join(KEYS[:-1])} or {KEYS[-1]}.")
+        if name in FLAGS:
+            words[name] = flag_of(value, FLAGS[name], f"{place}: {key}")
+            continue
         values = [text_of(item, f"{place}: {key}") for item in (value if isinstance(value, list) else [value])]
         if name in FILES:
             values = [beside(folder, item) for item in values]
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
-    reading, query = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY))
+    told = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY, OF_SEATING))
     toolkits = tuple(words[TOOLKIT]) if TOOLKIT in words else None
-    return JobWords(place, words[PART], toolkits, reading, query)
+    return JobWords(place, words[PART], toolkits, *told)
+
+
+def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
+    """A value that is true or false, or one of the words for that.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    flag = value if isinstance(value, bool) else known.get(str(value).lower())
+    if flag is None:
+        raise InputError(f"{place} is neither true nor false: write one of {', '.join(known)}.")
+    return flag
 
 
 def text_of(value: Any, place: str) -> str:

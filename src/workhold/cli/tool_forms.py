@@ -84,6 +84,18 @@ class DesignArguments(LoadArguments):
     prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(default=None, description="what comes first")
     jaw_force: ClosingForce = None
     loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
+    seating: int | None = Field(
+        default=None,
+        ge=1,
+        description="of the first so many fixtures tell from how far open, or drawn back, the part is caught and where else "
+        "it can rest, and order them by that too",
+    )
+    opening: Positive | None = Field(
+        default=None, description="with seating, list only those that catch the part when opened by so many mm"
+    )
+    foolproof: bool = Field(
+        default=False, description="with seating, list only those of which a caliper tells every wrong place to rest"
+    )
     count: int = Field(default=5, ge=0, le=100, description="how many fixtures to tell")
     out: str | None = Field(default=None, description="path of the result file, .json or .npz; else a temporary one")
     force: MayReplace = False
@@ -97,6 +109,9 @@ class ShowArguments(ToolArguments):
     rank: Rank = 1
     loads: list[LoadTable] = Field(default=[], description="instead of those of the result")
     jaw_force: ClosingForce = None
+    seating: bool = Field(
+        default=False, description="work out whether the part ends up there, and where else it can rest"
+    )
     picture: bool = Field(default=True, description="show a picture, too")
 
 
@@ -111,6 +126,9 @@ class SheetArguments(ToolArguments):
     unit: Literal["mm", "inch"] = "mm"
     part_name: str | None = None
     jaw_force: ClosingForce = None
+    seating: bool | None = Field(
+        default=None, description="whether it says if the part ends up there; if known when null"
+    )
     jaw: Literal["screw", "constant"] | Annotated[float, Field(ge=0)] = "screw"
     friction: Positive | None = None
     zero: str | Pair | None = Field(default=None, description='part zero: "corner", "centre", "hole 2", or x and y')

@@ -264,7 +264,7 @@ class Seating:
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,
             "way_out": self.way_out,
-            "placing": self.placing,
+            "placing": 0.0 if self.is_untold else self.placing,
             "sticking_friction": self.sticking_friction,
             "wrong_seats": float(len(self.wrong_within())),
             "reading": self.reading_of(),

@@ -25,6 +25,8 @@ __all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "
 LARGEST = 1e9
 MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_VISES = 20_000, 50, 500, 50, 500, 60
 MOST_COLUMNS, MOST_ROWS = 200, 100_000
+# Fixtures whose seating is worked out in one search.
+MOST_SEATED = 1_000
 
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
@@ -246,9 +248,12 @@ class SearchForm(Form):
 
 
 class JobForm(SearchForm):
-    """A search for every fixture."""
+    """A search for every fixture; of so many of the first ones the seating is told, and what is asked of it."""
 
     vise: HeldIn
+    seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)
+    opening: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    foolproof: bool = False
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """The query, which has no name.
@@ -258,7 +263,8 @@ class JobForm(SearchForm):
         InputError
             For the first value that cannot be.
         """
-        return (("", self.query(self.vise.toolkit(), most_segments)),)
+        query = self.query(self.vise.toolkit(), most_segments)
+        return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
 
 
 class NamedViseForm(ViseForm):
@@ -316,7 +322,7 @@ class ExploreForm(SearchForm):
 
 def sentence_of(error: dict[str, Any]) -> str:
     """One thing that pydantic finds wrong with a request, as a sentence."""
-    loc = [str(part) for part in error.get("loc", ()) if part not in (VISE, PLATE)]
+    loc = [str(part) for part in error.get("loc", ()) if part not in (VISE, PLATE, FENCE)]
     if error.get("type") == "json_invalid":
         return "The request is not valid JSON: send one object."
     where, rest = (loc[0], loc[1:]) if loc else ("body", [])

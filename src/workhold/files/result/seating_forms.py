@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -9,9 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from workhold.errors import InputError
 from workhold.model.fixture import Pose
+from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import Seating
 
-__all__ = ["SeatingPart", "checked_seating", "seatings_told"]
+__all__ = ["SeatingPart", "checked_seating", "figures_told", "seatings_told"]
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Length = Annotated[float, Field(ge=0)]
@@ -111,6 +114,14 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
         reason = "it is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
         raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     return Seating.of_fields(data, pose)
+
+
+def figures_told(data: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of a seating as a file of this program tells it; what has no end is infinite."""
+    told = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
+    # Without a pass it is not known how near a part must be put.
+    told["placing"] = 0.0 if data["pass"] is None and data["capture_opening"] is not None else told["placing"]
+    return {key: inf if value is None else float(value) for key, value in told.items()}
 
 
 def seatings_told(data: dict[str, Any], path: Path) -> list[Any]:
