@@ -10,20 +10,20 @@ from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, DEPTH, SEPARATION
 from workhold.kernels.seating.four_contacts import third_of_jaw
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
-from workhold.seating.holdings import Holdings, filled
+from workhold.seating.filled import filled
+from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 
 
 def told_by(holdings, locus, pattern, discs, stop):
-    """Candidates of three contacts, and of four with three on one jaw, above the stop."""
-    sought, stack = holdings.given._replace(rows=np.array(locus.loose)), np.empty((DEPTH, 2))
-    three = filled(ROOT_LENGTH, 4096, three_contacts, holdings.cells, sought, discs, stop, stack)
-    third = filled(ROOT_LENGTH, 4096, third_of_jaw, holdings.cells, sought, discs, stack)
+    """Candidates of three contacts above the stop, and of three with one jaw."""
+    stack = np.empty((DEPTH, 2))
+    three = filled(ROOT_LENGTH, 4096, three_contacts, holdings.cells, holdings.sought, discs, stop, stack)
+    third = filled(ROOT_LENGTH, 4096, third_of_jaw, holdings.cells, holdings.sought, discs, stack)
     found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, locus.pocket_pieces)
-    room, fixed = 8 * len(third) + 16, np.empty(CANDIDATE_LENGTH)
-    four = filled(CANDIDATE_LENGTH, room, complete_third, third, holdings.given, locus.pocket_pieces, fixed)
-    return found[found[:, SEPARATION] > pattern.stop], four
+    fixed = filled(CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, locus.pocket_pieces)
+    return found[found[:, SEPARATION] > pattern.stop], fixed
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -35,11 +35,11 @@ def test_pieces_left_out_have_no_roots(number):
     holdings = Holdings.of(locus, pattern)
     everywhere = np.array(locus.discs)
     everywhere[:, 2] += 1e4
-    few, fours = told_by(holdings, locus, pattern, locus.discs, pattern.stop)
-    all_of_them, every_four = told_by(holdings, locus, pattern, everywhere, -1e4)
+    few, fixed = told_by(holdings, locus, pattern, locus.discs, pattern.stop)
+    all_of_them, all_fixed = told_by(holdings, locus, pattern, everywhere, -1e4)
     assert len(few) > 20
     assert np.array_equal(few, all_of_them)
-    assert np.array_equal(fours, every_four)
+    assert np.array_equal(fixed, all_fixed)
 
 
 def test_many_fixtures_are_told_as_one_by_one():

@@ -50,9 +50,12 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.holdings import held_at, make_cells
+from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free
+from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leaves
+from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces
 from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.kernels.statics.quality import figures
@@ -129,14 +132,22 @@ def seats_and_passes() -> Calls:
     none, pockets = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
     yield clearances, (points, rows, 0, 0, one)
     yield make_cells, (given, np.zeros((0, STRETCH_LENGTH)), cells)
-    yield held_at, (none, np.zeros(0), given, np.zeros((0, 4)))
     yield three_contacts, (cells, given, np.zeros((0, 3)), 0.0, stack, roots)
     yield two_holdings, (cells, cells, given, stack, roots)
     yield third_of_jaw, (cells, given, np.zeros((0, 3)), stack, roots)
-    for complete in (complete_three, complete_two):
+    for complete in (complete_three, complete_two, complete_third):
         yield complete, (roots, given, pockets, many)
-    yield complete_third, (roots, given, pockets, np.zeros(CANDIDATE_LENGTH), many)
-    yield fourths, (np.zeros(CANDIDATE_LENGTH), 0, given, many)
+    yield fourths, (many, 0, given, many)
+    slides = np.zeros((0, SLIDE_LENGTH))
+    for slid in (slides_squared, slides_stopped):
+        yield slid, (slides, given, many)
+    yield slides_held, (slides, cells, given, pockets, many)
+    yield at_tangencies, (0, 0, np.zeros((0, ALPHA + 1)), 0.0, 0.0, given, many)
+    yield on_three_faces, (slides, given, 0.0, 0.0, np.zeros((0, THREE_FACES)))
+    touched, bytes_ = np.zeros(4, np.int64), np.zeros(0, np.int8)
+    yield free_ones, (np.zeros((0, 4)), touched, obstacles, np.zeros((0, 4)), bytes_)
+    yield last_free, (np.zeros((2, 4)), touched, obstacles, one, np.zeros(5))
+    yield first_of_each, (many, 1.0, 1.0, none)
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work = WorkSpace(np.zeros((1, 7)), np.zeros((5, 4)), np.zeros((5, 6)), one, one, one, np.zeros(8, np.int64))
     yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, np.zeros((0, 4)), work, np.zeros(0, np.int8))

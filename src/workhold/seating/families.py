@@ -9,7 +9,7 @@ from itertools import combinations, product
 from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
 
 import numpy as np
-from attrs import define
+from attrs import define, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SAME_CENTER
@@ -23,21 +23,34 @@ from workhold.kernels.seating.columns import (
     PLACE_Y,
     SEPARATION,
     THETA,
+    Given,
+    Obstacles,
 )
-from workhold.kernels.seating.pieces import clearances
-from workhold.seating.holdings import Slide
-from workhold.seating.locus import Locus, all_contained, contains
+from workhold.kernels.seating.freedom import TOUCHES, free_ones, last_free
+from workhold.kernels.seating.parallel import (
+    AT_HIGH,
+    AT_LOW,
+    AT_SEPARATION,
+    AT_THETA,
+    OF_SLIDE,
+    ON_THIRD,
+    THIRD,
+    THREE_FACES,
+    on_three_faces,
+)
+from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_ONE, SLIDE_SECOND, SLIDE_TWO
+from workhold.seating.filled import filled
+from workhold.seating.groups import Group
+from workhold.seating.locus import Locus, contains
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Family", "Finder", "families"]
+__all__ = ["Family", "Finder", "Way"]
 
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
 SLIDE_STEPS, TURN_STEPS = 144, 384
-# How often, and into how many parts, the step in which a slide ends is cut to find where.
-EDGE_ROUNDS, EDGE_PARTS = 5, 32
-# mm. Pegs this near touch all along; shorter slides are none; separations this near are one, or one where ways end.
-TOUCHES, SHORTEST, SAME, SAME_LEVEL = 1e-7, 1e-6, 1e-6, 1e-3
+# mm. Shorter slides are none; separations this near are one, or one where ways end.
+SHORTEST, SAME, SAME_LEVEL = 1e-6, 1e-6, 1e-3
 # A force's share below this is none.
 LEAST_SHARE = 1e-9
 Contact = tuple[int, int]
@@ -75,6 +88,29 @@ class Family:
         return bool(away.min() <= steps.max(initial=0.0) + 0.02)
 
 
+@frozen(eq=False)
+class Way:
+    """Configurations with one separation between which the part can go while some contacts stay.
+
+    Parameters
+    ----------
+    configs : (N, 4) along it.
+    contacts : pegs and the pieces that they touch all along.
+    is_closed : whether the last one is beside the first.
+    across : see ``Family``.
+    """
+
+    configs: Array
+    contacts: list[Contact]
+    is_closed: bool
+    across: tuple[float, float] | None
+
+    def moved(self, group: Group) -> Way:
+        """The way of a group of pegs as one of its pattern."""
+        contacts = [(group.numbers[peg], piece) for peg, piece in self.contacts]
+        return Way(self.configs + group.shift, contacts, self.is_closed, self.across)
+
+
 @define(frozen=True, eq=False, slots=False)
 class Finder:
     """What families are sought with."""
@@ -98,20 +134,37 @@ class Finder:
         along = self.rows[:, [AXIS_X, AXIS_Y]]
         return [(a, b) for a, b in product(self.lines, repeat=2) if np.abs(along[a] + along[b]).sum() <= PARALLEL]
 
-    def clearances(self, configs: Array) -> Array:
-        """Distances (N, K) in mm of pegs from the boundary in configurations (N, 4), the last one of a wall."""
-        points = self.pattern.at(configs)
-        out = np.empty((points.shape[1] + (self.pattern.wall is not None), len(points)))
-        if self.pattern.wall is not None:
-            out[-1] = self.locus.hull.clearance(configs, self.pattern.wall)
-        for k, side in enumerate(self.pattern.right.tolist()):
-            first, end = self.locus.parts[side].tolist()
-            clearances(np.ascontiguousarray(points[:, k]), self.rows, first, end, out[k])
-        return out.T
+    @cached_property
+    def around(self) -> Obstacles:
+        """What keeps the pegs off the part."""
+        locus, pattern = self.locus, self.pattern
+        hull = np.zeros((0, 6)) if pattern.wall is None else np.array(locus.hull.rows)
+        wall, pegs = np.array(pattern.wall or (0.0, 0.0, 0.0)), (np.array(pattern.pegs), pattern.right, locus.parts)
+        return Obstacles(np.array(locus.rows), locus.spans, locus.discs, *pegs, 1.0, 0.0, hull, wall)
 
-    def of_pegs(self, contacts: list[Contact]) -> list[Contact]:
-        """The contacts that are not a wall's."""
-        return [(peg, piece) for peg, piece in contacts if peg < len(self.pattern.pegs)]
+    @property
+    def obstacles(self) -> int:
+        """How many pegs and walls there are."""
+        return len(self.pattern.pegs) + (self.pattern.wall is not None)
+
+    def touched(self, way: Way) -> NDArray[np.int64]:
+        """The piece (K,) that each peg has to touch, -1 where none."""
+        out = np.full(len(self.pattern.pegs), -1)
+        for peg, piece in way.contacts:
+            if peg < len(out):
+                out[peg] = piece
+        return out
+
+    def freedom(self, way: Way) -> tuple[Array, NDArray[np.bool_]]:
+        """Clearances (N, K) in mm of pegs and last of a wall along a way, told where the part is free and touches what it
+        has to, and where it does."""
+        clear, good = np.empty((len(way.configs), self.obstacles)), np.empty(len(way.configs), np.int8)
+        free_ones(way.configs, self.touched(way), self.around, clear, good)
+        return clear, good != 0
+
+    def free(self, ways: list[Way]) -> tuple[Way, ...]:
+        """The ways along which the part is free somewhere."""
+        return tuple(way for way in ways if self.freedom(way)[1].any())
 
     def nearest(self, peg: int, config: Array) -> int:
         """Number of the piece that a peg, or a wall, touches in a configuration."""
@@ -125,23 +178,21 @@ class Finder:
         """Whether pegs can touch the pieces that they are said to touch."""
         return all(self.locus.fits(self.pattern.right[peg], piece) for peg, piece in contacts)
 
-    def cut(
-        self, configs: Array, contacts: list[Contact], closed: bool, across: tuple[float, float] | None
-    ) -> list[Family]:
-        """The free runs of a set of configurations in which some contacts stay."""
-        points = self.pattern.at(configs)
-        clear = self.clearances(configs)
-        good = np.asarray((clear > -TOUCHES).all(axis=1), np.bool_)
-        for peg, piece in self.of_pegs(contacts):
-            good &= all_contained(self.rows[piece], points[:, peg])
-        out = []
-        for numbers in runs(good, closed):
+    def cut_all(self, ways: Sequence[Way]) -> list[Family]:
+        """The free runs of ways at separations that are reached."""
+        return [family for way in ways if self.pattern.reaches(way.configs[0, 3], SAME) for family in self.cut(way)]
+
+    def cut(self, way: Way) -> list[Family]:
+        """The free runs of a way."""
+        clear, good = self.freedom(way)
+        configs, closed, out = way.configs, way.is_closed, list[Family]()
+        for numbers in runs(good, closed) if good.any() else ():
             # The middle of where the most pegs touch.
             touches = np.abs(clear[numbers]) < TOUCHES
             most = np.flatnonzero(touches.sum(axis=1) == touches.sum(axis=1).max())
             middle = numbers[most[len(most) // 2]]
             touching = np.flatnonzero(np.abs(clear[middle]) < TOUCHES).tolist()
-            known = dict(contacts)
+            known = dict(way.contacts)
             told = [(peg, known[peg] if peg in known else self.nearest(peg, configs[middle])) for peg in touching]
             row = np.zeros(CANDIDATE_LENGTH)
             row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
@@ -152,31 +203,22 @@ class Finder:
             if not closed:
                 ends = [(numbers[0], numbers[0] - 1), (numbers[-1], numbers[-1] + 1)]
                 first, last = (
-                    self.edge(configs[inner], configs[outer], contacts) if 0 <= outer < len(configs) else configs[inner]
+                    self.edge(configs[[inner, outer]], way) if 0 <= outer < len(configs) else configs[inner]
                     for inner, outer in ends
                 )
                 along = np.concatenate([[first], along, [last]])
-            out.append(Family(row, along, closed and len(numbers) == len(configs), across))
+            out.append(Family(row, along, closed and len(numbers) == len(configs), way.across))
         return out
 
-    def edge(self, inner: Array, outer: Array, contacts: list[Contact]) -> Array:
-        """The last free configuration on the straight way from one that is free to one that is not."""
-        for _ in range(EDGE_ROUNDS):
-            between = inner + np.linspace(0.0, 1.0, EDGE_PARTS + 1)[:, None] * (outer - inner)
-            points = self.pattern.at(between)
-            good = np.asarray((self.clearances(between) > -TOUCHES).all(axis=1), np.bool_)
-            for peg, piece in self.of_pegs(contacts):
-                good &= all_contained(self.rows[piece], points[:, peg])
-            good[0], good[-1] = True, False
-            last = int(np.argmin(good)) - 1
-            inner, outer = between[last], between[last + 1]
-        return inner
+    def edge(self, ends: Array, way: Way) -> Array:
+        """The last free configuration on the straight way between two (2, 4), from one that is free to one that is not."""
+        last_free(ends, self.touched(way), self.around, np.empty(4), np.empty(self.obstacles))
+        return np.asarray(ends[0])
 
     def sliding(
         self, theta: float, start: Array, line: Array, low: float, high: float, s: float, contacts: list[Contact]
-    ) -> list[Family]:
-        """The families of a part that slides with one peg, which stands at ``start``, on a line from a parameter to
-        another."""
+    ) -> list[Way]:
+        """The way of a part that slides with one peg, which stands at ``start``, on a line from a parameter to another."""
         if high - low < SHORTEST or not self.pattern.reaches(s, SAME):
             return []
         t = np.linspace(low, high, SLIDE_STEPS)
@@ -184,7 +226,7 @@ class Finder:
         c, d = cos(theta), sin(theta)
         every = np.ones(SLIDE_STEPS)
         configs = np.stack([theta * every, start[0] - (c * x - d * y), start[1] - (d * x + c * y), s * every], axis=1)
-        return self.cut(configs, contacts, False, None)
+        return [Way(configs, contacts, False, None)]
 
     def turning(
         self,
@@ -193,18 +235,18 @@ class Finder:
         s: float,
         contacts: list[Contact],
         across: tuple[float, float] | None,
-    ) -> list[Family]:
-        """The families of a part that turns about the centre of an arc, which stands at a place in the vise."""
+    ) -> list[Way]:
+        """The way of a part that turns about the centre of an arc, which stands at a place in the vise."""
         if not self.pattern.reaches(s, SAME):
             return []
         theta = np.arange(TURN_STEPS) * tau / TURN_STEPS
         c, d = np.cos(theta), np.sin(theta)
         x, y = center[0] - (c * row[X] - d * row[Y]), center[1] - (d * row[X] + c * row[Y])
-        return self.cut(np.stack([theta, x, y, np.full(TURN_STEPS, s)], axis=1), contacts, True, across)
+        return [Way(np.stack([theta, x, y, np.full(TURN_STEPS, s)], axis=1), contacts, True, across)]
 
-    def on_one_line(self) -> list[Family]:
+    def on_one_line(self) -> list[Way]:
         """Two pegs that press parallel faces, or arcs of one centre, along one line."""
-        out = []
+        out = list[Way]()
         pegs, right = self.pattern.pegs, self.pattern.right
         for i, j in product(np.flatnonzero(right == 0).tolist(), np.flatnonzero(right == 1).tolist()):
             run, rise = pegs[j] - pegs[i]
@@ -236,56 +278,22 @@ class Finder:
                     out += self.turning(self.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across)
         return out
 
-    def on_parallel_lines(self, slides: tuple[Slide, ...]) -> list[Family]:
-        """Two pegs of one jaw and one of the other on parallel faces, the middle one of the three against the outer two."""
-        out = []
-        pegs, right = self.pattern.pegs, self.pattern.right
-        for slide in slides:
-            a, b = slide.pieces
-            one = self.rows[a]
-            theta = -slide.psi
-            c, d = cos(theta), sin(theta)
-            # The face's direction and its outward normal in the vise frame.
-            tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
-            nx, ny = ty, -tx
-            if one[IS_ARC] != 0.0 or abs(nx) < 1e-9:
-                continue
-            for k, other in product(np.flatnonzero(right != right[slide.first]).tolist(), self.parallel_to[a]):
-                two = self.rows[other]
-                thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
-                run, rise = pegs[k] - pegs[slide.first]
-                moving = 1.0 if right[k] == 1 else -1.0
-                s = -(thick + run * nx + rise * ny) / (moving * nx)
-                places = pegs[:, 0] * tx + pegs[:, 1] * ty + s * right * tx
-                contacts = [(slide.first, a), (slide.second, b), (k, other)]
-                if not (self.touch(contacts) and self.opposes(contacts, places, moving * nx)):
-                    continue
-                shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y]
-                shift -= places[k] - places[slide.first]
-                low, high = max(slide.low, shift - two[HALF_EXTENT]), min(slide.high, shift + two[HALF_EXTENT])
-                start = pegs[slide.first] + [s * right[slide.first], 0.0]
-                out += self.sliding(theta, start, one, low, high, s, contacts)
+    def on_parallel_lines(self, slides: Array, given: Given) -> list[Way]:
+        """Two pegs of one jaw, on slides (S, 7), and one of the other on parallel faces, the middle one of the three against
+        the outer two."""
+        out = list[Way]()
+        ends = self.pattern.stop, self.pattern.widest
+        for row in filled(THREE_FACES, 64, on_three_faces, slides, given, *ends):
+            slide = slides[int(row[OF_SLIDE])]
+            first, a, s = int(slide[SLIDE_FIRST]), int(slide[SLIDE_ONE]), float(row[AT_SEPARATION])
+            contacts = [
+                (first, a),
+                (int(slide[SLIDE_SECOND]), int(slide[SLIDE_TWO])),
+                (int(row[THIRD]), int(row[ON_THIRD])),
+            ]
+            start = self.pattern.pegs[first] + [s * self.pattern.right[first], 0.0]
+            out += self.sliding(row[AT_THETA], start, self.rows[a], row[AT_LOW], row[AT_HIGH], s, contacts)
         return out
-
-    @cached_property
-    def parallel_to(self) -> dict[int, list[int]]:
-        """Numbers of the straight pieces parallel to each of them."""
-        along = self.rows[:, [AXIS_X, AXIS_Y]]
-        cross = np.abs(np.outer(along[:, 0], along[:, 1]) - np.outer(along[:, 1], along[:, 0]))
-        return {a: [k for k in self.lines if cross[a, k] <= PARALLEL] for a in self.lines}
-
-    def opposes(self, contacts: list[Contact], places: Array, push: float) -> bool:
-        """Whether of three parallel forces the middle one is against the outer two, and the last presses its jaw outward.
-
-        Parameters
-        ----------
-        places : (4,) of the pegs along the faces, in mm.
-        push : of a normal like the first contact's, how much it presses the jaw of the last peg outward.
-        """
-        first = self.rows[contacts[0][1]]
-        sides = [float(np.sign(self.rows[k, [AXIS_X, AXIS_Y]] @ first[[AXIS_X, AXIS_Y]])) for _, k in contacts]
-        (p, one), (q, middle), (r, other) = sorted(zip((places[peg] for peg, _ in contacts), sides, strict=True))
-        return q - p > SHORTEST and r - q > SHORTEST and one == other == -middle and sides[2] * push > 0.0
 
     @cached_property
     def concentric(self) -> list[list[int]]:
@@ -297,9 +305,9 @@ class Finder:
             groups.append([k]) if group is None else group.append(k)
         return groups
 
-    def on_one_center(self) -> list[Family]:
+    def on_one_center(self) -> list[Way]:
         """Two pegs of one jaw and one of the other on arcs of one centre."""
-        out = []
+        out = list[Way]()
         pegs, right = self.pattern.pegs, self.pattern.right
         pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
         for group, (p, q) in product(self.concentric, pairs):
@@ -330,16 +338,15 @@ class Finder:
             return False
         return bool((np.linalg.solve(matrix, [0.0, 0.0, 1.0]) > LEAST_SHARE).all())
 
-
-def families(locus: Locus, pattern: Pattern, slides: tuple[Slide, ...], on_wall: Sequence[Family] = ()) -> list[Family]:
-    """All loose equilibria of a pattern, each once: the one with the most contacts of those that lie in each other."""
-    finder = Finder(locus, pattern)
-    kept: list[Family] = []
-    found = finder.on_one_line() + finder.on_parallel_lines(slides) + finder.on_one_center() + list(on_wall)
-    for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
-        if not any(abs(one.middle[3] - other.middle[3]) < SAME and other.holds(one.middle, 1.0) for other in kept):
-            kept.append(one)
-    return kept
+    def families(self, found: list[Family]) -> list[Family]:
+        """Those found, each once: the one with the most contacts of those that lie in each other."""
+        kept: list[Family] = []
+        for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
+            middle = one.middle
+            level = float(middle[3])
+            if not any(abs(level - other.candidate[SEPARATION]) < SAME and other.holds(middle, 1.0) for other in kept):
+                kept.append(one)
+        return kept
 
 
 def runs(good: NDArray[np.bool_], closed: bool) -> list[NDArray[np.int64]]:

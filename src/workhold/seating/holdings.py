@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import combinations
 from math import atan2, hypot, pi, tau
 from typing import Any
@@ -19,15 +18,14 @@ from workhold.kernels.curves.columns import (
     DIRECTION,
     END_STRETCH,
     FIRST_STRETCH,
-    FROM,
     HEAD,
     SLIDE_FROM,
     SLIDE_TO,
     TAIL,
-    TO,
 )
 from workhold.kernels.seating.columns import (
     ANGLE,
+    BOTTOM,
     CELL_LENGTH,
     FIRST_PEG,
     HIGH,
@@ -39,64 +37,50 @@ from workhold.kernels.seating.columns import (
     PIVOT_Y,
     SECOND_PEG,
     SOURCE,
+    TOP,
     Given,
 )
 from workhold.kernels.seating.holdings import make_cells
+from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
+from workhold.seating.filled import filled
+from workhold.seating.groups import Group
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Holdings", "Slide", "filled"]
+__all__ = ["Holdings", "JawHoldings"]
 
 Array = NDArray[np.float64]
+# Jaws of which holdings are kept; beyond, all are forgotten.
+MOST_KEPT = 256
 
 
-@frozen
-class Slide:
-    """Two pegs of one jaw on parallel lines, or equal arcs one chord apart, along which the part slides.
-
-    Parameters
-    ----------
-    first, second : the pegs.
-    pieces : what they touch.
-    low, high : parameters of the first on its piece.
-    psi : orientation of the pegs seen from the part, in radians.
-    """
-
-    first: int
-    second: int
-    pieces: tuple[int, int]
-    low: float
-    high: float
-    psi: float
-
-
-@define(frozen=True, eq=False)
-class Holdings:
-    """All holdings of a pattern.
+@frozen(eq=False)
+class JawHoldings:
+    """The holdings of the pegs of one jaw, in the frame of their group.
 
     Parameters
     ----------
-    given : what kernels are given, with pieces as they are.
-    cells : (C, 7) of all holdings.
-    slides : those that are no curve over the orientation.
+    holdings, curves, reals : as of ``Given``, pegs and curves counted from 0.
+    cells : (C, 7) of all holdings, those of one after each other.
+    slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
     """
 
-    given: Given
+    holdings: Array
+    curves: NDArray[np.int64]
+    reals: Array
     cells: Array
-    slides: tuple[Slide, ...]
+    slides: Array
 
     @classmethod
-    def of(cls, locus: Locus, pattern: Pattern) -> Holdings:
-        """The holdings of a pattern on a part."""
-        holdings, slides = [pockets_held(locus, pattern.right)], list[Slide]()
+    def of(cls, locus: Locus, pegs: Array, right: NDArray[np.int64]) -> JawHoldings:
+        """The holdings of pegs (K, 2) of a jaw, the first at the origin."""
+        holdings, slides = [pockets_held(locus, right)], list[tuple[float, ...]]()
         integers, reals, stretches = [np.zeros((0, CURVE_INTEGERS), np.int64)], [np.zeros((0, CURVE_REALS))], []
         stretches.append(np.zeros((0, STRETCH_LENGTH)))
         curves_before = stretches_before = 0
-        for one, two in combinations(range(4), 2):
-            if pattern.right[one] != pattern.right[two]:
-                continue
-            dx, dy = pattern.pegs[two] - pattern.pegs[one]
-            table = locus.curves(hypot(dx, dy), int(pattern.right[one]))
+        for one, two in combinations(range(len(pegs)), 2):
+            dx, dy = pegs[two] - pegs[one]
+            table = locus.curves(hypot(dx, dy), int(right[one]))
             whole = np.array(table.curves.integers)
             whole[:, [FIRST_STRETCH, END_STRETCH]] += stretches_before
             for first, second, angle in ((one, two, atan2(dy, dx)), (two, one, atan2(dy, dx) + pi)):
@@ -110,52 +94,77 @@ class Holdings:
                     tail, head = int(pieces[TAIL]), int(pieces[HEAD])
                     if first == one or tail != head:
                         low, high, alpha = (float(real[k]) for k in (SLIDE_FROM, SLIDE_TO, DIRECTION))
-                        slides.append(Slide(first, second, (tail, head), low, high, alpha - angle))
+                        slides.append((first, second, tail, head, low, high, alpha - angle))
             integers.append(whole)
             reals.append(table.curves.reals)
             stretches.append(table.curves.stretches)
             curves_before, stretches_before = curves_before + len(whole), stretches_before + len(stretches[-1])
-        given = Given(
-            np.concatenate(holdings),
-            np.concatenate(integers),
-            np.concatenate(reals),
-            np.array(locus.loose),
-            np.array(pattern.pegs),
-            pattern.right,
-            locus.parts,
-        )
-        every = np.concatenate(stretches)
+        rows, curves = np.concatenate(holdings), (np.concatenate(integers), np.concatenate(reals))
+        given, every = Given(rows, *curves, np.array(locus.loose), pegs, right, locus.parts), np.concatenate(stretches)
         cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(locus.pockets) + 64, make_cells, given, every)
-        return cls(given._replace(rows=np.array(locus.rows)), cells, tuple(slides))
+        return cls(rows, *curves, cells, np.array(slides).reshape(-1, SLIDE_LENGTH))
+
+    @classmethod
+    def known(cls, locus: Locus, group: Group) -> JawHoldings:
+        """The same of a group of pegs of one jaw, worked out once for all that stand alike."""
+        kept = locus.held
+        found = kept.get(group.key)
+        if found is None:
+            found = cls.of(locus, group.pattern.pegs, group.pattern.right)
+            if len(kept) >= MOST_KEPT:
+                kept.clear()
+            kept[group.key] = found
+        return found
+
+
+@define(frozen=True, eq=False)
+class Holdings:
+    """All holdings of a pattern.
+
+    Parameters
+    ----------
+    given : what kernels are given, with pieces as they are.
+    sought : the same with pieces on which roots are sought: curves run past their ends by a hair, and so do these.
+    cells : (C, 7) of all holdings.
+    slides : (S, 7) those that are no curve over the orientation.
+    """
+
+    given: Given
+    sought: Given
+    cells: Array
+    slides: Array
+
+    @classmethod
+    def of(cls, locus: Locus, pattern: Pattern) -> Holdings:
+        """The holdings of a pattern on a part."""
+        parts: list[tuple[NDArray[Any], ...]] = []
+        before = curves_before = 0
+        for side in dict.fromkeys(pattern.right.tolist()):
+            group = Group.of(pattern, np.flatnonzero(pattern.right == side).tolist())
+            known, names = JawHoldings.known(locus, group), np.array([*group.numbers, -1.0])
+            rows, moved, slid = np.array(known.holdings), np.array(known.cells), np.array(known.slides)
+            for column in (FIRST_PEG, SECOND_PEG):
+                rows[:, column] = names[rows[:, column].astype(np.int64)]
+            rows[rows[:, KIND] == 0.0, SOURCE] += curves_before
+            # Heights are counted from the first peg of the group.
+            moved[:, [BOTTOM, TOP]] -= group.shift[2]
+            moved[:, HOLDING] += before
+            slid[:, [SLIDE_FIRST, SLIDE_SECOND]] = names[slid[:, [SLIDE_FIRST, SLIDE_SECOND]].astype(np.int64)]
+            parts.append((rows, known.curves, known.reals, moved, slid))
+            before, curves_before = before + len(rows), curves_before + len(known.curves)
+        rows, curves, reals, cells, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
+        pegs = np.array(pattern.pegs), pattern.right, locus.parts
+        given = Given(rows, curves, reals, np.array(locus.rows), *pegs)
+        return cls(given, given._replace(rows=np.array(locus.loose)), cells, slides)
 
     def of_jaw(self, right: int) -> Array:
         """The cells of one jaw's holdings, ordered by their lowest orientation, those beyond a turn a second time."""
-        cells = self.cells[self.given.right[self.holder(self.cells)] == right]
+        holder = self.given.holdings[self.cells[:, HOLDING].astype(np.int64), FIRST_PEG].astype(np.int64)
+        cells = self.cells[self.given.right[holder] == right]
         again = np.array(cells[cells[:, HIGH] > tau])
         again[:, [LOW, HIGH]] -= tau
         cells = np.concatenate([cells, again])
         return np.ascontiguousarray(cells[np.argsort(cells[:, LOW], kind="stable")])
-
-    def holder(self, cells: Array) -> NDArray[np.int64]:
-        """The first pegs (N,) of the holdings of some cells."""
-        return np.asarray(self.given.holdings[cells[:, HOLDING].astype(np.int64), FIRST_PEG], np.int64)
-
-    def there(self, psi: float, right: int) -> NDArray[np.int64]:
-        """Numbers of a jaw's holdings that may exist at an orientation."""
-        within = psi % tau
-        held = np.zeros(len(self.cells), np.bool_)
-        for at in (within, within + tau):
-            held |= (self.cells[:, LOW] <= at + 1e-9) & (self.cells[:, HIGH] >= at - 1e-9)
-        held &= self.given.right[self.holder(self.cells)] == right
-        return np.unique(self.cells[held, HOLDING].astype(np.int64))
-
-    def inside(self, number: int, psi: float) -> float:
-        """An orientation moved by whole turns into the range of a holding."""
-        holding = self.given.holdings[number]
-        if holding[KIND] == 1.0:
-            return psi
-        low, high = self.given.reals[int(holding[SOURCE]), [FROM, TO]] - holding[ANGLE]
-        return float(min(max(psi + tau * np.ceil((low - 1e-9 - psi) / tau), low), high))
 
 
 def pockets_held(locus: Locus, right: NDArray[np.int64]) -> Array:
@@ -171,13 +180,3 @@ def pockets_held(locus: Locus, right: NDArray[np.int64]) -> Array:
     rows[:, [FIRST_PEG, SOURCE]] = np.array(held).reshape(-1, 2)
     rows[:, [PIVOT_X, PIVOT_Y]] = locus.pockets[rows[:, SOURCE].astype(np.int64), :2]
     return rows
-
-
-def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> Array:
-    """What a kernel writes into its last argument, an array of rows that is made larger until it has room."""
-    while True:
-        out = np.empty((room, width))
-        count = kernel(*arguments, out)
-        if count >= 0:
-            return out[:count]
-        room *= 4

@@ -29,7 +29,9 @@ from workhold.seating.hull import Hull
 from workhold.seating.touch import Touch
 
 if TYPE_CHECKING:
+    from workhold.seating.alone import Alone
     from workhold.seating.common_normals import CommonNormal
+    from workhold.seating.holdings import JawHoldings
 
 __all__ = ["PAST_POCKET", "Locus", "all_contained", "contains"]
 
@@ -126,13 +128,18 @@ class Locus:
         return {}
 
     @cached_property
-    def parallels(self) -> dict[int, list[int]]:
-        """See ``seating.tangent``, which fills it."""
+    def tangents(self) -> dict[tuple[float, int], Array]:
+        """Tangencies by the length of the chord and the jaw; see ``seating.tangent``, which fills it."""
         return {}
 
     @cached_property
-    def tangents(self) -> dict[tuple[float, int], list[tuple[int, int, tuple[float, float], float]]]:
-        """Tangencies by the length of the chord and the jaw; see ``seating.tangent``, which fills it."""
+    def held(self) -> dict[tuple[float, ...], JawHoldings]:
+        """How pegs of one jaw hold the part, by how they stand; see ``seating.holdings``, which fills it."""
+        return {}
+
+    @cached_property
+    def alone(self) -> dict[tuple[float, ...], Alone]:
+        """What groups of pegs do, by how they stand; see ``seating.alone``, which fills it."""
         return {}
 
     def curves(self, length: float, side: int) -> CurveTable:
@@ -141,8 +148,9 @@ class Locus:
         first, end = self.parts[side].tolist()
         key = round(length, 9), first
         if key not in self.tables:
+            # The same curves whoever asks first.
             steps = LatticeSteps(
-                np.array([length]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
+                np.array([round(length, 12)]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
             )
             table = curve_table(self.loose[first:end], steps)
             for integers in (table.curves.integers, table.sliding_pairs.integers):

@@ -39,6 +39,7 @@ class Pattern:
     numbers : their places (4,) in the fixture's pegs.
     wall : unit vector along which a wall presses the part, along x or y, and how far in mm along it the wall is; None
         where there is none. Then there are two pegs.
+    gap : least distance in mm along x that pegs of both jaws keep, None where nothing is said of it.
     """
 
     pegs: Array
@@ -49,6 +50,7 @@ class Pattern:
     door: Door
     numbers: tuple[int, ...] = (0, 1, 2, 3)
     wall: tuple[float, float, float] | None = None
+    gap: float | None = None
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
@@ -73,7 +75,9 @@ class Pattern:
             x, y = door.turned(np.array([0.0, 1.0])).tolist()
             wall = x, y, 0.0
         pegs[:, 0] -= right * (door.sign * fixture.jaw_separation)
-        pattern = cls(pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door, numbers, wall)
+        pattern = cls(
+            pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door, numbers, wall, toolkit.gap
+        )
         stop, widest = pattern.free_of_locators(door.sign * fixture.jaw_separation)
         if toolkit.gap is not None:
             stop, widest = pattern.gap_kept(toolkit.gap)
@@ -91,6 +95,13 @@ class Pattern:
         if self.door.sign > 0.0:
             return float(gap + left.max() - right.min()), inf
         return -inf, float(left.min() - right.max() - gap)
+
+    def bounded(self) -> Pattern:
+        """The pattern with no other stop than the gap between its own pegs, which patterns that have more pegs keep too."""
+        if self.gap is None or len(set(self.right.tolist())) < 2:
+            return self
+        stop, widest = self.gap_kept(self.gap)
+        return evolve(self, stop=stop - APART, widest=widest + APART)
 
     def free_of_locators(self, separation: float) -> tuple[float, float]:
         """The separations at which a clamp's tip meets a locator before it and behind it, seen from one between."""

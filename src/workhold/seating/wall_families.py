@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from workhold.conventions import PARALLEL, SAME_CENTER
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE
-from workhold.seating.families import SHORTEST, SLIDE_STEPS, Family, Finder
+from workhold.seating.families import SHORTEST, SLIDE_STEPS, Family, Finder, Way
 from workhold.seating.fence import LOCATOR, ON_WALL, TIP, Fence
 from workhold.seating.hull import HullSide
 
@@ -49,7 +49,7 @@ def sliding_on_wall(finder: Finder, fence: Fence) -> list[Family]:
             configs = np.stack(
                 [theta * every, known * every, np.linspace(low, high, SLIDE_STEPS), separation * every], axis=1
             )
-            for family in finder.cut(configs, [(TIP, number)], False, None):
+            for family in finder.cut(Way(configs, [(TIP, number)], False, None)):
                 with_both_ends(family.candidate, fence, side)
                 out.append(family)
     return out
@@ -67,7 +67,7 @@ def with_both_ends(row: Array, fence: Fence, side: HullSide) -> None:
 
 def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
     """Arcs of one centre on the wall and on the tip, and on the locator where the tip is not square to the wall."""
-    out, (ux, uy, off) = [], fence.wall
+    out, (ux, uy, off) = list[Family](), fence.wall
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.locus.hull.rows
     for group, piece in product(finder.concentric, range(len(hull))):
@@ -79,7 +79,7 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
             signed = float(finder.rows[tip, SIGN] * finder.rows[tip, RADIUS])
             if ux > 0.0:
                 across = (0.0, 1.0) if signed > 0.0 else None
-                out += finder.turning(first, (known, ty), known + signed - tx, [(TIP, tip)], across)
+                out += finder.cut_all(finder.turning(first, (known, ty), known + signed - tx, [(TIP, tip)], across))
             for locator in (k for k in group if finder.locus.fits(0, k)):
                 radius = float(finder.rows[locator, RADIUS])
                 square = radius**2 - ((known - lx) if ux else (known - ly)) ** 2
@@ -93,7 +93,7 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
                     pressed = presses(fence, finder, center, (lx, ly), (tx + separation, ty), (locator, tip))
                     if pressed:
                         contacts = [(LOCATOR, locator), (TIP, tip)]
-                        out += finder.turning(first, center, separation, contacts, None)
+                        out += finder.cut_all(finder.turning(first, center, separation, contacts, None))
     return out
 
 

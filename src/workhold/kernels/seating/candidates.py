@@ -159,7 +159,7 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
     """
     theta = fixed[THETA]
     cosine, sine = cos(theta), sin(theta)
-    for k in range(4):
+    for k in range(given.pegs.shape[0]):
         if given.right[k] == jaw:
             continue
         level = given.pegs[k, 1] - fixed[PLACE_Y]
@@ -192,11 +192,9 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
 
 
 @compiled
-def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, fixed: Array, out: Array) -> int:
-    """Write the candidates of three contacts of a jaw, at roots of GAP (R, 6), and one of the other to ``out``.
-
-    fixed : (24,) work space. Return their number, or -1 where they do not fit.
-    """
+def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+    """Write the candidates of three contacts of a jaw, at roots of GAP (R, 6), to ``out``, their place that at separation 0;
+    return their number."""
     count = 0
     for r in range(roots.shape[0]):
         root = roots[r]
@@ -212,19 +210,23 @@ def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, fixed: A
             continue
         x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
         y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
-        write_pose(fixed, -psi, x, y, 3)
-        write_holding(fixed, 0, holding, given, pocket_pieces)
-        fixed[PEG + 2], fixed[PIECE + 2], fixed[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
-        count = add_fourths(fixed, given.right[tail], given, out, count)
-        if count < 0:
-            return -1
+        row = out[count]
+        write_pose(row, -psi, x, y, 3)
+        write_holding(row, 0, holding, given, pocket_pieces)
+        row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
+        count += 1
     return count
 
 
 @compiled
 def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
-    """See ``add_fourths``, for one part that three contacts fix to a jaw."""
-    return add_fourths(fixed, jaw, given, out, 0)
+    """See ``add_fourths``, for a part that three contacts fix to a jaw in several places (N, 24)."""
+    count = 0
+    for n in range(fixed.shape[0]):
+        count = add_fourths(fixed[n], jaw, given, out, count)
+        if count < 0:
+            return -1
+    return count
 
 
 @compiled
@@ -266,7 +268,7 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
             residual = max(residual, abs(total))
         row[RESIDUAL] = residual
         row[CLEAR] = inf
-        for peg in range(4):
+        for peg in range(given.pegs.shape[0]):
             touching = False
             for i in range(n):
                 touching = touching or int(row[PEG + i]) == peg

@@ -186,7 +186,7 @@ def third_of_jaw(cells: Array, given: Given, discs: Array, stack: Array, out: Ar
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
         s = held(holding, given, psi)
         cosine, sine = cos(psi), sin(psi)
-        for third in range(4):
+        for third in range(given.pegs.shape[0]):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
             ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]

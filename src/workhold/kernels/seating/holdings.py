@@ -131,15 +131,3 @@ def make_cells(given: Given, stretches: Array, cells: Array) -> int:
                 low = high
             s = last
     return count
-
-
-@compiled
-def held_at(numbers: NDArray[np.int64], psis: Array, given: Given, out: Array) -> None:
-    """Holdings (N,) at orientations (N,): rows of place x and y, height, and 1 where they lie on their pieces, to
-    ``out``."""
-    for n in range(numbers.shape[0]):
-        holding, psi = given.holdings[numbers[n]], psis[n]
-        s = held(holding, given, psi)
-        out[n, 0], out[n, 1] = s[0], s[1]
-        out[n, 2] = height(holding, given, s[0], s[1], cos(psi), sin(psi))
-        out[n, 3] = 1.0 if is_on_its_pieces(holding, given, psi, s[0], s[1]) else 0.0

@@ -263,7 +263,7 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
         cosine, sine = cos(psi), sin(psi)
         sign = 1.0 if middle[2] * middle[5] - middle[3] * middle[4] >= 0.0 else -1.0
         whole, is_known = ((0.0, 0.0), (0.0, 0.0)), False
-        for third in range(4):
+        for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
                 continue
             push = 1.0 if given.right[third] == 1 else -1.0

@@ -1,0 +1,174 @@
+"""Three pegs on parallel forces: at the tangencies of a chord, and on three parallel faces along which the part slides."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import END_SLACK, PARALLEL
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.seating.candidates import write_pose
+from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, Given
+from workhold.kernels.seating.pieces import on_piece
+from workhold.kernels.seating.slides import (
+    SLIDE_FIRST,
+    SLIDE_HIGH,
+    SLIDE_LOW,
+    SLIDE_ONE,
+    SLIDE_PSI,
+    SLIDE_SECOND,
+    SLIDE_TWO,
+)
+
+Array = NDArray[np.float64]
+
+# Radians by which the orientation is changed to see on which side a chord goes on.
+STEP = 1e-6
+# No unit. Faces whose normals have less along x are level: no closing presses them. mm: forces this near are in one line.
+LEVEL, SHORTEST = 1e-9, 1e-6
+# Columns of tangencies: line and arc, tail of the chord on the line, direction of the chord on the part in radians.
+ON_LINE, ON_ARC, TAIL_X, TAIL_Y, ALPHA = range(5)
+# Columns of what slides on three faces: number of the slide, third peg and its face, orientation, S, parameters between
+# which the first peg slides.
+OF_SLIDE, THIRD, ON_THIRD, AT_THETA, AT_SEPARATION, AT_LOW, AT_HIGH = range(7)
+THREE_FACES = 7
+
+
+@inner
+def are_parallel(one: Array, two: Array) -> bool:
+    """Whether two lines are parallel."""
+    if one[IS_ARC] != 0.0 or two[IS_ARC] != 0.0:
+        return False
+    return abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X]) <= PARALLEL
+
+
+@inner
+def separation_on(theta: float, line: Array, other: Array, first: int, third: int, given: Given) -> tuple[bool, float]:
+    """Whether parallel lines are not level at an orientation, and S at which two pegs, of both jaws, lie on them."""
+    nx = cos(theta) * line[AXIS_Y] + sin(theta) * line[AXIS_X]
+    ny = sin(theta) * line[AXIS_Y] - cos(theta) * line[AXIS_X]
+    moving = nx * (given.right[third] - given.right[first])
+    if abs(moving) < LEVEL:
+        return (False, 0.0)
+    gap = (other[X] - line[X]) * line[AXIS_Y] - (other[Y] - line[Y]) * line[AXIS_X]
+    run, rise = given.pegs[third, 0] - given.pegs[first, 0], given.pegs[third, 1] - given.pegs[first, 1]
+    return (True, (gap - run * nx - rise * ny) / moving)
+
+
+@compiled
+def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: float, given: Given, out: Array) -> int:
+    """Write the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg of the other jaw on
+    a line parallel to the first's; return their number, or -1 where they do not fit."""
+    count = 0
+    dx, dy = given.pegs[second, 0] - given.pegs[first, 0], given.pegs[second, 1] - given.pegs[first, 1]
+    d = hypot(dx, dy)
+    for n in range(chords.shape[0]):
+        chord = chords[n]
+        theta = atan2(dy, dx) - chord[ALPHA]
+        c, e = cos(theta), sin(theta)
+        line, arc = given.rows[int(chord[ON_LINE])], given.rows[int(chord[ON_ARC])]
+        for third in range(given.pegs.shape[0]):
+            if given.right[third] == given.right[first]:
+                continue
+            for number in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
+                other = given.rows[number]
+                if number == int(chord[ON_LINE]) or not are_parallel(line, other):
+                    continue
+                told, s = separation_on(theta, line, other, first, third, given)
+                if not told or not (stop < s < widest):
+                    continue
+                run = given.pegs[third, 0] - given.pegs[first, 0] + s * (given.right[third] - given.right[first])
+                rise = given.pegs[third, 1] - given.pegs[first, 1]
+                if not on_piece(
+                    other, chord[TAIL_X] + c * run + e * rise, chord[TAIL_Y] + c * rise - e * run, END_SLACK
+                ):
+                    continue
+                if count >= out.shape[0]:
+                    return -1
+                row = out[count]
+                x = given.pegs[first, 0] + s * given.right[first] - (c * chord[TAIL_X] - e * chord[TAIL_Y])
+                y = given.pegs[first, 1] - (e * chord[TAIL_X] + c * chord[TAIL_Y])
+                write_pose(row, theta, x, y, 3)
+                row[SEPARATION] = s
+                row[PEG], row[PEG + 1], row[PEG + 2] = first, second, third
+                row[PIECE], row[PIECE + 1], row[PIECE + 2] = chord[ON_LINE], chord[ON_ARC], number
+                # The chord goes on to the side on which the arc is met.
+                nx, ny, turn = line[AXIS_Y], -line[AXIS_X], -STEP
+                for way in range(2):
+                    step = STEP - 2.0 * STEP * way
+                    alpha = atan2(dy, dx) - (theta + step)
+                    wx, wy = d * cos(alpha), d * sin(alpha)
+                    if abs((line[X] + wx - arc[X]) * nx + (line[Y] + wy - arc[Y]) * ny) < arc[RADIUS]:
+                        turn = step
+                told, after = separation_on(theta + turn, line, other, first, third, given)
+                row[SECOND] = (after - s) / STEP if told else 0.0
+                row[MOTION + 1] = c * line[AXIS_X] - e * line[AXIS_Y]
+                row[MOTION + 2] = e * line[AXIS_X] + c * line[AXIS_Y]
+                count += 1
+    return count
+
+
+@inner
+def is_between(p: float, q: float, r: float, one: float, two: float, three: float) -> bool:
+    """Whether of parallel forces at p, q and r, of signs one to three, the middle one is against the outer two."""
+    if p > q:
+        p, q, one, two = q, p, two, one
+    if q > r:
+        q, r, two, three = r, q, three, two
+    if p > q:
+        p, q, one, two = q, p, two, one
+    return q - p > SHORTEST and r - q > SHORTEST and one == three == -two
+
+
+@compiled
+def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out: Array) -> int:
+    """Write what slides on three parallel faces, two pegs of one jaw on a slide (S, 7) and one of the other, the middle one
+    of the three against the outer two; return their number, or -1 where they do not fit."""
+    count = 0
+    for n in range(slides.shape[0]):
+        slide = slides[n]
+        first, second = int(slide[SLIDE_FIRST]), int(slide[SLIDE_SECOND])
+        one, mate, theta = given.rows[int(slide[SLIDE_ONE])], given.rows[int(slide[SLIDE_TWO])], -slide[SLIDE_PSI]
+        c, d = cos(theta), sin(theta)
+        # The face's direction and its outward normal in the frame of the pegs.
+        tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
+        nx, ny = ty, -tx
+        if one[IS_ARC] != 0.0 or abs(nx) < LEVEL:
+            continue
+        for k in range(given.pegs.shape[0]):
+            if given.right[k] == given.right[first]:
+                continue
+            for number in range(given.parts[given.right[k], 0], given.parts[given.right[k], 1]):
+                two = given.rows[number]
+                if not are_parallel(one, two):
+                    continue
+                facing = two[AXIS_X] * one[AXIS_X] + two[AXIS_Y] * one[AXIS_Y]
+                beside = mate[AXIS_X] * one[AXIS_X] + mate[AXIS_Y] * one[AXIS_Y]
+                moving = 1.0 if given.right[k] == 1 else -1.0
+                if np.sign(facing) * moving * nx <= 0.0:
+                    continue
+                thick = (one[X] - two[X]) * one[AXIS_Y] - (one[Y] - two[Y]) * one[AXIS_X]
+                run, rise = given.pegs[k, 0] - given.pegs[first, 0], given.pegs[k, 1] - given.pegs[first, 1]
+                s = -(thick + run * nx + rise * ny) / (moving * nx)
+                if not (stop < s < widest):
+                    continue
+                p = (given.pegs[first, 0] + s * given.right[first]) * tx + given.pegs[first, 1] * ty
+                q = (given.pegs[second, 0] + s * given.right[second]) * tx + given.pegs[second, 1] * ty
+                r = (given.pegs[k, 0] + s * given.right[k]) * tx + given.pegs[k, 1] * ty
+                if not is_between(p, q, r, 1.0, np.sign(beside), np.sign(facing)):
+                    continue
+                shift = (two[X] - one[X]) * one[AXIS_X] + (two[Y] - one[Y]) * one[AXIS_Y] - (r - p)
+                low = max(slide[SLIDE_LOW], shift - two[HALF_EXTENT])
+                high = min(slide[SLIDE_HIGH], shift + two[HALF_EXTENT])
+                if high - low < SHORTEST:
+                    continue
+                if count >= out.shape[0]:
+                    return -1
+                row = out[count]
+                row[OF_SLIDE], row[THIRD], row[ON_THIRD], row[AT_THETA], row[AT_SEPARATION] = n, k, number, theta, s
+                row[AT_LOW], row[AT_HIGH] = low, high
+                count += 1
+    return count

@@ -1,0 +1,125 @@
+"""What two or three pegs of a pattern do by themselves, found once for all patterns in which they stand alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.kernels.seating.candidates import complete_third, complete_three, settle
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    DEPTH,
+    DOUBT,
+    FORCE,
+    RESIDUAL,
+    SEPARATION,
+    Given,
+)
+from workhold.kernels.seating.four_contacts import third_of_jaw
+from workhold.kernels.seating.slides import slides_squared, slides_stopped
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.seating.common_normals import squeezed
+from workhold.seating.families import Finder, Way
+from workhold.seating.filled import filled
+from workhold.seating.groups import Group
+from workhold.seating.holdings import Holdings
+from workhold.seating.locus import Locus
+from workhold.seating.pattern import Pattern
+from workhold.seating.tangent import tangent
+
+__all__ = ["Alone", "alone", "balanced", "settled"]
+
+Array = NDArray[np.float64]
+# Groups of which something is kept; beyond, all are forgotten.
+MOST_KEPT = 1024
+# No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
+BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
+NONE = np.zeros((0, CANDIDATE_LENGTH))
+
+
+@frozen(eq=False)
+class Alone:
+    """What a group of pegs does, in its own frame.
+
+    Parameters
+    ----------
+    candidates : (N, 24) those of two or three contacts in which forces balance.
+    fixed : (N, 24) of pegs of one jaw: where they touch in three places, the part's place that at separation 0.
+    ways : that the part can go between the pegs with one separation.
+    """
+
+    candidates: Array
+    fixed: Array
+    ways: tuple[Way, ...]
+
+
+def alone(locus: Locus, group: Group, size: float) -> Alone:
+    """What a group does; ``size`` in mm as of ``equilibria``."""
+    kept, key = locus.alone, (size, *group.key)
+    found = kept.get(key)
+    if found is None:
+        sides, count = set(group.pattern.right.tolist()), len(group.pattern.pegs)
+        kind: Callable[[Locus, Pattern, float], Alone] = two_alone if count == 2 else three_alone
+        found = jaw_alone(locus, group.pattern) if len(sides) == 1 else kind(locus, group.pattern, size)
+        if len(kept) >= MOST_KEPT:
+            kept.clear()
+        kept[key] = found
+    return found
+
+
+def two_alone(locus: Locus, pattern: Pattern, size: float) -> Alone:
+    """Of a peg of each jaw: on common normals, and on parallel faces or arcs of one centre."""
+    given, finder = Holdings.of(locus, pattern).given, Finder(locus, pattern)
+    candidates = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
+    return Alone(in_balance(candidates, given, size), NONE, finder.free(finder.on_one_line()))
+
+
+def three_alone(locus: Locus, pattern: Pattern, size: float) -> Alone:
+    """Of two pegs of a jaw and one of the other."""
+    holdings, finder, stack = Holdings.of(locus, pattern), Finder(locus, pattern), np.empty((DEPTH, 2))
+    given, sought = holdings.given, holdings.sought
+    roots = filled(ROOT_LENGTH, 1024, three_contacts, holdings.cells, sought, locus.discs, pattern.stop, stack)
+    candidates = [
+        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, locus.pocket_pieces),
+        filled(CANDIDATE_LENGTH, 256, slides_squared, holdings.slides, given),
+        *tangent(locus, pattern, given),
+    ]
+    ways = [*finder.on_parallel_lines(holdings.slides, given), *finder.on_one_center()]
+    every = np.concatenate(candidates)
+    return Alone(in_balance(every[pattern.reaches(every[:, SEPARATION])], given, size), NONE, finder.free(ways))
+
+
+def jaw_alone(locus: Locus, pattern: Pattern) -> Alone:
+    """Of pegs of one jaw that touch in three places: three, or two of which one is in a pocket."""
+    holdings, stack = Holdings.of(locus, pattern), np.empty((DEPTH, 2))
+    roots = filled(ROOT_LENGTH, 1024, third_of_jaw, holdings.cells, holdings.sought, locus.discs, stack)
+    fixed = [
+        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, holdings.given, locus.pocket_pieces),
+        filled(CANDIDATE_LENGTH, 256, slides_stopped, holdings.slides, holdings.given),
+    ]
+    return Alone(NONE, np.concatenate(fixed), ())
+
+
+def settled(candidates: Array, given: Given, size: float) -> Array:
+    """Candidates (N, 24) with their forces and clearances."""
+    settle(candidates, given, size, np.empty((4, 4)), np.empty((4, 5)))
+    return candidates
+
+
+def balanced(candidates: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """In which settled candidates (N, 24) all contacts press and forces balance: for certain, and of those in doubt."""
+    used = np.arange(4) < candidates[:, CONTACTS, None]
+    forces = np.where(used, candidates[:, FORCE : FORCE + 4], np.inf)
+    pressed, doubt = forces.min(axis=1, initial=np.inf) > LEAST_FORCE, candidates[:, DOUBT] != 0.0
+    off = candidates[:, RESIDUAL]
+    return pressed & ~doubt & (off < BALANCED), pressed & doubt & (off < BALANCED_IN_DOUBT)
+
+
+def in_balance(candidates: Array, given: Given, size: float) -> Array:
+    """Candidates of a group, those that may be equilibria."""
+    sure, doubtful = balanced(settled(candidates, given, size))
+    return np.array(candidates[sure | doubtful])
