@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -148,9 +149,30 @@ def test_refusals_are_one_sentence(run: Any, result_file: Path, arguments: tuple
 
 
 def test_another_toolkit_is_refused(run: Any, tmp_path: Path) -> None:
-    workhold.save(workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, clamps=2), best=1), tmp_path / "p.json")
-    outcome = run("seat", tmp_path / "p.json", 1)
-    assert outcome.exit_code == 2 and "neither of the two clamps" in outcome.stderr
+    """Of two clamps, which may be tightened first is told, and why it is not enough; square, slanted, and of one of both."""
+    plate, square = (
+        Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3),
+        [[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]],
+    )
+    made = workhold.design(Workpiece.from_loops("square", [square]), plate)
+    workhold.save(made, tmp_path / "p.json")
+    seen = set()
+    for rank, fixture in enumerate(made, 1):
+        low, high = fixture.pair.ratio
+        if (kind := (low == 0.0, high == inf)) in seen:
+            continue
+        seen.add(kind)
+        outcome = run("seat", tmp_path / "p.json", rank)
+        text = " ".join(outcome.stderr.split())
+        assert outcome.exit_code == 2 and "told of one clamp: " in text
+        tips = [peg.hole for peg in fixture.pegs[-2:]]
+        first = {
+            (True, True): "either of the two may",
+            (True, False): f"{tips[0]} may",
+            (False, True): f"{tips[1]} may",
+        }
+        assert first.get(kind, "either of the two alone lifts the part off a locator") in text
+    assert len(seen) == 4
 
 
 @pytest.mark.parametrize(

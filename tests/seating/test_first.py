@@ -227,7 +227,7 @@ def test_what_needs_seating_is_refused_without_it() -> None:
         workhold.design(WEDGE, VISE, seating=2, opening=-1.0)
     with pytest.raises(InputError, match=r"choose among .*capture-opening"):
         workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
-    with pytest.raises(InputError, match="neither of the two clamps"):
+    with pytest.raises(InputError, match="neither of two holds the part alone"):
         workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, clamps=2), seating=2)
 
 

@@ -10,7 +10,7 @@ from math import ceil, floor, inf, log10
 
 from workhold.model.fixture import Fixture, Pair
 
-__all__ = ["clamp_names", "clamp_shares", "freedom_words", "order_words"]
+__all__ = ["clamp_names", "clamp_shares", "first_clamps", "freedom_words", "order_words"]
 
 # Digits of a ratio that is told, rounded so that it lies inside the interval.
 DIGITS = 2
@@ -26,6 +26,14 @@ def clamp_names(fixture: Fixture) -> tuple[str, ...]:
     if len(set(directions)) == len(directions):
         return tuple(f"{hole} {direction}" for hole, direction in zip(holes, directions, strict=True))
     return tuple(f"{hole} on face {tip.face}" for hole, tip in zip(holes, tips, strict=True))
+
+
+def first_clamps(fixture: Fixture) -> tuple[str, ...]:
+    """What those of two clamps are called that may be tightened first, as they lift the part off no locator."""
+    if fixture.pair is None:
+        return ()
+    low, high = fixture.pair.ratio
+    return tuple(name for name, may in zip(clamp_names(fixture), (low == 0.0, high == inf), strict=True) if may)
 
 
 def clamp_shares(pair: Pair) -> tuple[float, float]:
