@@ -11,6 +11,7 @@ import pytest
 from workhold.cli import warming
 from workhold.kernels import preparing
 
+SEATING = sum(1 for part in preparing.LATER for _ in preparing.PARTS[part]())
 LONGEST = sum(1 for _ in preparing.PARTS[warming.LONGEST]())
 
 
@@ -21,7 +22,8 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
 
     @contextmanager
     def bar(*words: str) -> Iterator[Callable[[float, int], None]]:
-        assert words == (warming.WORDS, f"of {preparing.KERNEL_COUNT} kernels", warming.WORDS)
+        said = {warming.WORDS: preparing.KERNEL_COUNT, warming.SEATING_WORDS: SEATING}[words[0]]
+        assert words == (words[0], f"of {said} kernels", words[0])
         yield lambda fraction, count: told.append((fraction, count))
 
     monkeypatch.setattr(warming, "progress_bar", bar)
@@ -55,3 +57,21 @@ def test_an_interruption_leaves_the_rest_to_the_search(shown, monkeypatch):
     cancel.set()
     warming.compile_kernels(cancel)
     assert len(shown) == 1
+
+
+def test_the_kernels_of_seating_are_compiled_once(shown, monkeypatch, tmp_path):
+    """The last of them that is kept tells that all are; and when told to stop, the rest is left."""
+    monkeypatch.setattr(warming, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(warming, "LIBRARY", None)
+    cancel = Event()
+    warming.compile_seating(cancel)
+    assert shown == [(k / SEATING, k) for k in range(1, SEATING + 1)]
+    *_, (last, _) = preparing.PARTS[preparing.LATER[-1]]()
+    assert f"{last.__module__.rpartition('.')[2]}.{last.__name__}" == warming.LAST_OF_SEATING
+    cancel.set()
+    warming.compile_seating(cancel)
+    assert len(shown) == SEATING + 1
+    (tmp_path / "seating_0").mkdir()
+    (tmp_path / "seating_0" / f"{warming.LAST_OF_SEATING}-41.py311.nbi").touch()
+    warming.compile_seating(Event())
+    assert warming.is_seating_compiled() and len(shown) == SEATING + 1

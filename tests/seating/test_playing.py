@@ -195,9 +195,24 @@ def test_whatever_clamps_leads_home(part, toolkit):
     result = workhold.design(part, toolkit, best=1)
     fixture, (told,) = result[0], workhold.seatings(result, with_cage=False)
     opening = 0.5 * min(told.capture_opening or 2.0, 2.0)
+    if toolkit.moving.travel.most is not None and toolkit.clamping > 0:
+        opening = min(opening, toolkit.moving.travel.most - fixture.jaw_separation)
+    assert opening > 0.05
     played = play(Solver(part, toolkit), fixture, told.seats, fixture.pose, opening)
     assert played.ending == "right"
     assert played.travels[0] == pytest.approx(fixture.jaw_separation + toolkit.clamping * opening)
     assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
     assert played.poses[-1].theta_deg == pytest.approx(fixture.pose.theta_deg, abs=1e-4)
     assert (played.poses[-1].x, played.poses[-1].y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-3)
+
+
+def test_jaws_are_opened_no_farther_than_they_go():
+    """Up to the largest opening, and a clamp to the end of its stroke; by more it is refused."""
+    for toolkit, farther in ((Vise(20, 2, 3, max_opening=60), 1), (FENCE, 2)):
+        result = workhold.design(WEDGE, toolkit, best=1)
+        fixture, solver = result[0], Solver(WEDGE, toolkit)
+        most = toolkit.moving.travel.most - fixture.jaw_separation
+        away = Pose(0.0, 500.0, 500.0)
+        assert play(solver, fixture, (), away, most).ending == "outside"
+        with pytest.raises(InputError, match="does not go so far: open it by less"):
+            play(solver, fixture, (), away, most + farther)

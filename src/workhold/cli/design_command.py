@@ -122,6 +122,10 @@ def design(
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(cancel)
+        if query.seating is not None:
+            from workhold.cli.warming import compile_seating
+
+            compile_seating(cancel)
         streamed = out if form == "npz" and engine == "curves" else None
         with search_progress() as progress:
             told = foretelling(progress, query, out, form)

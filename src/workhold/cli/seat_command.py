@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING
 
 from workhold.cli.commands import option
@@ -73,8 +74,12 @@ def seat(
 
     gauge, told = Gauge(fixture, result.toolkit), fixture.seating
     if told is None:
+        from workhold.cli.warming import compile_seating
+        from workhold.seating.pattern import refuse_unseated
         from workhold.seating.seating import Solver
 
+        refuse_unseated(result.toolkit, fixture)
+        compile_seating(Event())
         told = Solver(result.workpiece, result.toolkit).of(fixture)
     seats = shown_seats(told, shown_side, opened, result)
     if not json_:

@@ -134,10 +134,12 @@ def limit_value(option: str, text: str) -> float:
 
 def prepare() -> None:
     """Compile the kernels on a first run, before workers would do so one after the other."""
+    from workhold.cli.warming import compile_kernels, compile_seating, is_seating_compiled
     from workhold.kernels.base.compiling import is_first_run
 
-    if is_first_run():
-        from workhold.cli.warming import compile_kernels
-
+    first_run = is_first_run()
+    if first_run or not is_seating_compiled():
         typer.echo(FIRST_RUN, err=True)
+    if first_run:
         compile_kernels(Event())
+    compile_seating(Event())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import date
 from pathlib import Path
+from threading import Event
 from typing import Annotated
 
 import typer
@@ -116,6 +117,10 @@ def sheet(
     given = asked_loads(load, loads, shown_unit)
     refuse_output(path, (result_file, loads), force)
     result = result_with(result_file, rank)
+    if seating and result[rank - 1].seating is None:
+        from workhold.cli.warming import compile_seating
+
+        compile_seating(Event())
     if ending in MODEL_ENDINGS:
         write_model(path, result, rank, settings, keep_off)
     else:

@@ -15,11 +15,14 @@ from threading import Event, Lock, Thread
 from time import sleep
 
 from workhold.cli.progress import progress_bar
-from workhold.kernels.base.compiling import cache_folder
+from workhold.kernels.base.compiling import LIBRARY, cache_folder
 
-__all__ = ["compile_kernels"]
+__all__ = ["compile_kernels", "compile_seating", "is_seating_compiled"]
 
 WORDS = "Compiling the kernels, on the first run only"
+SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
+# The last of them to be compiled, as its file is called.
+LAST_OF_SEATING = "leaving.leaves"
 # The part for the second process; the first compiles all others.
 LONGEST = "crossings"
 # Writes a line for each kernel that is done, and ends with this process, however that ends.
@@ -66,6 +69,33 @@ def compile_kernels(cancel: Event) -> None:
                 process.terminate()
                 process.wait()
                 listener.join()
+
+
+def is_seating_compiled() -> bool:
+    """Whether the kernels of seating need not be compiled any more, a matter of half a minute or so."""
+    folder = cache_folder()
+    return LIBRARY is not None or (
+        folder is not None and next(folder.rglob(f"{LAST_OF_SEATING}-*.nbi"), None) is not None
+    )
+
+
+def compile_seating(cancel: Event) -> None:
+    """Compile the kernels of seating, which searches do without, if that has not been done.
+
+    Parameters
+    ----------
+    cancel : when set, the rest is left to who needs it.
+    """
+    if is_seating_compiled():
+        return
+    from workhold.kernels.preparing import LATER, PARTS, prepared
+
+    count = sum(1 for part in LATER for _ in PARTS[part]())
+    with progress_bar(SEATING_WORDS, f"of {count} kernels", SEATING_WORDS) as progress:
+        for done, _ in enumerate((kernel for part in LATER for kernel in prepared(part)), 1):
+            progress(done / count, done)
+            if cancel.is_set():
+                return
 
 
 def second_process(one_more: Callable[[], None]) -> tuple[subprocess.Popen[bytes], Thread]:

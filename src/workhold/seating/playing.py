@@ -80,12 +80,16 @@ def play(
     Raises
     ------
     InputError
-        As ``Pattern.of``; for jaws that meet their stop, and a part that a peg stands in.
+        As ``Pattern.of``; for jaws that meet their stop or are opened beyond their end, and a part that a peg stands in.
     """
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, turned_over)
     center = Center(solver.workpiece.center, turned_over, pattern.door)
     start = center.config(pose, fixture.jaw_separation + solver.toolkit.clamping * opening)
+    travel = solver.toolkit.moving.travel
+    assert travel is not None
+    if pattern.door.sign > 0.0 and travel.most is not None and start[3] > travel.most + LEVEL:
+        raise InputError("what moves does not go so far: open it by less.")
     if not pattern.stop <= start[3] <= pattern.widest:
         raise InputError("pegs meet before what moves stands there: open it more, or less.")
     into = entered(solver, fixture, pattern, start, turned_over)

@@ -56,6 +56,21 @@ def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
     walk.search()
     told = begin(walk)
     right = f"{told['seats'][told['own']]['jaw_separation']:.3f} mm"
+    # Where the part is no longer caught is marked by the pegs that move as they would stand there.
+    caught, moving = page.locator("#drawing-fixture .caught"), page.locator("#drawing-fixture g.sliding .peg")
+    assert caught.count() == moving.count() > 0
+    ahead = [float(circle.get_attribute("cx")) for circle in caught.all()]
+    row = walk.shown()
+    stand = [row["pegs"][k][0] for each in row["carriers"] if each["clamping"] for k in each["pegs"]]
+    assert max(abs(x - y - told["capture_opening"]) for x, y in zip(ahead, stand, strict=True)) < 1e-6
+    page.fill("#try-opening", str(0.5 * told["capture_opening"]))
+    assert (
+        f", less than the {told['capture_opening']:.2f} mm up to which it is caught"
+        in walk.seen("#try-words").inner_text()
+    )
+    page.fill("#try-opening", str(2.0 * told["capture_opening"]))
+    assert ", beyond the" in walk.seen("#try-words").inner_text()
+    page.fill("#try-opening", str(max(0.5 * told["capture_opening"], 0.5)))
     dragged(walk, 0.4, 0.0)
     assert right in verdict(walk, "It comes home", "good")
     pressed = page.locator('#seats .seat[aria-pressed="true"]')

@@ -43,8 +43,9 @@ export class TrialDrawing {
    * @param {import("./trial.js").Lying|null} lying
    * @param {number} open how far the jaws are open, in mm
    * @param {boolean} movable whether it can be taken hold of
+   * @param {{at: number[], radius: number}[]} caught pegs as they stand where the part is no longer caught
    */
-  show(part, lying, open, movable) {
+  show(part, lying, open, movable, caught = []) {
     this.stop();
     this.part = part;
     this.lying = movable ? lying : null;
@@ -53,10 +54,12 @@ export class TrialDrawing {
     drawing.extras = () => (this.lying && !this.playing ? this.handle() : []);
     drawing.lie(lying);
     drawing.slide(open);
+    for (const old of drawing.view.world.querySelectorAll(".caught")) old.remove();
+    drawing.view.world.append(...caught.map(({ at, radius }) => draw("circle.caught", { cx: at[0], cy: at[1], r: radius })));
     if (!this.lying) return;
     drawing.shape.setAttribute("tabindex", "0");
     drawing.shape.setAttribute("role", "application");
-    drawing.shape.setAttribute("aria-label", "The part: arrows move it, comma and point turn it, Enter closes the jaws");
+    drawing.shape.setAttribute("aria-label", "The part: arrows move it, comma and point turn it, Enter closes");
     drawing.shape.onkeydown = this.key;
   }
 

@@ -9,7 +9,7 @@ import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
 import { TrialDrawing } from "./trial-drawing.js";
-import { armOf, entered, inFence, lyingOf, offsetsOf } from "./trial.js";
+import { armOf, entered, inFence, lyingOf, offsetsOf, pegsCaught } from "./trial.js";
 import { fieldLength, length, readLength, readNumber } from "./units.js";
 
 /** Fields of what is off, by their keys in the trial. */
@@ -164,7 +164,7 @@ function place(wanted) {
   change({ trial });
   const { part, selected } = state;
   const lying = lyingOf(part, selected, trial);
-  drawing.show(part, lying, trial.opening, true);
+  drawing.show(part, lying, trial.opening, true, pegsCaught(selected, told()));
   tellEntered(lying, trial.opening);
   writeFields();
   markSeat(null);
@@ -193,7 +193,15 @@ function tellEntered(lying, opening) {
   const holes = pegs.map((k) => selected.holes[k]).join(" and ");
   if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
   else if (inFence(part, selected, lying)) say("The part lies in the fence here.", "bad");
-  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}. Drag the part and let go.`);
+  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}${caughtWords(opening)}. Drag the part and let go.`);
+}
+
+/** Whether a part in its place is caught so far open, in words that go on. */
+function caughtWords(opening) {
+  const answer = told();
+  if (!answer?.pass) return "";
+  const caught = length(answer.capture_opening, 2);
+  return opening < answer.capture_opening ? `, less than the ${caught} up to which it is caught` : `, beyond the ${caught} up to which it is caught`;
 }
 
 /** Mark some pegs, and no others. @param {number[]} pegs */
@@ -268,7 +276,7 @@ function showSeat(number) {
   leave();
   const seat = answer.seats[number];
   change({ trial: { ...state.trial, ...offsetsOf(state.part, state.selected, lyingIn(seat)) } });
-  drawing.show(state.part, lyingIn(seat), answer.clamping * seat.difference, true);
+  drawing.show(state.part, lyingIn(seat), answer.clamping * seat.difference, true, pegsCaught(state.selected, answer));
   markEntered([]);
   writeFields();
   say(answer.captions[number].join(", "), number === answer.own ? "good" : "bad");

@@ -90,6 +90,19 @@ export function pegsOpen(row, opening) {
 }
 
 /**
+ * The pegs that move, as they stand where the part is no longer caught; none where that is not known, or never.
+ * @param {import("./pose.js").Row} row
+ * @param {any} told as the server tells it
+ * @returns {{at: number[], radius: number}[]}
+ */
+export function pegsCaught(row, told) {
+  if (!told?.pass || told.capture_opening > (told.widest ?? Infinity)) return [];
+  const pegs = pegsOpen(row, told.capture_opening);
+  const moving = row.carriers.filter(({ clamping }) => clamping);
+  return moving.flatMap((each) => each.pegs.map((k) => ({ at: pegs[k], radius: each.peg_radius })));
+}
+
+/**
  * The pegs that stand deeper in the part than rounding.
  * @param {any} part
  * @param {import("./pose.js").Row} row
