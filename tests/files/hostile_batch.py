@@ -21,6 +21,7 @@ from itertools import pairwise
 from math import hypot
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import ezdxf
 import numpy as np
@@ -28,7 +29,7 @@ from ezdxf import DXFError, recover
 from ezdxf.disassemble import recursive_decompose, to_primitives
 from ezdxf.entities import LWPolyline
 from hostile_files import MAKERS
-from pytest import approx
+from pytest import approx, raises
 
 from workhold.cli.main import app
 from workhold.errors import InputError
@@ -38,6 +39,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.toolkit.reader import read_vise_file
 from workhold.kernels.base.distance import outline_distances
+from workhold.verification.columns import columns_of
 
 __all__ = ["check_one", "run_batch"]
 
@@ -45,6 +47,8 @@ __all__ = ["check_one", "run_batch"]
 SECONDS, WALL_SECONDS, MEMORY = 20, 200, 2 << 30
 # Sizes of the part: what lies further from the origin is not of the part.
 FAR = 1e6
+# Columns that are held against what NumPy reads.
+COMPARED = ("theta", "position", "jaw_separation", "column", "row", "face", "force")
 
 
 def check_part(path: Path) -> None:
@@ -81,7 +85,15 @@ def check_result(path: Path) -> None:
 def check_columns(path: Path) -> None:
     """All fixtures of the file are there, with the holes and places that NumPy reads, and as the other form gives them."""
     read = list(read_result(path))
-    with np.load(path, allow_pickle=False) as told:
+    with np.load(path, allow_pickle=False) as archive:
+        try:
+            told = {name: archive[name] for name in COMPARED}
+        except (BadZipFile, NotImplementedError) as error:
+            # Checksums are compared by what verifies a file, and names told twice only once.
+            if "CRC" in str(error):
+                with raises(InputError):
+                    columns_of(path)
+            return
         assert len(read) == len(told["theta"])
         for k, fixture in enumerate(read):
             assert fixture.pose.theta_deg % 360 == approx(np.degrees(told["theta"][k]) % 360)
