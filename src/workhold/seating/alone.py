@@ -62,9 +62,8 @@ def alone(locus: Locus, group: Group, size: float) -> Alone:
     kept, key = locus.alone, (size, *group.key)
     found = kept.get(key)
     if found is None:
-        sides, count = set(group.pattern.right.tolist()), len(group.pattern.pegs)
-        kind: Callable[[Locus, Pattern, float], Alone] = two_alone if count == 2 else three_alone
-        found = jaw_alone(locus, group.pattern) if len(sides) == 1 else kind(locus, group.pattern, size)
+        kind: Callable[[Locus, Pattern, float], Alone] = two_alone if len(group.sides) == 2 else three_alone
+        found = jaw_alone(locus, group.pattern) if group.is_of_a_jaw else kind(locus, group.pattern, size)
         if len(kept) >= MOST_KEPT:
             kept.clear()
         kept[key] = found

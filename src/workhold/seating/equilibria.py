@@ -60,18 +60,18 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     if pattern.wall is not None:
         return on_fence(locus, pattern, size)
     holdings, finder = Holdings.of(locus, pattern), Finder(locus, pattern)
-    given, stack, pockets = holdings.given, np.empty((DEPTH, 2)), locus.pocket_pieces
-    roots = filled(ROOT_LENGTH, 1024, two_holdings, holdings.of_jaw(0), holdings.of_jaw(1), holdings.sought, stack)
+    given, jaws, pockets = holdings.given, (holdings.of_jaw(0), holdings.of_jaw(1)), locus.pocket_pieces
+    roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, np.empty((DEPTH, 2)))
     candidates = [filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)]
     ways = []
     for group in groups_of(pattern):
         own = alone(locus, group, size)
         candidates.append(group.candidates(own.candidates))
         if len(own.fixed):
-            jaw, fixed = int(group.pattern.right[0]), group.candidates(own.fixed)
+            jaw, fixed = group.sides[0], group.candidates(own.fixed)
             candidates.append(filled(CANDIDATE_LENGTH, 4 * len(fixed) + 64, fourths, fixed, jaw, given))
         ways += [way.moved(group) for way in own.ways]
-    candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, holdings.cells, given, pockets))
+    candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets))
     every = np.concatenate(candidates)
     every = settled(every[pattern.reaches(every[:, SEPARATION])], given, size)
     return sorted_out(every, finder.families(finder.cut_all(ways)))

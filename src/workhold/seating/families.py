@@ -9,10 +9,10 @@ from itertools import combinations, product
 from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
 
 import numpy as np
-from attrs import define, frozen
+from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import PARALLEL, SAME_CENTER
+from workhold.conventions import PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -98,17 +98,23 @@ class Way:
     contacts : pegs and the pieces that they touch all along.
     is_closed : whether the last one is beside the first.
     across : see ``Family``.
+    known, clear : pegs whose clearances (N, K) in mm are known, -inf where one of them hinders.
     """
 
     configs: Array
     contacts: list[Contact]
     is_closed: bool
     across: tuple[float, float] | None
+    known: tuple[int, ...] = ()
+    clear: Array | None = None
 
     def moved(self, group: Group) -> Way:
         """The way of a group of pegs as one of its pattern."""
         contacts = [(group.numbers[peg], piece) for peg, piece in self.contacts]
-        return Way(self.configs + group.shift, contacts, self.is_closed, self.across)
+        configs = self.configs + group.shift
+        return Way(
+            configs, contacts, self.is_closed, self.across, tuple(group.numbers[k] for k in self.known), self.clear
+        )
 
 
 @define(frozen=True, eq=False, slots=False)
@@ -158,13 +164,22 @@ class Finder:
     def freedom(self, way: Way) -> tuple[Array, NDArray[np.bool_]]:
         """Clearances (N, K) in mm of pegs and last of a wall along a way, told where the part is free and touches what it
         has to, and where it does."""
-        clear, good = np.empty((len(way.configs), self.obstacles)), np.empty(len(way.configs), np.int8)
-        free_ones(way.configs, self.touched(way), self.around, clear, good)
+        clear, good = np.empty((len(way.configs), self.obstacles)), np.ones(len(way.configs), np.int8)
+        if way.clear is not None:
+            clear[:, way.known], good[way.clear[:, 0] == -np.inf] = way.clear, 0
+        known, seen = sum(1 << k for k in way.known), np.empty((len(self.pattern.pegs), 3))
+        free_ones(way.configs, self.touched(way), known, self.around, seen, clear, good)
         return clear, good != 0
 
     def free(self, ways: list[Way]) -> tuple[Way, ...]:
-        """The ways along which the part is free somewhere."""
-        return tuple(way for way in ways if self.freedom(way)[1].any())
+        """The ways along which the part is free somewhere, with what is known of it."""
+        out = []
+        for way in ways:
+            clear, good = self.freedom(way)
+            if good.any():
+                clear[~good] = -np.inf
+                out.append(evolve(way, known=tuple(range(clear.shape[1])), clear=clear))
+        return tuple(out)
 
     def nearest(self, peg: int, config: Array) -> int:
         """Number of the piece that a peg, or a wall, touches in a configuration."""
@@ -186,7 +201,9 @@ class Finder:
         """The free runs of a way."""
         clear, good = self.freedom(way)
         configs, closed, out = way.configs, way.is_closed, list[Family]()
-        for numbers in runs(good, closed) if good.any() else ():
+        if not good.any():
+            return out
+        for numbers in runs(good, closed):
             # The middle of where the most pegs touch.
             touches = np.abs(clear[numbers]) < TOUCHES
             most = np.flatnonzero(touches.sum(axis=1) == touches.sum(axis=1).max())
@@ -212,7 +229,8 @@ class Finder:
 
     def edge(self, ends: Array, way: Way) -> Array:
         """The last free configuration on the straight way between two (2, 4), from one that is free to one that is not."""
-        last_free(ends, self.touched(way), self.around, np.empty(4), np.empty(self.obstacles))
+        seen, clear = np.empty((len(self.pattern.pegs), 3)), np.empty(self.obstacles)
+        last_free(ends, self.touched(way), self.around, np.empty(4), seen, clear)
         return np.asarray(ends[0])
 
     def sliding(
@@ -264,7 +282,7 @@ class Finder:
                 )
                 s, contacts = d * cos(omega) - run, [(i, a), (j, b)]
                 out += self.sliding(omega - atan2(uy, ux), pegs[i], one, low, high, s, contacts)
-            for group in self.concentric:
+            for group in self.locus.concentric:
                 for a, b in product(group, repeat=2):
                     one, two = (float(self.rows[k, SIGN] * self.rows[k, RADIUS]) for k in (a, b))
                     d = one + two
@@ -295,22 +313,12 @@ class Finder:
             out += self.sliding(row[AT_THETA], start, self.rows[a], row[AT_LOW], row[AT_HIGH], s, contacts)
         return out
 
-    @cached_property
-    def concentric(self) -> list[list[int]]:
-        """Arcs by their centres."""
-        groups: list[list[int]] = []
-        for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
-            center = self.rows[k, [X, Y]]
-            group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
-            groups.append([k]) if group is None else group.append(k)
-        return groups
-
     def on_one_center(self) -> list[Way]:
         """Two pegs of one jaw and one of the other on arcs of one centre."""
         out = list[Way]()
         pegs, right = self.pattern.pegs, self.pattern.right
         pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
-        for group, (p, q) in product(self.concentric, pairs):
+        for group, (p, q) in product(self.locus.concentric, pairs):
             for a, b in product(group, repeat=2):
                 if not self.touch([(p, a), (q, b)]):
                     continue

@@ -7,11 +7,12 @@ one jaw are than those of the other. The pegs that are left only say whether a p
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import combinations
 from math import inf
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.columns import PEG, PLACE_X, PLACE_Y, SEPARATION, THETA
@@ -22,23 +23,26 @@ __all__ = ["Group", "groups_of"]
 Array = NDArray[np.float64]
 # Decimals of a mm to which pegs of one group stand alike: what differs less is rounding, and goes.
 DECIMALS = 11
+# mm. Separations this much below a gap still count: which of them do is told by the pattern.
+SLACK = 1e-6
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Group:
-    """Pegs of a pattern.
+    """Pegs of a pattern, in a frame of their own: the first at the origin, as is the x of the first that moves.
 
     Parameters
     ----------
-    key : what groups share that stand alike, all that their own pattern is made from.
-    pattern : the pegs alone, in a frame of their own: the first at the origin, as is the x of the first that moves.
-    numbers : theirs in the pattern.
-    shift : (4,) by which their configurations become those of the pattern.
+    whole : the pattern.
+    numbers : of the pegs in it.
+    sides, places : of each 1 where it moves, and where it stands.
+    shift : (4,) by which configurations become those of the pattern.
     """
 
-    key: tuple[float, ...]
-    pattern: Pattern
+    whole: Pattern
     numbers: tuple[int, ...]
+    sides: tuple[int, ...]
+    places: tuple[tuple[float, float], ...]
     shift: Array
 
     @classmethod
@@ -54,18 +58,29 @@ class Group:
         order = tuple(k for *_, k in told)
         first = {right[k]: pegs[k] for k in reversed(order)}
         low = pegs[order[0]]
-        places = [(rounded(pegs[k][0] - first[right[k]][0]), rounded(pegs[k][1] - low[1])) for k in order]
-        sides = np.array([right[k] for k in order], dtype=np.int64)
+        places = tuple((rounded(pegs[k][0] - first[right[k]][0]), rounded(pegs[k][1] - low[1])) for k in order)
         apart = low[0] - first[1][0] if len(first) > 1 else 0.0
-        alone = Pattern(np.array(places), sides, pattern.radii, -inf, inf, pattern.door, order, None, pattern.gap)
-        key = (
-            *pattern.radii,
-            pattern.door.sign,
-            pattern.gap or 0.0,
-            *sides.tolist(),
-            *(x for at in places for x in at),
-        )
-        return cls(key, alone.bounded(), order, np.array([0.0, low[0], low[1], apart]))
+        return cls(pattern, order, tuple(right[k] for k in order), places, np.array([0.0, low[0], low[1], apart]))
+
+    @property
+    def is_of_a_jaw(self) -> bool:
+        """Whether all pegs move, or none."""
+        return self.sides[0] == self.sides[-1]
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What groups share that stand alike: all that their own pattern is made from."""
+        return self.whole.radii, self.whole.door.sign, self.whole.gap, self.sides, self.places
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """The pegs alone, with no other stop than the gap between them, which patterns that have more pegs keep too."""
+        whole, alone = self.whole, (np.array(self.places), np.array(self.sides, dtype=np.int64))
+        made = Pattern(*alone, whole.radii, -inf, inf, whole.door, self.numbers, None, whole.gap)
+        if whole.gap is None or self.is_of_a_jaw:
+            return made
+        stop, widest = made.gap_kept(whole.gap)
+        return evolve(made, stop=stop - SLACK, widest=widest + SLACK)
 
     def candidates(self, rows: Array) -> Array:
         """Candidates (N, 24) of the pegs alone as those of the pattern."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from itertools import combinations
 from math import atan2, hypot, pi, tau
 from typing import Any
@@ -54,7 +55,7 @@ Array = NDArray[np.float64]
 MOST_KEPT = 256
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class JawHoldings:
     """The holdings of the pegs of one jaw, in the frame of their group.
 
@@ -104,6 +105,14 @@ class JawHoldings:
         cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(locus.pockets) + 64, make_cells, given, every)
         return cls(rows, *curves, cells, np.array(slides).reshape(-1, SLIDE_LENGTH))
 
+    @cached_property
+    def ordered(self) -> Array:
+        """The cells ordered by their lowest orientation, those beyond a turn a second time."""
+        again = np.array(self.cells[self.cells[:, HIGH] > tau])
+        again[:, [LOW, HIGH]] -= tau
+        every = np.concatenate([self.cells, again])
+        return every[np.argsort(every[:, LOW], kind="stable")]
+
     @classmethod
     def known(cls, locus: Locus, group: Group) -> JawHoldings:
         """The same of a group of pegs of one jaw, worked out once for all that stand alike."""
@@ -125,46 +134,55 @@ class Holdings:
     ----------
     given : what kernels are given, with pieces as they are.
     sought : the same with pieces on which roots are sought: curves run past their ends by a hair, and so do these.
-    cells : (C, 7) of all holdings.
     slides : (S, 7) those that are no curve over the orientation.
+    jaws : by what moves, those of each jaw, how many holdings stand before them and the height of their first peg in mm.
     """
 
     given: Given
     sought: Given
-    cells: Array
     slides: Array
+    jaws: dict[int, tuple[JawHoldings, int, float]]
 
     @classmethod
     def of(cls, locus: Locus, pattern: Pattern) -> Holdings:
         """The holdings of a pattern on a part."""
         parts: list[tuple[NDArray[Any], ...]] = []
+        jaws: dict[int, tuple[JawHoldings, int, float]] = {}
         before = curves_before = 0
         for side in dict.fromkeys(pattern.right.tolist()):
             group = Group.of(pattern, np.flatnonzero(pattern.right == side).tolist())
             known, names = JawHoldings.known(locus, group), np.array([*group.numbers, -1.0])
-            rows, moved, slid = np.array(known.holdings), np.array(known.cells), np.array(known.slides)
+            rows, slid = np.array(known.holdings), np.array(known.slides)
             for column in (FIRST_PEG, SECOND_PEG):
                 rows[:, column] = names[rows[:, column].astype(np.int64)]
             rows[rows[:, KIND] == 0.0, SOURCE] += curves_before
-            # Heights are counted from the first peg of the group.
-            moved[:, [BOTTOM, TOP]] -= group.shift[2]
-            moved[:, HOLDING] += before
             slid[:, [SLIDE_FIRST, SLIDE_SECOND]] = names[slid[:, [SLIDE_FIRST, SLIDE_SECOND]].astype(np.int64)]
-            parts.append((rows, known.curves, known.reals, moved, slid))
+            parts.append((rows, known.curves, known.reals, slid))
+            jaws[side] = known, before, float(group.shift[2])
             before, curves_before = before + len(rows), curves_before + len(known.curves)
-        rows, curves, reals, cells, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
+        rows, curves, reals, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
         pegs = np.array(pattern.pegs), pattern.right, locus.parts
         given = Given(rows, curves, reals, np.array(locus.rows), *pegs)
-        return cls(given, given._replace(rows=np.array(locus.loose)), cells, slides)
+        return cls(given, given._replace(rows=np.array(locus.loose)), slides, jaws)
+
+    @property
+    def cells(self) -> Array:
+        """The cells (C, 7) of all holdings, those of one after each other."""
+        return np.concatenate([moved(known.cells, before, y) for known, before, y in self.jaws.values()])
 
     def of_jaw(self, right: int) -> Array:
         """The cells of one jaw's holdings, ordered by their lowest orientation, those beyond a turn a second time."""
-        holder = self.given.holdings[self.cells[:, HOLDING].astype(np.int64), FIRST_PEG].astype(np.int64)
-        cells = self.cells[self.given.right[holder] == right]
-        again = np.array(cells[cells[:, HIGH] > tau])
-        again[:, [LOW, HIGH]] -= tau
-        cells = np.concatenate([cells, again])
-        return np.ascontiguousarray(cells[np.argsort(cells[:, LOW], kind="stable")])
+        known, before, height = self.jaws[right]
+        return moved(known.ordered, before, height)
+
+
+def moved(cells: Array, before: int, height: float) -> Array:
+    """Cells (C, 7) of a jaw as those of a pattern, in which heights are counted from where the first peg is."""
+    out = np.array(cells)
+    out[:, BOTTOM] -= height
+    out[:, TOP] -= height
+    out[:, HOLDING] += before
+    return out
 
 
 def pockets_held(locus: Locus, right: NDArray[np.int64]) -> Array:

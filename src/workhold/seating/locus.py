@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
 from workhold.contact.problem import centered
-from workhold.conventions import CLEARANCE, END_SLACK, JOINT, TANGENT
+from workhold.conventions import CLEARANCE, END_SLACK, JOINT, SAME_CENTER, TANGENT
 from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
 from workhold.geometry.segment import Arc, Point, Segment, segment_rows
 from workhold.kernels.base.distance import outline_distances
@@ -123,6 +123,16 @@ class Locus:
         return out
 
     @cached_property
+    def concentric(self) -> list[list[int]]:
+        """Numbers of the arcs, by their centres."""
+        groups: list[list[int]] = []
+        for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
+            center = self.rows[k, [X, Y]]
+            group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
+            groups.append([k]) if group is None else group.append(k)
+        return groups
+
+    @cached_property
     def tables(self) -> dict[tuple[float, int], CurveTable]:
         """Chord curves by the length of the chord and the first piece, as far as they have been asked for."""
         return {}
@@ -133,12 +143,12 @@ class Locus:
         return {}
 
     @cached_property
-    def held(self) -> dict[tuple[float, ...], JawHoldings]:
+    def held(self) -> dict[tuple[object, ...], JawHoldings]:
         """How pegs of one jaw hold the part, by how they stand; see ``seating.holdings``, which fills it."""
         return {}
 
     @cached_property
-    def alone(self) -> dict[tuple[float, ...], Alone]:
+    def alone(self) -> dict[tuple[object, ...], Alone]:
         """What groups of pegs do, by how they stand; see ``seating.alone``, which fills it."""
         return {}
 

@@ -97,13 +97,6 @@ class Pattern:
             return float(gap + left.max() - right.min()), inf
         return -inf, float(left.min() - right.max() - gap)
 
-    def bounded(self) -> Pattern:
-        """The pattern with no other stop than the gap between its own pegs, which patterns that have more pegs keep too."""
-        if self.gap is None or len(set(self.right.tolist())) < 2:
-            return self
-        stop, widest = self.gap_kept(self.gap)
-        return evolve(self, stop=stop - APART, widest=widest + APART)
-
     def free_of_locators(self, separation: float) -> tuple[float, float]:
         """The separations at which a clamp's tip meets a locator before it and behind it, seen from one between."""
         stop, widest = -inf, inf

@@ -70,7 +70,7 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
     out, (ux, uy, off) = list[Family](), fence.wall
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.locus.hull.rows
-    for group, piece in product(finder.concentric, range(len(hull))):
+    for group, piece in product(finder.locus.concentric, range(len(hull))):
         first = finder.rows[group[0]]
         if hull[piece, 2] == 0.0 or np.hypot(*(first[[X, Y]] - hull[piece, :2])) > SAME_CENTER:
             continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, inf, pi, sin
+from math import atan2, cos, hypot, inf, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ IntArray = NDArray[np.int64]
 
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7
+# mm. By this much more than a peg moved it was clear, or in the part, where it surely still is.
+SURELY = 1e-6
 # What supports a part on a wall may fall short of it by this much: rounding.
 SUPPORTS = 1e-12
 # How often, and into how many parts, a step is cut to find where freedom ends.
@@ -24,16 +26,24 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 
 @inner
-def off_peg(config: Array, peg: int, piece: int, around: Obstacles) -> float:
-    """Clearance of a peg in mm in a configuration (4,); -inf where it is not on a piece that it has to touch (-1: none)."""
+def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
+    """Clearance of a peg in mm in a configuration (4,); -inf where it is not on a piece that it has to touch (-1: none).
+
+    Where none, as far as ``seen`` (3,), a place on the part and its clearance, tells: no nearer than that, and on its side.
+    """
     c, s = cos(config[0]), sin(config[0])
     qx = around.pegs[peg, 0] + around.right[peg] * config[3] - config[1]
     qy = around.pegs[peg, 1] - config[2]
     x, y = c * qx + s * qy, c * qy - s * qx
     if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
         return -inf
+    rest = abs(seen[2]) - hypot(x - seen[0], y - seen[1])
+    if piece < 0 and rest > SURELY:
+        return rest if seen[2] > 0.0 else -rest
     side = around.right[peg]
-    return clearance(x, y, around.rows, around.parts[side, 0], around.parts[side, 1])
+    seen[0], seen[1] = x, y
+    seen[2] = clearance(x, y, around.rows, around.parts[side, 0], around.parts[side, 1])
+    return seen[2]
 
 
 @inner
@@ -50,15 +60,15 @@ def off_the_wall(config: Array, around: Obstacles) -> float:
 
 
 @inner
-def write_clearances(config: Array, touched: IntArray, around: Obstacles, out: Array) -> bool:
-    """Write the clearances of all pegs, and last of a wall, in a configuration; whether all leave the part free and those
-    that have to touch pieces (K,) do. Where one does not, what follows it is not written."""
+def write_clearances(config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array) -> bool:
+    """Write the clearances of all pegs from a number on, and last of a wall, in a configuration; whether all leave the part
+    free and those that have to touch pieces (K,) do. Where one does not, what follows it is not written."""
     pegs = around.pegs.shape[0]
     # What stays on its piece seldom hinders.
     for late in range(2):
         for peg in range(pegs):
-            if (touched[peg] >= 0) == (late == 1):
-                out[peg] = off_peg(config, peg, touched[peg], around)
+            if (touched[peg] >= 0) == (late == 1) and not known >> peg & 1:
+                out[peg] = off_peg(config, peg, touched[peg], around, seen[peg])
                 if out[peg] <= -TOUCHES:
                     return False
     if around.hull.shape[0] > 0:
@@ -67,36 +77,57 @@ def write_clearances(config: Array, touched: IntArray, around: Obstacles, out: A
     return True
 
 
+@inner
+def nothing_seen(seen: Array) -> None:
+    """Begin anew with what is seen of pegs (K, 3)."""
+    for k in range(seen.shape[0]):
+        seen[k, 0], seen[k, 1], seen[k, 2] = 0.0, 0.0, 0.0
+
+
 @compiled
-def free_ones(configs: Array, touched: IntArray, around: Obstacles, clear: Array, good: NDArray[np.int8]) -> int:
-    """Write 1 where a part is free in configurations (N, 4), and the clearances (N, K) there; how many there are.
+def free_ones(
+    configs: Array,
+    touched: IntArray,
+    known: int,
+    around: Obstacles,
+    seen: Array,
+    clear: Array,
+    good: NDArray[np.int8],
+) -> int:
+    """Leave 1 where a part is free in configurations (N, 4), and write the clearances (N, K) there, or less where they are
+    large; how many there are.
 
     Parameters
     ----------
     touched : (K,) piece that each peg has to touch, -1 where none.
+    known : a bit for each peg that is known to leave the part free where 1 stands.
+    seen : (K, 3) work space.
     """
     count = 0
+    nothing_seen(seen)
     for n in range(configs.shape[0]):
-        good[n] = 1 if write_clearances(configs[n], touched, around, clear[n]) else 0
-        count += good[n]
+        if good[n] != 0:
+            good[n] = 1 if write_clearances(configs[n], touched, known, around, seen, clear[n]) else 0
+            count += good[n]
     return count
 
 
 @compiled
-def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, clear: Array) -> None:
+def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array) -> None:
     """Move the first of two configurations (2, 4), which is free, along the straight way to the second, which is not, to the
     last free one.
 
     Parameters
     ----------
-    trial, clear : (4,) and (K,) work space.
+    trial, seen, clear : (4,), (K, 3) and (K,) work space.
     """
+    nothing_seen(seen)
     for _ in range(EDGE_ROUNDS):
         last = 0
         for part in range(1, EDGE_PARTS):
             for k in range(4):
                 trial[k] = ends[0, k] + part / EDGE_PARTS * (ends[1, k] - ends[0, k])
-            if not write_clearances(trial, touched, around, clear):
+            if not write_clearances(trial, touched, 0, around, seen, clear):
                 break
             last = part
         for k in range(4):

@@ -187,29 +187,27 @@ def inside(holding: Array, given: Given, psi: float) -> float:
 
 
 @compiled
-def slides_held(slides: Array, cells: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+def slides_held(slides: Array, left: Array, right: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
     """Write the candidates of slides (S, 7) at the height at which the other jaw holds the part at their orientation: four
     contacts. Return their number, or -1 where they do not fit.
 
     Parameters
     ----------
-    cells : (C, 7) of all holdings, those of one holding after each other.
+    left, right : (C, 7) cells of each jaw as of ``four_contacts.two_holdings``.
     """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         row, first, psi = given.rows[int(slide[SLIDE_ONE])], int(slide[SLIDE_FIRST]), slide[SLIDE_PSI]
-        middle, c, s, within, last = middle_of(row), cos(psi), sin(psi), psi % TURN, -1.0
-        for cell_number in range(cells.shape[0]):
-            cell = cells[cell_number]
-            at = within if within <= cell[HIGH] + BESIDE and cell[LOW] - BESIDE <= within else within + TURN
-            if at > cell[HIGH] + BESIDE or cell[LOW] - BESIDE > at or cell[HOLDING] == last:
+        middle, c, s, within = middle_of(row), cos(psi), sin(psi), psi % TURN
+        cells = left if given.right[first] == 1 else right
+        for number in range(cells.shape[0]):
+            cell = cells[number]
+            if cell[LOW] - BESIDE > within:
+                break
+            if cell[HIGH] + BESIDE < within:
                 continue
             holding = given.holdings[int(cell[HOLDING])]
-            other = int(holding[FIRST_PEG])
-            if given.right[other] == given.right[first]:
-                continue
-            last = cell[HOLDING]
             exact = inside(holding, given, psi)
             there = held(holding, given, exact)
             if not is_on_its_pieces(holding, given, exact, there[0], there[1]):
@@ -224,7 +222,7 @@ def slides_held(slides: Array, cells: Array, given: Given, pocket_pieces: IntArr
                     return -1
                 one = out[count]
                 begin(one, slide, *track_at(row, middle, t), 4, given)
-                place_third(one, c * there[0] + s * there[1], other, given)
+                place_third(one, c * there[0] + s * there[1], int(holding[FIRST_PEG]), given)
                 write_holding(one, 2, holding, given, pocket_pieces)
                 count += 1
     return count
