@@ -56,6 +56,7 @@ from workhold.kernels.seating.leaving import leaves
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
+from workhold.kernels.seating.standing import CHANGE_LENGTH, stationary
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.kernels.statics.quality import figures
@@ -148,6 +149,8 @@ def seats_and_passes() -> Calls:
     yield free_ones, (np.zeros((0, 4)), touched, 0, obstacles, seen, clear, np.zeros(0, np.int8))
     yield last_free, (np.zeros((2, 4)), touched, obstacles, one, seen, np.zeros(5))
     yield first_of_each, (many, 1.0, 1.0, none)
+    standing = np.zeros(0), np.zeros(6), np.zeros(3), np.zeros((2, 2)), rows, points, points
+    yield stationary, (*standing, points, np.zeros((0, CHANGE_LENGTH)))
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work = WorkSpace(np.zeros((1, 7)), np.zeros((5, 4)), np.zeros((5, 6)), one, one, one, np.zeros(8, np.int64))
     yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, np.zeros((0, 4)), work, np.zeros(0, np.int8))

@@ -30,7 +30,9 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
+from workhold.kernels.seating.standing import BEFORE, CHANGE_LENGTH, OF_LOCATOR, OF_TIP, stationary
 from workhold.seating.crossings import LEVEL, Crossing, crossing, off_piece, roots, solved
+from workhold.seating.filled import filled
 from workhold.seating.hull import HullSide
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
@@ -49,7 +51,7 @@ Contact = tuple[int, int]
 
 @define(frozen=True, eq=False)
 class Standing:
-    """A part that touches wall, locator and tip, over orientations (N,).
+    """A part that touches wall, locator and tip, over orientations (N,) in which it can; see ``kernels.seating.standing``.
 
     Parameters
     ----------
@@ -57,8 +59,6 @@ class Standing:
     separation : (N,) in mm.
     slope : (N,) the derivative of S, times normals that do not vanish where it does.
     steepness : (N,) those normals.
-    pressed : (N,) whether all three press where they balance.
-    there : (N,) whether it can touch all three.
     center : (2, N) P, about which the part turns.
     """
 
@@ -66,8 +66,6 @@ class Standing:
     separation: Array
     slope: Array
     steepness: Array
-    pressed: NDArray[np.bool_]
-    there: NDArray[np.bool_]
     center: Array
 
 
@@ -142,21 +140,16 @@ class Fence:
         """The part on a piece of its hull, with the locator and the tip on pieces."""
         place, one = self.placed(piece, locator, theta)
         separation, two = self.met(tip, theta, place)
-        ux, uy, _ = self.wall
         px, py = self.center(piece, theta, place)
         (lx, ly), (tx, ty) = self.pattern.pegs[LOCATOR], self.pattern.pegs[TIP]
         (ax, ay), (bx, by) = one.normal, two.normal
         with np.errstate(divide="ignore", invalid="ignore"):
             if self.is_upright:
                 steep, cx, cy = ay, lx + (py - ly) * ax / ay, py
-                forces = (-by / bx / ay, ux * (1.0 - by / bx / ay * ax))
             else:
                 steep, cx, cy = ax, px, ly + (px - lx) * ay / ax
-                forces = (-1.0 / ax, uy * (by / bx - ay / ax))
             slope = (by * (tx + separation - cx) - bx * (ty - cy)) * steep
-            pressed = (bx > 0.0) & (forces[0] > 0.0) & (forces[1] > 0.0)
-        there = one.there & two.there & np.isfinite(slope)
-        return Standing(place, separation, slope, bx * steep, pressed, there, np.stack([cx, cy]))
+        return Standing(place, separation, slope, bx * steep, np.stack([cx, cy]))
 
     @cached_property
     def runs(self) -> list[tuple[int, Array]]:
@@ -301,20 +294,15 @@ class Fence:
     def three_contacts(self) -> list[Array]:
         """A piece of the hull on the wall, and locator and tip, their normals through one point."""
         out = []
+        locators, tips = list(self.branches(0)), list(self.branches(1))
+        pegs, wall, rows = np.array(self.pattern.pegs), np.array(self.wall), np.array(self.locus.rows)
+        branches, before = (np.array(locators), np.array(tips)), np.empty((len(locators) * len(tips), 2))
         for piece, thetas in self.runs:
-            for locator in self.branches(0):
-                _, at = self.placed(piece, locator, thetas)
-                if not at.there.any():
-                    continue
-                for tip in self.branches(1):
-                    told = self.standing(piece, locator, tip, thetas)
-                    both = told.there[1:] & told.there[:-1] & (told.pressed[1:] | told.pressed[:-1])
-                    # Of a round part S does not depend on the orientation.
-                    both &= np.maximum(np.abs(told.slope[1:]), np.abs(told.slope[:-1])) > LEVEL
-                    changes = np.flatnonzero(both & (told.slope[1:] * told.slope[:-1] <= 0.0))
-                    for k in changes:
-                        theta = solved(partial(self.slope, piece, locator, tip), thetas[k], thetas[k + 1])
-                        out.append(self.balanced(piece, locator, tip, theta))
+            standing = np.ascontiguousarray(thetas), np.array(self.locus.hull.rows[piece]), wall, pegs, rows
+            found = filled(CHANGE_LENGTH, 256, stationary, *standing, *branches, before).astype(np.int64)
+            for i, j, k in found[np.lexsort((found[:, BEFORE], found[:, OF_TIP], found[:, OF_LOCATOR]))]:
+                theta = solved(partial(self.slope, piece, locators[i], tips[j]), thetas[k], thetas[k + 1])
+                out.append(self.balanced(piece, locators[i], tips[j], theta))
         return out
 
     def slope(self, piece: int, locator: tuple[int, float], tip: tuple[int, float], theta: Array) -> Array:
