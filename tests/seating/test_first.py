@@ -17,7 +17,8 @@ import pytest
 
 import workhold
 from seating_examples import solved
-from workhold import InputError, Plate, Query, Result, Vise, Workpiece
+from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
+from workhold.files.result.seating_forms import figures_told
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
@@ -106,6 +107,16 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
     near = attrs.evolve(one, seats=(*one.seats, attrs.evolve(nearest, kind="unsettled", difference=-0.09)))
     assert (small.warning_count, near.warning_count, one.warning_count) == (2, 1, 0)
     assert "reads only 0.090 mm otherwise" in near.warnings[0] and not near.is_foolproof and one.is_foolproof
+    for toolkit, opened in (
+        (Plate(pitch=20, peg_radius=3), "the clamp is drawn back"),
+        (OpeningVise(20, 2, 3), "the jaws are closed"),
+        (VISE, "the jaws are opened"),
+    ):
+        words = f"the part is caught only while {opened} by less than 0.500 mm"
+        assert small.in_toolkit(toolkit).warnings == (words,)
+    untold = attrs.evolve(one, capture_opening=0.0, lowest_pass=None, cage=None, placing=None)
+    assert untold.warnings == ("from where on the part is caught is not known",) and untold.figures["placing"] == 0.0
+    assert figures_told(untold.as_fields())["placing"] == 0.0
     free = attrs.evolve(one, capture_opening=None)
     assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
     assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))

@@ -11,12 +11,17 @@ import attrs
 import pytest
 
 import workhold
-from workhold import Fence, Plate, Result, Vise, Workpiece
+from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
+from workhold.model.fixture import WALL
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
+from workhold.verification.outline import Outline
+from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.patterns import pattern_faults
 from workhold.verification.seating import Judged, SeatingJudge
+from workhold.verification.seating_contacts import touching_wall
+from workhold.verification.seating_stop import stop_of
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -236,3 +241,72 @@ def test_a_seat_with_a_peg_in_the_part_is_refuted(tmp_path: Path) -> None:
     # On the pegs of one of the two, which are the same part held twice, turned by half.
     found = [list(Judged(judge, one, one.seating).seat_faults(seat, own)) for one in listing.fixtures]
     assert ["has a peg in the part"] in found
+
+
+def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> None:
+    """Of a part let down into it, of an arc that does not reach down, of ends exchanged, and of travels all off alike."""
+    listing = written(solved(BOWED, FENCE), tmp_path / "r.json")
+    judge, fixture = SeatingJudge(listing.query), listing.fixtures[0]
+    fields = fixture.seating.fields
+    own = next(seat for seat, told in zip(fields["seats"], fixture.seating.told.seats, strict=True) if told.is_own)
+
+    def faults(**changes: Any) -> list[str]:
+        return list(Judged(judge, fixture, fixture.seating).seat_faults(own | changes, own))
+
+    assert not faults()
+    for off in (-1e-3, 1e-3):
+        words = faults(pose=own["pose"] | {"y": own["pose"]["y"] + off})
+        assert {"has peg 1 not where it is said to touch", "has peg 2 not where it is said to touch"} <= set(words)
+        assert ("has the part in the fence" in words) == (off < 0.0)
+    # Its lowest point would be beyond its end, which is at the corner.
+    arcs = Workpiece.from_loops("arcs", [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, 0]]])
+    pose = {"theta_deg": 0.0, "x": 0.0, "y": 0.0}
+    for theta, is_inside in ((0.0, False), (-80.0, True), (-90.0, True), (-150.0, False)):
+        touched = touching_wall(Outline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False)
+        assert touched.is_inside == is_inside, theta
+    ends = {one["peg"]: one for one in own["contacts"] if one["peg"] in (1, 2)}
+    exchanged = [ends[3 - one["peg"]] | {"peg": one["peg"]} if one["peg"] in ends else one for one in own["contacts"]]
+
+    def exchange(edited: Fields) -> None:
+        next(seat for seat in edited["seats"] if seat == own)["contacts"] = exchanged
+
+    assert "does not have the fixture's contacts" in fault(listing, judge, exchange)
+
+    def shift(edited: Fields) -> None:
+        for told in (*edited["seats"], edited["pass"]):
+            told["jaw_separation"] += 1e-3
+        edited["stop"] += 1e-3
+
+    assert "is not the fixture's" in fault(listing, judge, shift)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
+    rough = FloatOutline.of(Outline.of(BOWED).segments, BOWED)
+    part = BOWED.turned_over if mirrored else BOWED
+    for theta in range(0, 360, 7):
+        low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]
+        assert rough.lowest({"theta_deg": theta, "x": 3.0, "y": 5.0}, mirrored) == pytest.approx(low, abs=1e-9)
+
+
+def test_what_stops_a_clamp_or_jaws() -> None:
+    """The end of the stroke, a locator in its way, the fence below its tip; of jaws the gap, or the largest opening."""
+    fence = Fence(pitch=20, peg_radius=3, wall_offset=10, clamp_radius=4, travel=(5, 50), directions=["-y"])
+    locator, on_wall = Peg("plate", 0, 0, 0.0, 10.0, 0, 0.0), Peg(WALL, 0, 0, 5.0, 0.0, 0, 0.0)
+
+    def stop(toolkit: Any, tip: Peg) -> float | None:
+        return stop_of([locator, *([on_wall] if toolkit is fence else []), tip], toolkit, -20.0)
+
+    assert stop(fence, Peg("clamp -y", 1, 3, 20.0, 50.0, 0, 0.0)) == -50.0
+    # From hole 2 up at 50, the tip at 30: it goes 26 farther.
+    assert stop(fence, Peg("clamp -y", 1, 2, 20.0, 30.0, 0, 0.0)) == pytest.approx(-46.0)
+    # Straight above the locator, from 30: it goes 13 farther.
+    assert stop(fence, Peg("clamp -y", 0, 2, 0.0, 30.0, 0, 0.0)) == pytest.approx(-33.0)
+    plate = Plate(pitch=20, peg_radius=3, directions=["+x"])
+    # Nothing before it, and a locator behind it.
+    assert stop(plate, Peg("clamp +x", 0, 2, 10.0, 10.0, 0, 0.0)) is None
+    assert stop(plate, Peg("clamp +x", 0, 2, -10.0, 14.0, 0, 0.0)) == pytest.approx(-20.0 - 10.0 + 20.0**0.5)
+    jaws = [Peg("left", 0, 0, 0.0, 0.0, 0, 0.0), Peg("right", 0, 0, 40.0, 0.0, 0, 0.0)]
+    assert stop_of(jaws, Vise(20, 2, 3, min_gap=15), 18.0) == pytest.approx(-7.0)
+    assert stop_of(jaws, OpeningVise(20, 2, 3, max_opening=70), 18.0) == 70.0
+    assert stop_of(jaws, OpeningVise(20, 2, 3), 18.0) is None

@@ -151,8 +151,7 @@ class Judged:
             yield "lies beyond the stop"
         if seat["kind"] == "unsettled":
             return
-        if not self.is_free(seat["pose"], seat["mirrored"], apart):
-            yield "has a peg in the part"
+        yield from self.freedom_faults(seat["pose"], seat["mirrored"], apart)
         contacts = [self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]]
         yield from touching_faults(contacts, self.on_wall)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
@@ -245,8 +244,7 @@ class Judged:
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
         yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall))
-        if not self.is_free(top["pose"], False, rise):
-            yield "the pass has a peg in the part"
+        yield from (f"the pass {words}" for words in self.freedom_faults(top["pose"], False, rise))
         if not self.can_balance(contacts, top["pose"], False):
             yield "the pass is no equilibrium of its contacts"
         center = self.judge.query.workpiece.center
@@ -288,14 +286,15 @@ class Judged:
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
-    def is_free(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> bool:
-        """Whether no peg is in the part, and the part in no wall."""
+    def freedom_faults(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> Iterator[str]:
+        """A peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
         pegs, toolkit = np.array([self.peg(number, apart) for number in numbers]), self.judge.query.toolkit
         radii = np.array([toolkit.carrier(self.fixture.pegs[number].carrier).peg_radius for number in numbers])
+        if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
+            yield "has a peg in the part"
         if toolkit.wall is not None and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
-            return False
-        return self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored)
+            yield "has the part in the fence"
 
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
         """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""
