@@ -79,6 +79,9 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
     assert (told["seating"], told["opening"], told["foolproof"]) == (3, 0.5, False)
     fields = [fixture["seating"] for fixture in told["fixtures"]]
     assert fields == json.loads(json.dumps([one.as_fields() for one in made.seating])) and len(fields) > 1
+    rows = server.client.get(f"{job}/fixtures", params={"limit": 9}).json()["rows"]
+    openings = [one["capture_opening"] for one in fields]
+    assert [row["caught"] for row in rows] == [{"opening": one} for one in openings]
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
     for asked in ({"opening": 1.0}, {"foolproof": True}, {"seating": 0}, {"seating": 3, "opening": -1}):
         refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, vise=VISE, **asked)), 400)

@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from workhold.model.result import FixtureTable, Result
+from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer
 from workhold.web.families import FamilyForm
@@ -182,8 +183,18 @@ async def fixtures(
     table, like = result.table.take(page), found.like[offset : offset + limit].tolist()
     rows = await asyncio.to_thread(rows_answer, table, result.workpiece, result.toolkit, (page + 1).tolist())
     bad = unfit_of(table.quality, result.query.tolerance).tolist()
-    told = [row | {"like": more, "unfit": none} for row, more, none in zip(rows, like, bad, strict=True)]
+    told = [
+        row | {"like": more, "unfit": none, "caught": caught_in(result, row["rank"])}
+        for row, more, none in zip(rows, like, bad, strict=True)
+    ]
     return {"total": len(found.index), "unfit": found.unfit, "revision": revision, "rows": told}
+
+
+def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
+    """From how far open in mm a fixture catches the part, null where it never gets away; None where that is not told."""
+    if rank > len(result.seating):
+        return None
+    return {"opening": length(result.seating[rank - 1].capture_opening)}
 
 
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")

@@ -135,8 +135,11 @@ export class FixtureList {
     );
     // What has no room in the line is left out of it.
     cell.holes.replaceChildren(make("span", {}, row.holes.join("  ")), make("span", {}, row.settings.map((one) => `${one.sign} ${length(one.length, 2)}`).join("  ")));
+    const { caught } = row;
+    const opening = caught && (caught.opening === null ? "always" : length(caught.opening, 2));
     cell.figures.replaceChildren(
-      ...this.shownFigures().map((figure) =>
+      ...(caught ? [make("span.row-figure", { title: "from how far open the part is caught" }, make("i", {}, "caught "), opening)] : []),
+      ...this.shownFigures().slice(0, caught ? 2 : 3).map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
           make("i", {}, `${figure.short} `), figureText(figure, row.quality[figure.key])),
       ),

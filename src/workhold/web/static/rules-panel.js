@@ -11,6 +11,9 @@ import { circleLoop, ZoneTool } from "./zone-tool.js";
 /** @returns {HTMLInputElement} */
 const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
+/** Fixtures whose seating is worked out in one search. */
+const MOST_SEATED = 1000;
+
 /** @type {ZoneTool|null} */
 let tool = null;
 
@@ -28,6 +31,9 @@ export function rulesPanel(drawing, showPart) {
     field(id).addEventListener("input", quiet(read, 250));
     field(id).addEventListener("change", read);
   }
+  for (const id of ["seated-first", "seated-opening"]) field(id).addEventListener("input", quiet(readSeating, 250));
+  for (const id of ["seated-first", "seated-opening", "seated-foolproof"]) field(id).addEventListener("change", readSeating);
+  on(["seating", "unit"], writeSeating);
   on(["part"], () => writeFaces(drawing));
   on(["avoid"], markFaces);
   on(["zones", "unit"], writeZones);
@@ -133,6 +139,27 @@ function write() {
   for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
 }
 
+/** Read of how many fixtures the seating is asked, and what is asked of it. */
+function readSeating() {
+  const [first, opening] = [readNumber(field("seated-first").value), readLength(field("seated-opening").value)];
+  const badFirst = first !== null && !(Number.isInteger(first) && first > 0 && first <= MOST_SEATED);
+  const badOpening = opening !== null && !(opening > 0);
+  field("seated-first").setAttribute("aria-invalid", String(badFirst));
+  field("seated-opening").setAttribute("aria-invalid", String(badOpening));
+  if (badFirst || badOpening) return;
+  const seating = { first, opening, foolproof: field("seated-foolproof").checked };
+  if (JSON.stringify(seating) !== JSON.stringify(state.seating)) change({ seating });
+}
+
+/** Write them; what is asked of it counts once it is known of how many. */
+function writeSeating() {
+  const { first, opening, foolproof } = state.seating;
+  const values = { "seated-first": first ? String(first) : "", "seated-opening": opening ? fieldLength(opening) : "" };
+  for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
+  field("seated-foolproof").checked = foolproof;
+  for (const id of ["seated-opening", "seated-foolproof"]) field(id).disabled = !first;
+}
+
 /** Whether every pair of clamps is listed, where there are two. */
 function writeListing() {
   show(byId("pairs-box"), state.vise.clamps === 2);
@@ -176,4 +203,5 @@ export function writeRules(drawing) {
   write();
   writeTypes();
   writeLoads();
+  writeSeating();
 }

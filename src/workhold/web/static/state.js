@@ -6,7 +6,7 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "vise", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
+  "part", "vise", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
 ];
 
 /**
@@ -25,6 +25,7 @@ export const SETTINGS = [
  * @property {any[]} loads that the search ranks by
  * @property {string[]|null} ranking
  * @property {string|null} prefer what is wanted most, where no figures are named to rank by
+ * @property {{first: number|null, opening: number|null, foolproof: boolean}} seating of how many fixtures it is worked out, from how far open in mm they must catch the part, and whether a caliper must tell every wrong seat
  * @property {any} job the search as the server tells it, or null
  * @property {{sort: string, descending: boolean, type: string, face: string, angle: string, each: boolean, unfit: boolean}} list with near copies one by one, and with what is none for a workshop
  * @property {any} selected the fixture shown
@@ -52,6 +53,7 @@ export const state = {
   loads: [],
   ranking: null,
   prefer: null,
+  seating: { first: null, opening: null, foolproof: false },
   job: null,
   list: { sort: "rank", descending: false, type: "", face: "", angle: "", each: false, unfit: false },
   selected: null,
@@ -99,5 +101,6 @@ export function request() {
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
+    ...(state.seating.first ? { seating: state.seating.first, opening: state.seating.opening, foolproof: state.seating.foolproof } : {}),
   };
 }

@@ -31,7 +31,7 @@ export async function openVises() {
   dialog.showModal();
   let job = null;
   try {
-    const { vise, ...rest } = request();
+    const { vise, seating, opening, foolproof, ...rest } = request();
     ({ job } = await send("explore", { ...rest, tolerance: null, vises: null }));
     for (;;) {
       const answer = await ask(`jobs/${encodeURIComponent(job)}`);
