@@ -56,7 +56,7 @@ LEAST_SHARE = 1e-9
 Contact = tuple[int, int]
 
 
-@define(frozen=True, eq=False)
+@define(frozen=True, eq=False, slots=False)
 class Family:
     """A connected set of equilibria with one separation.
 
@@ -73,7 +73,7 @@ class Family:
     is_closed: bool
     across: tuple[float, float] | None
 
-    @property
+    @cached_property
     def middle(self) -> Array:
         """The configuration (4,) of the candidate."""
         return self.candidate[[THETA, PLACE_X, PLACE_Y, SEPARATION]]
@@ -84,8 +84,13 @@ class Family:
             return False
         turn = (self.configs[:, 0] - config[0] + pi) % tau - pi
         away = np.abs(turn) * arm + np.hypot(*(self.configs[:, 1:3] - config[1:3]).T)
-        steps = np.abs(np.diff(self.configs, axis=0)) @ np.array([arm, 1.0, 1.0, 0.0])
-        return bool(away.min() <= steps.max(initial=0.0) + 0.02)
+        turns, x, y = self.steps
+        return bool(away.min() <= (turns * arm + x + y).max(initial=0.0) + 0.02)
+
+    @cached_property
+    def steps(self) -> Array:
+        """By how much (3, N - 1) it turns and moves along x and y from each configuration to the next."""
+        return np.ascontiguousarray(np.abs(np.diff(self.configs[:, :3], axis=0)).T)
 
 
 @frozen(eq=False)

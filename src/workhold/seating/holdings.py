@@ -51,8 +51,8 @@ from workhold.seating.pattern import Pattern
 __all__ = ["Holdings", "JawHoldings"]
 
 Array = NDArray[np.float64]
-# Jaws of which holdings are kept; beyond, all are forgotten.
-MOST_KEPT = 256
+# Cells of the holdings that are kept, of about 200 bytes with all that belongs to them; beyond, all are forgotten.
+MOST_KEPT = 250_000
 
 
 @frozen(eq=False, slots=False)
@@ -120,7 +120,7 @@ class JawHoldings:
         found = kept.get(group.key)
         if found is None:
             found = cls.of(locus, group.pattern.pegs, group.pattern.right)
-            if len(kept) >= MOST_KEPT:
+            if len(found.cells) + sum(len(one.cells) for one in list(kept.values())) > MOST_KEPT:
                 kept.clear()
             kept[group.key] = found
         return found
