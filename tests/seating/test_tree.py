@@ -18,6 +18,9 @@ class Jaws:
     def run(self, configs: np.ndarray, first: float) -> tuple[np.ndarray, np.ndarray]:
         return configs - [0.0, 0.0, 0.0, 5e-4], np.array([AT_REST], np.int8)
 
+    def escape(self, configs: np.ndarray) -> np.ndarray:
+        return np.zeros(len(configs), np.bool_)
+
 
 def test_a_way_that_ends_just_below_its_flat_comes_to_an_end():
     configs = np.zeros((5, 4))
@@ -25,5 +28,5 @@ def test_a_way_that_ends_just_below_its_flat_comes_to_an_end():
     flat = Family(np.zeros(CANDIDATE_LENGTH), configs, False, None)
     none = np.zeros((0, CANDIDATE_LENGTH))
     builder = Builder(Jaws(), none, [], [(flat, configs[0])], [], np.ones(0, np.bool_))
-    assert builder.place(configs[2], AT_REST) == 0
+    assert builder.places(configs[:1], configs[2:3], np.array([AT_REST], np.int8)) == [0]
     assert builder.doubtful[0][3] == -5e-4

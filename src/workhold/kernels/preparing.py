@@ -52,7 +52,7 @@ from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free
 from workhold.kernels.seating.holdings import make_cells
-from workhold.kernels.seating.leaving import leaves
+from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
@@ -152,11 +152,11 @@ def seats_and_passes() -> Calls:
     standing = np.zeros(0), np.zeros(6), np.zeros(3), np.zeros((2, 2)), rows, points, points
     yield stationary, (*standing, points, np.zeros((0, CHANGE_LENGTH)))
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
-    work = WorkSpace(np.zeros((1, 7)), np.zeros((5, 4)), np.zeros((5, 6)), one, one, one, np.zeros(8, np.int64))
-    yield close_jaws, (np.zeros((0, 4)), 1.0, 1.0, obstacles, np.zeros((0, 4)), work, np.zeros(0, np.int8))
+    work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
+    yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leaves, (np.zeros((0, 2)), obstacles, 1, 0.0, 0.0)
+    yield leave, (ways, obstacles, 1, np.zeros(0, np.bool_))
 
 
 # Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
-from workhold.kernels.seating.leaving import leaves
+from workhold.kernels.seating.leaving import leave
 from workhold.seating.locus import PAST_POCKET, Locus
 from workhold.seating.pattern import Pattern
 
@@ -64,14 +64,13 @@ class Closing:
             obstacles = obstacles._replace(stop=max(stop, obstacles.stop))
         out = np.array(configs, dtype=np.float64)
         ends = np.zeros(len(out), np.int8)
-        step, way, trial = np.empty(4), np.empty(4), np.empty(4)
-        work = WorkSpace(np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6)), step, way, trial, np.empty(8, np.int64))
+        work = WorkSpace.for_pieces(len(obstacles.rows))
         close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, np.array(seats), work, ends)
         return out, ends
 
-    def escapes(self, config: Array) -> bool:
-        """Whether a part can be taken straight away from all pegs, jaws as they stand, in one of many directions."""
-        ux, uy, _ = self.pattern.wall or (0.0, 0.0, 0.0)
-        cosine, sine = float(np.cos(config[0])), float(np.sin(config[0]))
-        wall = cosine * ux + sine * uy, cosine * uy - sine * ux
-        return leaves(self.pattern.at(config[None])[0], self.obstacles, DIRECTIONS, *wall)
+    def escape(self, configs: Array) -> NDArray[np.bool_]:
+        """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of
+        many directions."""
+        out = np.empty(len(configs), np.bool_)
+        leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, out)
+        return out

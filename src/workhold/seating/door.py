@@ -48,7 +48,10 @@ class Door:
         """A configuration (4,) of theta, x, y and travel as one of theta, x, y and S."""
         return np.array([config[0] + self.quarters * np.pi / 2, *self.turned(config[1:3]), self.sign * config[3]])
 
-    def leave(self, config: Array) -> Array:
-        """The way back: a configuration (4,) of theta, x, y and S as one of theta, x, y and travel."""
-        place = self.turned(config[1:3], back=True)
-        return np.array([config[0] - self.quarters * np.pi / 2, *place, self.sign * config[3]])
+    def leave(self, configs: Array) -> Array:
+        """The way back: configurations (..., 4) of theta, x, y and S as those of theta, x, y and travel."""
+        out = np.array(configs)
+        out[..., 0] -= self.quarters * np.pi / 2
+        out[..., 1:3] = self.turned(configs[..., 1:3], back=True)
+        out[..., 3] *= self.sign
+        return out

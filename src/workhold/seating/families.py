@@ -78,6 +78,11 @@ class Family:
         """The configuration (4,) of the candidate."""
         return self.candidate[[THETA, PLACE_X, PLACE_Y, SEPARATION]]
 
+    @property
+    def separation(self) -> float:
+        """S in mm."""
+        return float(self.candidate[SEPARATION])
+
     def holds(self, config: Array, arm: float) -> bool:
         """Whether a configuration lies in the set, as far as its steps tell."""
         if abs(config[3] - self.candidate[SEPARATION]) >= SAME_LEVEL:

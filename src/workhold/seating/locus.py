@@ -108,7 +108,8 @@ class Locus:
 
     @cached_property
     def spans(self) -> Array:
-        """Lowest and highest parameter (N, 2) of the pieces, past pockets by half their other extent's reach.
+        """Lowest and highest parameter (N, 4) of the pieces, past pockets by half their other extent's reach, and the
+        cosines of both.
 
         Beyond a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end it is.
         """
@@ -120,7 +121,7 @@ class Locus:
                 unit = rows[k, RADIUS] if rows[k, IS_ARC] != 0.0 else 1.0
                 end = 1 if along(rows[k], x, y) > 0.0 else 0
                 out[k, end] += (2 * end - 1) * PAST_POCKET / unit
-        return out
+        return np.concatenate([out, np.cos(np.clip(out, -pi, pi))], axis=1)
 
     @cached_property
     def concentric(self) -> list[list[int]]:

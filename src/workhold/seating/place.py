@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
@@ -20,7 +22,7 @@ SAME_PLACE = 1e-3
 POINTS = 9
 
 
-@define(frozen=True, eq=False)
+@define(frozen=True, eq=False, slots=False)
 class Silhouette:
     """A part's outline about the centre of its box.
 
@@ -41,17 +43,28 @@ class Silhouette:
         points = [s.at(t) for s in segments for t in np.linspace(-s.half_extent, s.half_extent, POINTS)]
         return cls(rows, np.array(points) - workpiece.center)
 
-    @property
+    @cached_property
     def arm(self) -> float:
         """Largest distance in mm of one of its points from the centre."""
         return float(np.hypot(*self.points.T).max())
 
-    def covers_same(self, one: Array, other: Array, turned_over: bool) -> bool:
-        """Whether the part in a configuration, and in another in which it may be turned over, covers one place."""
+    def cover_same(self, one: Array, others: Array, turned_over: bool) -> NDArray[np.bool_]:
+        """Whether a part covers in configurations (N, 4), where it may be turned over, the place that it covers in one."""
         points = self.points * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
-        c, s = np.cos(other[0] - one[0]), np.sin(other[0] - one[0])
-        x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]
-        c, s = np.cos(one[0]), np.sin(one[0])
-        dx, dy = other[1] - one[1], other[2] - one[2]
-        moved = np.stack([x + c * dx + s * dy, y + c * dy - s * dx], axis=1)
-        return bool(outline_distances(moved, self.rows).max() <= SAME_PLACE)
+        out = np.ones(len(others), np.bool_)
+        # One point tells of most that they do not.
+        for some in (points[:1], points):
+            moved = seen_from(one, others[out], some)
+            away = outline_distances(moved.reshape(-1, 2), self.rows).reshape(-1, len(some))
+            out[out] = away.max(axis=1, initial=0.0) <= SAME_PLACE
+        return out
+
+
+def seen_from(one: Array, others: Array, points: Array) -> Array:
+    """Points (M, 2) of the part in configurations (N, 4) as they lie on the part in one configuration: (N, M, 2)."""
+    turn = others[:, :1] - one[0]
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]
+    c, s = np.cos(one[0]), np.sin(one[0])
+    dx, dy = others[:, 1:2] - one[1], others[:, 2:3] - one[2]
+    return np.stack([x + c * dx + s * dy, y + c * dy - s * dx], axis=2)

@@ -206,7 +206,7 @@ def ended(
     if how == GAVE_UP:
         return "lost", None
     if how == AT_THE_STOP:
-        return ("outside" if closing.escapes(config) else "stop"), None
+        return ("outside" if closing.escape(config[None])[0] else "stop"), None
     best, found = inf, None
     for seat in seats:
         there = center.config(seat.pose, seat.jaw_separation)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cached_property
 from itertools import product
-from math import cos, isfinite, pi, radians, sin, tau
+from math import isfinite, pi, radians, tau
 from threading import Event
 
 import numpy as np
@@ -19,10 +19,7 @@ from workhold.kernels.seating.columns import (
     FORCE,
     PEG,
     PIECE,
-    PLACE_X,
-    PLACE_Y,
     SEPARATION,
-    THETA,
 )
 from workhold.limits import thread_count
 from workhold.model.fixture import Fixture, Pose
@@ -40,6 +37,7 @@ from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
 from workhold.seating.settled import is_equilibrium
 from workhold.seating.sticking import sticking_friction
+from workhold.seating.touch import Touch
 from workhold.seating.tree import CONFIG, Join, Tree, distances
 
 __all__ = ["Solver", "seatings"]
@@ -242,69 +240,77 @@ class Reading:
         touched = [faces[number] for number in self.order]
         return as_candidate(closing.locus, self.known, self.own - self.shift, touched, closing.size)
 
-    def pose(self, config: Array, mirrored: bool) -> Pose:
-        """The pose of a configuration, in the toolkit's frame."""
+    def poses(self, configs: Array, mirrored: bool) -> list[Pose]:
+        """The poses of configurations (N, 4), in the toolkit's frame."""
         x, y = self.solver.workpiece.center
         x = -x if mirrored else x
-        left = self.pattern.door.leave(config)
-        theta = float(left[0]) % tau
-        c, s = cos(theta), sin(theta)
-        return Pose(theta * 180.0 / pi, float(left[1]) - (c * x - s * y), float(left[2]) - (s * x + c * y))
+        left = self.pattern.door.leave(configs)
+        theta = left[:, 0] % tau
+        c, s = np.cos(theta), np.sin(theta)
+        told = theta * 180.0 / pi, left[:, 1] - (c * x - s * y), left[:, 2] - (s * x + c * y)
+        return [Pose(*one) for one in zip(*(values.tolist() for values in told), strict=True)]
 
-    def contacts(self, row: Array, mirrored: bool) -> tuple[Contact, ...]:
+    @cached_property
+    def touched(self) -> tuple[list[int], tuple[Touch, ...]]:
+        """The fixture's pegs by their numbers in candidates, and what is touched by its."""
+        locus = self.solver.closing(self.known, False).locus
+        # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
+        pegs = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
+        return pegs, locus.touches + locus.hull.touches
+
+    def contacts(self, row: list[float]) -> tuple[Contact, ...]:
         """What touches in a candidate."""
-        locus = self.solver.closing(self.known, mirrored).locus
-        touches, order = locus.touches + locus.hull.touches, self.order.tolist()
-        # Contacts with a wall come after those of the pegs.
-        order += [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
-        told = [(order[int(row[PEG + k])], touches[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
+        pegs, touches = self.touched
+        told = [(pegs[int(row[PEG + k])], touches[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
         return tuple(Contact(peg, touch.face, touch.corner) for peg, touch in told)
 
-    def seat(self, row: Array, kind: str, mirrored: bool, depth: float | None, has_forces: bool = True) -> Seat:
-        """A seat of a candidate."""
-        config, own = row[CONFIG] + self.shift, self.own
-        contacts, sign = self.contacts(row, mirrored), self.pattern.door.sign
-        if kind == "fixture" and len({contact.peg for contact in contacts}) < 4:
-            kind = "pocket"
-        elif kind == "fixture" and any(one.corner and not self.fixture.pegs[one.peg].is_on_wall for one in contacts):
-            kind = "corner"
-        is_own = not mirrored and distances(config[None], own, self.solver.outline.arm)[0] < AGREES
-        is_own = bool(is_own and abs(config[3] - own[3]) < AGREES and kind != "unsettled")
-        return Seat(
-            kind,
-            self.pose(config, mirrored),
-            sign * float(config[3]),
-            sign * float(config[3] - own[3]),
-            mirrored,
-            bool(self.solver.outline.covers_same(own, config, mirrored)),
-            contacts,
-            tuple(float(row[FORCE + k]) for k in range(len(contacts))) if has_forces else (),
-            depth,
-            is_own,
+    def kind(self, kind: str, contacts: tuple[Contact, ...]) -> str:
+        """What a seat is called, four contacts of which are a fixture's or what they touch."""
+        if kind != "fixture":
+            return kind
+        if len({contact.peg for contact in contacts}) < 4:
+            return "pocket"
+        pegs = self.fixture.pegs
+        return "corner" if any(one.corner and not pegs[one.peg].is_on_wall for one in contacts) else kind
+
+    def side(self, tree: Tree, mirrored: bool) -> list[Seat]:
+        """The seats of the part as drawn, or turned over."""
+        flat, slack = ([family.candidate for family in families] for families in (tree.loose, tree.slack))
+        unknown = np.zeros((len(tree.doubtful), CANDIDATE_LENGTH))
+        unknown[:, CONFIG] = tree.doubtful
+        rows = np.concatenate([tree.seats, np.array([*flat, *slack]).reshape(-1, CANDIDATE_LENGTH), unknown])
+        kinds = [KINDS[int(count)] for count in tree.seats[:, CONTACTS]]
+        kinds += ["loose"] * (len(flat) + len(slack)) + ["unsettled"] * len(unknown)
+        joins = [tree.join_of(place) for place in range(len(tree.seats) + len(flat))]
+        levels = rows[:, SEPARATION].tolist()
+        depths = [None if join is None else join.separation - level for join, level in zip(joins, levels, strict=False)]
+        depths += [0.0] * len(slack) + [None] * len(unknown)
+        configs, own, sign = rows[:, CONFIG] + self.shift, self.own, self.pattern.door.sign
+        apart = distances(configs, own, self.solver.outline.arm), np.abs(configs[:, 3] - own[3])
+        is_own = (apart[0] < AGREES) & (apart[1] < AGREES) & (not mirrored)
+        told = zip(
+            rows.tolist(),
+            kinds,
+            depths,
+            self.poses(configs, mirrored),
+            (sign * configs[:, 3]).tolist(),
+            (sign * (configs[:, 3] - own[3])).tolist(),
+            self.solver.outline.cover_same(own, configs, mirrored).tolist(),
+            is_own.tolist(),
+            strict=True,
         )
+        out = []
+        for row, kind, depth, pose, separation, difference, same, itself in told:
+            contacts = self.contacts(row)
+            forces = tuple(row[FORCE : FORCE + len(contacts)]) if kind in KINDS.values() else ()
+            kind, itself = self.kind(kind, contacts), itself and kind != "unsettled"
+            out.append(Seat(kind, pose, separation, difference, mirrored, same, contacts, forces, depth, itself))
+        return [seat for seat in out if seat.kind in ALWAYS or deep(seat)]
 
     def seats(self) -> tuple[Seat, ...]:
         """All seats, by their separations."""
-        out = []
-        for mirrored, tree in zip((False, True), self.trees, strict=True):
-
-            def depth(place: int, level: float, tree: Tree = tree) -> float | None:
-                join = tree.join_of(place)
-                return None if join is None else float(join.separation - level)
-
-            for place, row in enumerate(tree.seats):
-                kind = KINDS[int(row[CONTACTS])]
-                out.append(self.seat(row, kind, mirrored, depth(place, row[SEPARATION])))
-            for k, family in enumerate(tree.loose):
-                row = family.candidate
-                out.append(self.seat(row, "loose", mirrored, depth(len(tree.seats) + k, row[SEPARATION]), False))
-            out += [self.seat(family.candidate, "loose", mirrored, 0.0, False) for family in tree.slack]
-            for config in tree.doubtful:
-                row = np.zeros(CANDIDATE_LENGTH)
-                row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = config
-                out.append(self.seat(row, "unsettled", mirrored, None, False))
-        kept = [seat for seat in out if seat.kind in ALWAYS or deep(seat)]
-        return tuple(sorted(kept, key=lambda seat: (seat.jaw_separation, seat.mirrored, seat.pose.theta_deg)))
+        one, two = (self.side(tree, mirrored) for mirrored, tree in zip((False, True), self.trees, strict=True))
+        return tuple(sorted(one + two, key=lambda seat: (seat.jaw_separation, seat.mirrored, seat.pose.theta_deg)))
 
     def seating(self, with_cage: bool) -> Seating:
         """The seating of the fixture."""
@@ -345,7 +351,7 @@ class Reading:
         """A join as the fixture's pass."""
         config = join.candidate[CONFIG] + self.shift
         separation = self.pattern.door.sign * float(config[3])
-        return Pass(self.pose(config, False), separation, self.contacts(join.candidate, False))
+        return Pass(self.poses(config[None], False)[0], separation, self.contacts(join.candidate.tolist()))
 
     def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
         """Cage and placing."""

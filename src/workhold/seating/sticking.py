@@ -50,14 +50,14 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     two = SIGNS[None, :, None, :, None] * across[TRIPLES][:, None, None]
     values = np.linalg.det(one + AT[None, None, :, None, None] * two)
     cubics = values @ TO_CUBIC.T
-    for t, triple in enumerate(TRIPLES):
-        for k, signs in enumerate(SIGNS):
-            for root in real_roots(cubics[t, k]):
-                if not 0.0 <= root < least:
-                    continue
-                w = straight[triple] + root * signs[:, None] * across[triple]
-                if presses(w, right[triple]):
-                    least = root
+    pairs = [(triple, signs) for triple in TRIPLES for signs in SIGNS]
+    for (triple, signs), roots in zip(pairs, real_roots(cubics.reshape(-1, 4)), strict=True):
+        for root in roots:
+            if not 0.0 <= root < least:
+                continue
+            w = straight[triple] + root * signs[:, None] * across[triple]
+            if presses(w, right[triple]):
+                least = root
     for i, j in combinations(range(4), 2):
         if right[i] == right[j]:
             continue
@@ -101,18 +101,27 @@ def balance(straight: Array, across: Array, right: Array, friction: float) -> bo
     return bool((forces >= 0.0).all(axis=1).any())
 
 
-def real_roots(cubic: Array) -> list[float]:
-    """The real roots of a polynomial, highest power first, which may begin with zeros."""
-    scale = np.abs(cubic).max()
-    if scale < 1e-14:
-        return []
-    roots = np.roots(np.where(np.abs(cubic) < 1e-13 * scale, 0.0, cubic))
-    return [float(root.real) for root in roots if abs(root.imag) < 1e-7 * (1.0 + abs(root))]
+def real_roots(cubics: Array) -> list[list[float]]:
+    """The real roots of polynomials (N, 4), highest power first, which may begin with zeros."""
+    scale = np.abs(cubics).max(axis=1)
+    told = np.where(np.abs(cubics) < 1e-13 * scale[:, None], 0.0, cubics)
+    # Of those that begin and end with numbers all at once, as ``np.roots`` has them one by one.
+    whole = (told[:, 0] != 0.0) & (told[:, 3] != 0.0)
+    companions = np.zeros((int(whole.sum()), 3, 3))
+    companions[:, [1, 2], [0, 1]] = 1.0
+    companions[:, 0] = -told[whole, 1:] / told[whole, :1]
+    every = iter(np.linalg.eigvals(companions))
+    out = []
+    for cubic, size, at_once in zip(told, scale.tolist(), whole.tolist(), strict=True):
+        roots = next(every) if at_once else np.roots(cubic)
+        real = np.abs(roots.imag) < 1e-7 * (1.0 + np.abs(roots))
+        out.append([] if size < 1e-14 else roots.real[real].tolist())
+    return out
 
 
 def presses(wrenches: Array, right: Array) -> bool:
     """Whether three dependent wrenches (3, 3) balance with forces of one sign that close the right jaw."""
-    crosses = np.array([np.cross(wrenches[:, a], wrenches[:, b]) for a, b in ((0, 1), (1, 2), (0, 2))])
+    crosses = np.cross(wrenches.T[[0, 1, 0]], wrenches.T[[1, 2, 2]])
     null = crosses[np.abs(crosses).max(axis=1).argmax()]
     size = np.abs(null).max()
     if size < 1e-12:

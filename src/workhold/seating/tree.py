@@ -11,6 +11,8 @@ join : a pass, with the places that both of its ways down end in.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import cached_property
 from math import pi, tau
 
 import numpy as np
@@ -78,54 +80,62 @@ class Tree:
     @classmethod
     def of(cls, found: Equilibria, closing: Closing) -> Tree:
         """Follow the ways down of all passes and the ends of all loose sets."""
-        every = np.ones(len(found.seats), np.bool_)
-        builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], every)
-        slack, joins = list[Family](), list[tuple[Array, Array]]()
-        seats = np.ascontiguousarray(found.seats[:, CONFIG])
+        rested = lying_on(found.loose, found.seats[:, CONFIG], closing.size)
+        strict = np.array([number is None for number in rested], np.bool_)
         # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing leads on.
-        builder.strict = np.array([on_one_of(found.loose, seat, closing.size) is None for seat in seats], np.bool_)
-        seats = seats[builder.strict]
-        for family in found.loose:
-            starts = ends_of(family, closing.size)
-            low = family.middle[3] - FALLS
-            falling = closing.run(starts, FIRST_STEP, seats)[0][:, 3] < low
+        builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], strict)
+        slack, joins = list[Family](), list[tuple[Array, Array]]()
+        seats = np.ascontiguousarray(found.seats[strict][:, CONFIG])
+        beyond = [ends_of(family, closing.size) for family in found.loose]
+        ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)[0][:, 3]
+        ended_of = np.split(ended, np.cumsum([len(starts) for starts in beyond]))
+        for family, starts, ends in zip(found.loose, beyond, ended_of[:-1], strict=True):
+            falling = ends < family.separation - FALLS
             if not falling.any():
                 builder.loose.append(family)
                 continue
             # A part on two pegs that slides off is no rest at all; on three or more it lies there a while.
             if family.across is None and family.candidate[4] >= 3.0:
                 slack.append(family)
-            if falling.any():
-                builder.falling.append((family, starts[int(np.argmax(falling))]))
+            builder.falling.append((family, starts[int(np.argmax(falling))]))
             if falling.sum() == 2:
                 joins.append((family.candidate, starts))
-        beside = [BESIDE] * len(joins)
-        for row in found.passes:
-            step, length = step_off(row, closing.size)
-            joins.append((row, row[CONFIG] + np.stack([step, -step])))
-            beside.append(length)
-        configs, how = np.zeros((2 * len(joins), 4)), np.zeros(2 * len(joins), np.int8)
+        steps, lengths = steps_off(found.passes, closing.size)
+        beside = np.concatenate([np.full(len(joins), BESIDE), lengths])
+        configs = found.passes[:, CONFIG]
+        joins += zip(found.passes, np.stack([configs + steps, configs - steps], axis=1), strict=True)
         starts = np.array([start for _, start in joins]).reshape(-1, 4)
-        for length in set(beside):
-            chosen = np.repeat(np.array(beside) == length, 2)
-            configs[chosen], how[chosen] = closing.run(starts[chosen], length / 2.0, seats)
-        places = [builder.place(config, end) for config, end in zip(configs, how.tolist(), strict=True)]
+        ends, how = np.zeros((2 * len(joins), 4)), np.zeros(2 * len(joins), np.int8)
+        for length in set(beside.tolist()):
+            chosen = np.repeat(beside == length, 2)
+            ends[chosen], how[chosen] = closing.run(starts[chosen], length / 2.0, seats)
+        places = builder.places(starts, ends, how)
         made = [
             Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, (row, _) in enumerate(joins)
         ]
         doubtful = np.array(builder.doubtful).reshape(-1, 4)
-        shared = {}
-        for k in np.flatnonzero(~builder.strict).tolist():
-            number = on_one_of(builder.loose, found.seats[k, CONFIG], closing.size)
-            if number is not None:
-                shared[k] = len(found.seats) + number
+        beside_loose = lying_on(builder.loose, found.seats[~strict][:, CONFIG], closing.size)
+        shared = {
+            k: len(found.seats) + number
+            for k, number in zip(np.flatnonzero(~strict).tolist(), beside_loose, strict=True)
+            if number is not None
+        }
         joins_made = tuple(sorted(made, key=lambda join: join.separation))
         return cls(found.seats, builder.loose, slack, doubtful, joins_made, shared)
 
+    @cached_property
+    def first_joins(self) -> dict[int, Join]:
+        """Of each place the first pass at which its cage joins another."""
+        out = dict[int, Join]()
+        for join in self.joins:
+            if len(set(join.places)) == 2:
+                for place in join.places:
+                    out.setdefault(place, join)
+        return out
+
     def join_of(self, place: int) -> Join | None:
         """The first pass at which the cage of a place joins another; None where it never does."""
-        place = self.shared.get(place, place)
-        return next((join for join in self.joins if place in join.places and len(set(join.places)) == 2), None)
+        return self.first_joins.get(self.shared.get(place, place))
 
     def way_out(self, place: int) -> float | None:
         """The separation from which on a part can get from a place to the outside; None where it never can."""
@@ -144,23 +154,32 @@ class Tree:
         return None
 
 
-def on_one_of(families: list[Family], config: Array, size: float) -> int | None:
-    """Number of the first loose set that a configuration lies on, with its separation; None of none."""
-    for k, family in enumerate(families):
-        if abs(family.middle[3] - config[3]) < FALLS and family.holds(config, size):
-            return k
-    return None
+def lying_on(families: list[Family], configs: Array, size: float) -> list[int | None]:
+    """Of each configuration (N, 4) the number of the first loose set that it lies on, with its separation; None of none."""
+    near = np.abs(separations(families) - configs[:, 3:]) < FALLS
+    return [
+        next((k for k in np.flatnonzero(row).tolist() if families[k].holds(config, size)), None)
+        for config, row in zip(configs, near, strict=True)
+    ]
 
 
-def step_off(row: Array, size: float) -> tuple[Array, float]:
-    """The step (4,) along a pass's free motion at which a way down begins, and its length in mm: shorter where the motion
-    bends so much that it would lie elsewhere."""
-    motion, second = row[MOTION : MOTION + 3], abs(float(row[SECOND]))
-    speed = float(abs(motion[0]) * size + np.hypot(*motion[1:]))
-    length = BESIDE
-    if second * BESIDE > 2.0 * MOST_BEND * speed * speed:
-        length = max(2.0 * MOST_BEND * speed * speed / second, SHORTEST)
-    return np.append(length / speed * motion, 0.0), length
+def separations(families: Iterable[Family]) -> Array:
+    """Those of loose sets, in mm."""
+    return np.array([family.separation for family in families], dtype=np.float64)
+
+
+def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
+    """Steps (N, 4) along the free motions of passes (N, 24) at which ways down begin, and their lengths (N,) in mm: shorter
+    where the motion bends so much that they would lie elsewhere."""
+    motions, seconds = rows[:, MOTION : MOTION + 3], np.abs(rows[:, SECOND])
+    speeds = np.abs(motions[:, 0]) * size + np.hypot(motions[:, 1], motions[:, 2])
+    bent = 2.0 * MOST_BEND * speeds * speeds
+    lengths = np.where(
+        seconds * BESIDE > bent, np.maximum(bent / np.maximum(seconds, 1e-300), SHORTEST), np.full(len(rows), BESIDE)
+    )
+    steps = np.zeros((len(rows), 4))
+    steps[:, :3] = (lengths / speeds)[:, None] * motions
+    return steps, lengths
 
 
 def ends_of(family: Family, size: float) -> Array:
@@ -200,40 +219,71 @@ class Builder:
     falling: list[tuple[Family, Array]]
     doubtful: list[Array]
     strict: NDArray[np.bool_]
-    below: dict[int, tuple[Array, int]] = field(factory=dict)
+    below: dict[int, tuple[Array, NDArray[np.int8]]] = field(factory=dict)
 
-    def place(self, config: Array, how: int) -> int:
-        """The place of the end of a way down; one that is not known is added to what is not settled."""
-        if how == AT_THE_STOP:
-            return OUTSIDE if self.closing.escapes(config) else STOP
+    def places(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[int]:
+        """The places of the ends (N, 4) of ways down that began at some configurations (N, 4)."""
+        stopped = how == AT_THE_STOP
+        away = np.zeros(len(how), np.bool_)
+        away[stopped] = self.closing.escape(configs[stopped])
+        # What can be taken away at first can be, wherever closing the jaws leads.
+        left = stopped & ~away
+        away[left] = self.closing.escape(starts[left])
+        falls = np.abs(separations(family for family, _ in self.falling) - configs[:, 3:]) < SAME_LEVEL
+        loose = np.abs(separations(self.loose) - configs[:, 3:]) < SAME_LEVEL
+        near = self.near_seats(configs)
+        return [
+            (OUTSIDE if away[k] else STOP)
+            if stopped[k]
+            else self.place(configs[k], int(how[k]), np.flatnonzero(falls[k]), int(near[k]), np.flatnonzero(loose[k]))
+            for k in range(len(how))
+        ]
+
+    def near_seats(self, configs: Array) -> NDArray[np.int64]:
+        """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
+        if not self.strict.any():
+            return np.full(len(configs), -1)
+        numbers = np.flatnonzero(self.strict)
+        seats = self.seats[numbers][:, CONFIG]
+        away = distances(configs[:, None], seats, self.closing.size)
+        nearest = np.argmin(away, axis=1)
+        is_in = away[np.arange(len(configs)), nearest] < AT_SEAT
+        is_in &= np.abs(seats[nearest, 3] - configs[:, 3]) < SAME_LEVEL
+        return np.where(is_in, numbers[nearest], -1)
+
+    def place(self, config: Array, how: int, falls: NDArray[np.int64], near: int, loose: NDArray[np.int64]) -> int:
+        """The place of the end of a way down short of the stop; one that is not known is added to what is not settled.
+
+        Parameters
+        ----------
+        falls, loose : numbers of loose sets with nearly its separation, off which a way leads, and that are rests.
+        near : number of the seat that it is in, or -1.
+        """
         size = self.closing.size
-        for k, (family, beyond) in enumerate(self.falling):
+        for k in map(int, falls):
+            family, beyond = self.falling[k]
             # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
-            if how == AT_REST and config[3] >= family.middle[3] - FALLS and family.holds(config, size):
+            if how == AT_REST and config[3] >= family.separation - FALLS and family.holds(config, size):
                 if k not in self.below:
-                    configs, ends = self.closing.run(beyond[None], FIRST_STEP)
-                    self.below[k] = configs[0], int(ends[0])
-                if self.below[k][0][3] < family.middle[3] - FALLS:
-                    return self.place(*self.below[k])
-        if how == AT_REST and self.strict.any():
-            away = distances(self.seats[:, CONFIG], config, size)
-            near = int(np.argmin(np.where(self.strict, away, np.inf)))
-            if away[near] < AT_SEAT and abs(self.seats[near, SEPARATION] - config[3]) < SAME_LEVEL:
-                return near
-        for k, family in enumerate(self.loose):
-            if how == AT_REST and family.holds(config, size):
+                    self.below[k] = self.closing.run(beyond[None], FIRST_STEP)
+                if self.below[k][0][0, 3] < family.separation - FALLS:
+                    return self.places(beyond[None], *self.below[k])[0]
+        if how == AT_REST and near >= 0:
+            return near
+        for k in map(int, loose):
+            if how == AT_REST and self.loose[k].holds(config, size):
                 return len(self.seats) + k
         before = len(self.seats) + len(self.loose)
         if self.doubtful:
             away = distances(np.array(self.doubtful), config, size)
-            near = int(np.argmin(away))
-            if away[near] < 10.0 * AT_SEAT:
-                return before + near
+            nearest = int(np.argmin(away))
+            if away[nearest] < 10.0 * AT_SEAT:
+                return before + nearest
         self.doubtful.append(config)
         return before + len(self.doubtful) - 1
 
 
-def distances(configs: Array, config: Array, size: float) -> Array:
-    """How far in mm configurations (N, 4) are from one, turns counted by the size."""
-    turn = np.abs((configs[:, 0] - config[0] + pi) % tau - pi)
-    return np.asarray(turn * size + np.hypot(configs[:, 1] - config[1], configs[:, 2] - config[2]))
+def distances(configs: Array, others: Array, size: float) -> Array:
+    """How far in mm configurations (..., 4) are from others, turns counted by the size."""
+    turn = np.abs((configs[..., 0] - others[..., 0] + pi) % tau - pi)
+    return np.asarray(turn * size + np.hypot(configs[..., 1] - others[..., 1], configs[..., 2] - others[..., 2]))

@@ -8,7 +8,7 @@ out. The box grows and shrinks as steps prove good. Where one peg of each jaw to
 
 from __future__ import annotations
 
-from math import cos, floor, hypot, inf, pi, sin, sqrt
+from math import cos, floor, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
-from workhold.kernels.seating.pieces import angle_from_middle
 from workhold.kernels.seating.squeezing import squeeze
 from workhold.kernels.seating.walls import add_wall
 
@@ -27,6 +26,12 @@ GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
 # mm. Shorter steps move nothing; pegs this deep in the part are in it; smaller gains are none.
 LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
+# Of the part's size, how much farther around pegs pieces are listed than is asked for.
+AROUND = 0.1
+# How many half widths of a step's box around pegs are looked at: in the next, wider one a clearance falls by 3.6 at most.
+REACH = 6.0
+# mm. What is entered by less is not; how often what is met may change on one way out.
+BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40
 # Steps of linear programs that follow where squeezing found something in the way.
 WAIT = 3
 # mm. Configurations as near to a seat as this, in place and in separation, go there.
@@ -34,35 +39,59 @@ SAME_PLACE, SAME_LEVEL = 1e-4, 1e-6
 
 
 @inner
-def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) -> int:
+def remember(peg: int, x: float, y: float, reach: float, obstacles: Obstacles, work: WorkSpace) -> None:
+    """Write the pieces within a reach of a peg's place on the part, in their order, to a peg's list."""
+    count, side = 0, obstacles.right[peg]
+    for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
+        gx, gy, far = x - obstacles.discs[k, 0], y - obstacles.discs[k, 1], obstacles.discs[k, 2] + reach
+        if gx * gx + gy * gy <= far * far:
+            work.lists[peg, count] = k
+            count += 1
+    work.places[peg, 0], work.places[peg, 1], work.places[peg, 2] = x, y, reach
+    work.counts[peg] = count
+
+
+@inner
+def look_around(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> int:
     """Write the clearances of pegs from pieces within a reach, after their gradients over (theta size, x, y, S) in mm
-    per mm and before peg and piece; return how many."""
-    count = 0
+    per mm and before peg and piece; return how many. The stop is the first of them, in the place of a peg stands -1 there.
+
+    Pieces are listed for each peg farther around than is asked for, and listed anew where it has moved on (L. Verlet,
+    Physical Review 159, 1967).
+    """
+    count, near = 0, work.near
     cosine, sine = cos(config[0]), sin(config[0])
+    if config[3] - obstacles.stop <= reach:
+        near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = 0.0, 0.0, 0.0, 1.0, config[3] - obstacles.stop
+        near[0, 5], near[0, 6] = -1.0, -1.0
+        count = 1
     for peg in range(obstacles.pegs.shape[0]):
         moving = float(obstacles.right[peg])
         qx, qy = obstacles.pegs[peg, 0] + moving * config[3] - config[1], obstacles.pegs[peg, 1] - config[2]
         x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
-        side = obstacles.right[peg]
-        for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
-            gx, gy, far = x - obstacles.discs[k, 0], y - obstacles.discs[k, 1], obstacles.discs[k, 2] + reach
-            if gx * gx + gy * gy > far * far:
-                continue
+        gx, gy, left = x - work.places[peg, 0], y - work.places[peg, 1], work.places[peg, 2] - reach
+        if left < 0.0 or gx * gx + gy * gy > left * left:
+            remember(peg, x, y, reach + AROUND * obstacles.size, obstacles, work)
+        for i in range(work.counts[peg]):
+            k = work.lists[peg, i]
             row = obstacles.rows[k]
             dx, dy = x - row[X], y - row[Y]
             if row[IS_ARC] == 0.0:
                 nx, ny = row[AXIS_Y], -row[AXIS_X]
                 off, along = dx * nx + dy * ny, dx * row[AXIS_X] + dy * row[AXIS_Y]
-                if abs(off) > reach:
+                if abs(off) > reach or not obstacles.spans[k, 0] <= along <= obstacles.spans[k, 1]:
                     continue
             else:
-                size = max(hypot(dx, dy), 1e-300)
+                size = max(sqrt(dx * dx + dy * dy), 1e-150)
                 nx, ny = row[SIGN] * dx / size, row[SIGN] * dy / size
                 off = row[SIGN] * (size - row[RADIUS])
                 if abs(off) > reach:
                     continue
-                along = angle_from_middle(row, dx, dy) if row[HALF_EXTENT] < pi else 0.0
-            if not obstacles.spans[k, 0] <= along <= obstacles.spans[k, 1] or count >= near.shape[0]:
+                # An angle from the middle is less than another where its cosine is more.
+                forth, end = dx * row[AXIS_X] + dy * row[AXIS_Y], 3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2
+                if row[HALF_EXTENT] < pi and forth < size * obstacles.spans[k, end]:
+                    continue
+            if count >= near.shape[0]:
                 continue
             vx, vy = cosine * nx - sine * ny, sine * nx + cosine * ny
             near[count, 0] = (nx * y - ny * x) / obstacles.size
@@ -70,46 +99,6 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, near: Array) 
             near[count, 5], near[count, 6] = peg, k
             count += 1
     return add_wall(config, obstacles, reach, near, count)
-
-
-@inner
-def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> bool:
-    """Move a configuration out of what it enters by little, by the shortest way; whether that was possible.
-
-    The way is found by projecting on one clearance after the other (S. Kaczmarz 1937).
-    """
-    near, step = work.near, work.step
-    for _ in range(6):
-        count = look_around(config, obstacles, reach, near)
-        deepest = 0.0
-        for i in range(count):
-            deepest = min(deepest, near[i, 4])
-        if deepest > -1e-10:
-            return True
-        for j in range(4):
-            step[j] = 0.0
-        for _ in range(40):
-            change = 0.0
-            for i in range(count):
-                value, square = near[i, 4], 0.0
-                for j in range(4):
-                    value += near[i, j] * step[j]
-                    square += near[i, j] * near[i, j]
-                if value < 1e-12:
-                    by = (2e-12 - value) / square
-                    change = max(change, by)
-                    for j in range(4):
-                        step[j] += by * near[i, j]
-            if change < 1e-11:
-                break
-        config[0] += step[0] / obstacles.size
-        for j in range(1, 4):
-            config[j] += step[j]
-    count = look_around(config, obstacles, reach, near)
-    deepest = 0.0
-    for i in range(count):
-        deepest = min(deepest, near[i, 4])
-    return deepest >= -ENTERED
 
 
 @inner
@@ -134,6 +123,82 @@ def add_normal(number: int, count: int, place: int, work: WorkSpace) -> bool:
     for j in range(4):
         new[j] /= norm
     return True
+
+
+@inner
+def shortest_out(count: int, work: WorkSpace) -> None:
+    """Write the shortest step after which all of ``count`` linearized clearances are kept, as far as there is one.
+
+    A dual active-set method: from no step at all, to what is entered deepest, along the others that were met, of which one
+    is let go that would pull (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
+    """
+    near, basis, triangle, step, way, members = work.near, work.basis, work.triangle, work.step, work.way, work.members
+    for j in range(4):
+        step[j] = 0.0
+    size, entered, pressed = 0, -1, 0.0
+    for _ in range(MOST_CHANGES):
+        if entered < 0:
+            deepest = BESIDE_NOTHING
+            for i in range(count):
+                value = near[i, 4]
+                for j in range(4):
+                    value += near[i, j] * step[j]
+                if value < deepest:
+                    deepest, entered = value, i
+            if entered < 0:
+                return
+            pressed = 0.0
+        independent = add_normal(entered, count, size, work)
+        norm, missing = triangle[size, size], 2.0 * BESIDE_NOTHING - near[entered, 4]
+        for j in range(4):
+            missing -= near[entered, j] * step[j]
+        # How fast the forces of the others fall as that of the new one grows, and which is gone first.
+        length, gone = inf, -1
+        for q in range(size - 1, -1, -1):
+            way[q] = triangle[q, size]
+            for p in range(q + 1, size):
+                way[q] -= triangle[q, p] * way[p]
+            way[q] /= triangle[q, q]
+            if way[q] > 1e-12 and triangle[q, 5] < length * way[q]:
+                length, gone = triangle[q, 5] / way[q], q
+        if independent and missing <= length * norm * norm:
+            length, gone = missing / (norm * norm), -1
+        elif gone < 0:
+            return
+        pressed += length
+        for q in range(size):
+            triangle[q, 5] -= length * way[q]
+        for j in range(4):
+            step[j] += length * norm * basis[size, j] if independent else 0.0
+        if gone < 0:
+            members[size], triangle[size, 5] = entered, pressed
+            size, entered = size + 1, -1
+            continue
+        for q in range(gone, size - 1):
+            members[q], triangle[q, 5] = members[q + 1], triangle[q + 1, 5]
+        size -= 1
+        for q in range(size):
+            add_normal(members[q], count, q, work)
+
+
+@inner
+def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> int:
+    """Move a configuration out of what it enters by little, by the shortest way; how many clearances there are within a
+    reach, or -1 where that was not possible."""
+    near, step = work.near, work.step
+    count, deepest = 0, 0.0
+    for attempt in range(7):
+        count = look_around(config, obstacles, reach, work)
+        deepest = 0.0
+        for i in range(count):
+            deepest = min(deepest, near[i, 4])
+        if deepest > -1e-10 or attempt == 6:
+            break
+        shortest_out(count, work)
+        config[0] += step[0] / obstacles.size
+        for j in range(1, 4):
+            config[j] += step[j]
+    return count if deepest >= -ENTERED else -1
 
 
 @inner
@@ -221,7 +286,8 @@ def is_in_one_of(config: Array, seats: Array, size: float) -> bool:
 def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, seats: Array, work: WorkSpace) -> int:
     """Close the jaws from a configuration, in place; how it ended."""
     trial, longest, wait = work.trial, trust, 0
-    if not push_out(config, obstacles, 8.0 * trust + 1e-6, work):
+    count = push_out(config, obstacles, 8.0 * trust + 1e-6, work)
+    if count < 0:
         return GAVE_UP
     for _ in range(MOST_STEPS):
         if config[3] <= obstacles.stop + 1e-9:
@@ -229,7 +295,8 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
             return AT_THE_STOP
         if is_in_one_of(config, seats, obstacles.size):
             return AT_REST
-        count = look_around(config, obstacles, 6.0 * trust, work.near)
+        if count < 0:
+            count = look_around(config, obstacles, REACH * trust, work)
         length = squeeze(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
         if length <= 0.0:
             # What is in the way is a matter of linear programs, for a while.
@@ -239,6 +306,7 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
         if length != 0.0:
             for j in range(4):
                 config[j] = trial[j]
+            count = -1
             continue
         gain = best_step(count, trust, work)
         good = gain >= LEAST_GAIN
@@ -246,13 +314,14 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
             trial[0] = config[0] + work.step[0] / obstacles.size
             for j in range(1, 4):
                 trial[j] = config[j] + work.step[j]
-            trial[3] = max(trial[3], obstacles.stop)
-            good = push_out(trial, obstacles, 6.0 * trust + 1e-6, work) and trial[3] < config[3] - 0.1 * gain
+            count = push_out(trial, obstacles, REACH * trust + 1e-6, work)
+            good = count >= 0 and trial[3] < config[3] - 0.1 * gain
         if not good:
             # Where no step leads down, no shorter one does: that is only seen again, against rounding.
             trust *= 0.4 if gain >= LEAST_GAIN else 0.01
             if trust < LEAST_STEP:
                 return AT_REST
+            count = -1
             continue
         if trial[3] < config[3] - 0.7 * gain:
             trust = min(1.6 * trust, most)
@@ -279,5 +348,7 @@ def close_jaws(
     seats : (M, 4) configurations at which closing ends, known beforehand.
     ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
     """
+    for peg in range(obstacles.pegs.shape[0]):
+        work.known[peg, 2] = work.places[peg, 2] = -inf
     for k in range(configs.shape[0]):
         ends[k] = close_one(configs[k], first, most, obstacles, seats, work)

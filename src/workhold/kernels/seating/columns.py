@@ -62,7 +62,8 @@ class Obstacles(NamedTuple):
     Parameters
     ----------
     rows : (N, 10) pieces.
-    spans : (N, 2) lowest and highest parameter at which each counts: past a pocket it counts a little further.
+    spans : (N, 4) lowest and highest parameter at which each counts: past a pocket it counts a little further; and of arcs
+        the cosines of both.
     discs : (N, 3) in which they lie, as far as they count: middle and radius in mm.
     pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
@@ -92,6 +93,9 @@ class WorkSpace(NamedTuple):
     basis, triangle : (5, 4) and (5, 6).
     step, way, trial : (4,).
     members : (8,).
+    known : (4, 3) for each peg a place on the part and the clearance there in mm: a disc in which it is free.
+    lists, counts, places : (4, N) and (4,) pieces near each peg and how many, as far as they are within a reach, in mm,
+        of a place: (4, 3).
     """
 
     near: NDArray[np.float64]
@@ -101,3 +105,15 @@ class WorkSpace(NamedTuple):
     way: NDArray[np.float64]
     trial: NDArray[np.float64]
     members: NDArray[np.int64]
+    known: NDArray[np.float64]
+    lists: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    places: NDArray[np.float64]
+
+    @classmethod
+    def for_pieces(cls, count: int) -> WorkSpace:
+        """Room about a part with so many pieces."""
+        step, way, trial = np.empty(4), np.empty(4), np.empty(4)
+        listed = np.empty((4, count), np.int64), np.empty(4, np.int64), np.empty((4, 3))
+        normals = np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6))
+        return cls(*normals, step, way, trial, np.empty(8, np.int64), np.empty((4, 3)), *listed)

@@ -8,49 +8,68 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
-from workhold.kernels.seating.pieces import angle_from_middle
+from workhold.kernels.seating.pieces import normal_at, on_piece
 
 Array = NDArray[np.float64]
-# mm. What a peg meets nearer than this it touches already. No unit: ways this near to a face go along it.
-TOUCHED, LEVEL = 1e-6, 1e-12
+# mm. A peg this near to a piece touches it; so it does a hair inside. No unit: ways this near to a face go along it.
+TOUCHED, LEVEL = 1e-4, 1e-12
+# mm. How far past the end of a piece a peg meets it: rounding.
+END = 1e-9
 
 
 @inner
 def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
-    """Whether a point moved along a direction enters the part through a piece."""
+    """Whether a point moved along a direction enters the part through a piece, be it at once."""
     dx, dy = x - row[X], y - row[Y]
+    nx, ny = normal_at(row, x, y)
+    entering, size = wx * nx + wy * ny, hypot(dx, dy)
+    off = dx * nx + dy * ny if row[IS_ARC] == 0.0 else row[SIGN] * (size - row[RADIUS])
+    # Along a concave arc there is no way.
+    level = -LEVEL if row[IS_ARC] == 0.0 or row[SIGN] > 0.0 else TOUCHED
+    if abs(off) < TOUCHED and entering < level and on_piece(row, x, y, TOUCHED):
+        return True
+    least = TOUCHED
     if row[IS_ARC] == 0.0:
-        entering = wx * row[AXIS_Y] - wy * row[AXIS_X]
         if entering > -LEVEL:
             return False
-        t = -(dx * row[AXIS_Y] - dy * row[AXIS_X]) / entering
-        return t > TOUCHED and abs((dx + t * wx) * row[AXIS_X] + (dy + t * wy) * row[AXIS_Y]) <= row[HALF_EXTENT]
-    middle, size = wx * dx + wy * dy, hypot(dx, dy)
-    square = middle * middle - (size - row[RADIUS]) * (size + row[RADIUS])
-    if square <= 0.0:
-        return False
-    # Into a convex arc from without, into a concave one from within.
-    t = -middle - row[SIGN] * sqrt(square)
-    if t <= TOUCHED:
-        return False
-    return row[HALF_EXTENT] >= pi or abs(angle_from_middle(row, dx + t * wx, dy + t * wy)) <= row[HALF_EXTENT]
+        t = -off / entering
+    else:
+        middle = wx * dx + wy * dy
+        square = middle * middle - (size - row[RADIUS]) * (size + row[RADIUS])
+        if square <= 0.0:
+            return False
+        # Into a convex arc from without; into a concave one from within, also from where it is touched.
+        t = -middle - row[SIGN] * sqrt(square)
+        least = TOUCHED if row[SIGN] > 0.0 else 0.0
+    return t > least and on_piece(row, x + t * wx, y + t * wy, END)
+
+
+@inner
+def is_met(config: Array, obstacles: Obstacles, wx: float, wy: float) -> bool:
+    """Whether a peg meets the part, or the part its wall, as all pegs move away along a direction of the part's frame."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    vx, vy = cosine * wx - sine * wy, sine * wx + cosine * wy
+    if vx * obstacles.wall[0] + vy * obstacles.wall[1] > LEVEL:
+        return True
+    for peg in range(obstacles.pegs.shape[0]):
+        qx = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
+        qy = obstacles.pegs[peg, 1] - config[2]
+        x, y, side = cosine * qx + sine * qy, cosine * qy - sine * qx, obstacles.right[peg]
+        for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
+            if meets(obstacles.rows[piece], x, y, wx, wy):
+                return True
+    return False
 
 
 @compiled
-def leaves(points: Array, obstacles: Obstacles, ways: int, ux: float, uy: float) -> bool:
-    """Whether pegs (K, 2) seen from the part can all move away in one of some directions without entering it, and without a
-    wall, from which (ux, uy) points to the part, coming nearer."""
-    for k in range(ways):
-        wx, wy = cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)
-        blocked = wx * ux + wy * uy > LEVEL
-        for p in range(points.shape[0]):
-            side = obstacles.right[p]
-            for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
-                blocked = blocked or meets(obstacles.rows[piece], points[p, 0], points[p, 1], wx, wy)
-            if blocked:
+def leave(configs: Array, obstacles: Obstacles, ways: int, out: NDArray[np.bool_]) -> None:
+    """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
+    and without coming nearer to a wall; written to ``out`` (N,)."""
+    for n in range(configs.shape[0]):
+        out[n] = False
+        for k in range(ways):
+            if not is_met(configs[n], obstacles, cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)):
+                out[n] = True
                 break
-        if not blocked:
-            return True
-    return False

@@ -66,23 +66,23 @@ def moved_along(row: Array, x: float, y: float, s: float) -> tuple[float, float]
 
 
 @inner
-def is_within(row: Array, low: float, high: float, x: float, y: float) -> bool:
-    """Whether a place of a piece's carrier has a parameter between two."""
+def parameter(row: Array, x: float, y: float) -> float:
+    """The parameter of a place of a piece's carrier."""
     dx, dy = x - row[X], y - row[Y]
-    if row[IS_ARC] == 0.0:
-        return low <= dx * row[AXIS_X] + dy * row[AXIS_Y] <= high
-    return row[HALF_EXTENT] >= pi or low <= angle_from_middle(row, dx, dy) <= high
+    return dx * row[AXIS_X] + dy * row[AXIS_Y] if row[IS_ARC] == 0.0 else angle_from_middle(row, dx, dy)
 
 
 @inner
-def is_free(config: Array, obstacles: Obstacles) -> bool:
-    """Whether no peg is in the part, and the part in no wall."""
-    for peg in range(obstacles.pegs.shape[0]):
-        x, y = seen(config, obstacles, peg)
-        side = obstacles.right[peg]
-        if clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1]) < -ENTERED:
-            return False
-    return off_wall(config, obstacles) >= -ENTERED
+def is_peg_free(x: float, y: float, peg: int, obstacles: Obstacles, known: Array) -> bool:
+    """Whether a peg at a place of the part is not in it. Nor is it where the part is farther than the place from one at
+    which its clearance is known, or in other words within a disc (x, y, radius) that is."""
+    off = hypot(x - known[peg, 0], y - known[peg, 1])
+    if off < known[peg, 2]:
+        return True
+    side = obstacles.right[peg]
+    free = clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1])
+    known[peg, 0], known[peg, 1], known[peg, 2] = x, y, free
+    return free >= -ENTERED
 
 
 @inner
@@ -105,7 +105,8 @@ def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: 
 def squeezed(
     config: Array, p: int, q: int, x: float, y: float, v: float, w: float, obstacles: Obstacles, trial: Array
 ) -> bool:
-    """Write the configuration in which pegs p and q stand at two places of the part; whether it is free and near enough."""
+    """Write the configuration in which pegs p and q stand at two places of the part; whether there is one, short of the
+    stop."""
     run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
     d = hypot(v - x, w - y)
     if d <= abs(rise):
@@ -117,7 +118,33 @@ def squeezed(
     trial[0], trial[3] = theta, d * cos(omega) - run
     trial[1] = obstacles.pegs[p, 0] - (cosine * x - sine * y)
     trial[2] = obstacles.pegs[p, 1] - (sine * x + cosine * y)
-    return trial[3] > obstacles.stop and is_free(trial, obstacles)
+    return trial[3] > obstacles.stop
+
+
+@inner
+def is_free(config: Array, p: int, q: int, obstacles: Obstacles, known: Array) -> bool:
+    """Whether no peg but two is in the part, and the part in no wall."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    for peg in range(obstacles.pegs.shape[0]):
+        if peg in (p, q):
+            continue
+        x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
+        y = obstacles.pegs[peg, 1] - config[2]
+        if not is_peg_free(cosine * x + sine * y, cosine * y - sine * x, peg, obstacles, known):
+            return False
+    return off_wall(config, obstacles) >= -ENTERED
+
+
+@inner
+def keeps_to(piece: int, at: float, peg: int, x: float, y: float, obstacles: Obstacles, known: Array) -> bool:
+    """Whether a peg on a piece's carrier touches the piece at a parameter and is not in the part, as it is past a
+    pocket."""
+    half = obstacles.rows[piece, HALF_EXTENT]
+    if obstacles.rows[piece, IS_ARC] != 0.0 and half >= pi:
+        return True
+    if not obstacles.spans[piece, 0] <= at <= obstacles.spans[piece, 1]:
+        return False
+    return abs(at) <= half or is_peg_free(x, y, peg, obstacles, known)
 
 
 @inner
@@ -130,7 +157,7 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
     count : how many clearances ``near`` has.
     longest, most : how far both contacts may go together, and the part by some more, in mm.
     """
-    near, trial = work.near, work.trial
+    near, trial, known = work.near, work.trial, work.known
     one, two = -1, -1
     for i in range(count):
         if near[i, 4] < TOUCHES:
@@ -161,6 +188,9 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
     haa, hbb = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy), (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
     along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
     asked = hypot(along_a, along_b)
+    a_unit = a[RADIUS] if a[IS_ARC] != 0.0 else 1.0
+    b_unit = b[RADIUS] if b[IS_ARC] != 0.0 else 1.0
+    a_at, b_at = parameter(a, ax, ay), parameter(b, bx, by)
     for _ in range(HALVINGS):
         length = hypot(along_a, along_b)
         if length <= SHORTEST:
@@ -168,15 +198,18 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
         level, good = config[3], True
         # No ridge lies between: the way falls, and is free, also before its end.
         for part in range(1, PARTS + 1):
-            x, y = moved_along(a, ax, ay, along_a * part / PARTS)
-            v, w = moved_along(b, bx, by, along_b * part / PARTS)
+            s, t = along_a * part / PARTS, along_b * part / PARTS
+            x, y = moved_along(a, ax, ay, s)
+            v, w = moved_along(b, bx, by, t)
             good = (
-                good
-                and is_within(a, obstacles.spans[a_number, 0], obstacles.spans[a_number, 1], x, y)
-                and is_within(b, obstacles.spans[b_number, 0], obstacles.spans[b_number, 1], v, w)
+                keeps_to(a_number, a_at + s / a_unit, p, x, y, obstacles, known)
+                and keeps_to(b_number, b_at + t / b_unit, q, v, w, obstacles, known)
                 and squeezed(config, p, q, x, y, v, w, obstacles, trial)
                 and trial[3] < level - GAIN
+                and is_free(trial, p, q, obstacles, known)
             )
+            if not good:
+                break
             level = trial[3]
         motion = abs(trial[0] - config[0]) * obstacles.size
         for j in range(1, 4):

@@ -1,0 +1,121 @@
+"""Ways down: the shortest step out of what is entered, and that they lead through what is free to what is known."""
+
+from __future__ import annotations
+
+from math import tau
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from sharpness import changed
+from workhold import Fixture, Peg, Pose, Vise, Workpiece
+from workhold.kernels.seating.closing import GAVE_UP, add_normal, shortest_out
+from workhold.kernels.seating.columns import WorkSpace
+from workhold.kernels.seating.pieces import clearances
+from workhold.seating.descents import DIRECTIONS
+from workhold.seating.equilibria import equilibria
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+from workhold.seating.tree import CONFIG, Tree, steps_off
+
+NOTCH = Workpiece.from_loops(
+    "notch", [[[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]], [[30, 12, -1], [14, 12, -1]]]
+)
+VISE = Vise(pitch=10, columns=2, peg_radius=3)
+PEGS = (("left", 10.0, 20.0, 5), ("left", 10.0, 50.0, 5), ("right", 52.38024723796786, 0.0, 0))
+PEGS = (*PEGS, ("right", 52.38024723796786, 40.0, 3))
+
+
+@pytest.fixture(scope="module")
+def ways():
+    """The jaws about the notch as drawn and turned over, with starts of the ways down of all passes, and the trees."""
+    pegs = tuple(Peg(jaw, 0, 0, x, y, face, 0.3) for jaw, x, y, face in PEGS)
+    fixture = Fixture("I", pegs, Pose(0, 13, 3), 42.38024723796786, {})
+    solver, pattern, out = Solver(NOTCH, VISE), Pattern.of(fixture, VISE), []
+    for turned_over in (False, True):
+        closing = solver.closing(pattern, turned_over)
+        found = equilibria(closing.locus, pattern, closing.size)
+        steps = steps_off(found.passes, closing.size)[0]
+        starts = np.concatenate([found.passes[:, CONFIG] + sign * steps for sign in (1.0, -1.0)])
+        out.append((closing, starts, Tree.of(found, closing)))
+    return out
+
+
+def least_clearance(closing, configs):
+    """Least distance in mm of pegs from the boundary in configurations (N, 4), below 0 in the part."""
+    (first, end), out = closing.locus.parts[0].tolist(), np.empty(4 * len(configs))
+    clearances(closing.pattern.at(configs).reshape(-1, 2), closing.locus.rows, first, end, out)
+    return out.min()
+
+
+def shortest(slopes, least):
+    """The shortest step d with slopes @ d >= least (C. L. Lawson and R. J. Hanson, 1974); None where there is none."""
+    told = np.vstack([slopes.T, least])
+    left = told @ nnls(told, np.eye(5)[4])[0] - np.eye(5)[4]
+    return None if abs(left[4]) < 1e-9 else -left[:4] / left[4]
+
+
+def test_the_way_out_is_the_shortest():
+    """Also where one of those that were met on the way is let go, and where normals are the same."""
+    steps_out = changed(shortest_out, add_normal=changed(add_normal))
+    generator, met = np.random.default_rng(4), 0
+    for count in (1, 2, 3, 4, 6) * 12:
+        work = WorkSpace.for_pieces(0)
+        slopes, off = generator.normal(size=(count, 4)), generator.normal(size=count) * 1e-3
+        if count == 3:
+            slopes[2] = slopes[0]
+        work.near[:count, :4], work.near[:count, 4] = slopes, off
+        best = shortest(slopes, 2e-12 - off)
+        if best is not None and off.min() < 0.0:
+            steps_out(count, work)
+            assert work.step == pytest.approx(best, abs=1e-9)
+            met += int((np.abs(slopes @ best + off) < 1e-9).sum() < (off < 0.0).sum())
+    assert met > 5
+
+
+def test_ways_lead_through_narrow_valleys_to_their_seats(ways):
+    """In them pegs press on faces that are nearly parallel; nothing is left where it was on its way."""
+    for closing, starts, _ in ways:
+        assert (closing.run(starts, 0.005)[1] != GAVE_UP).all()
+    tree = ways[1][2]
+    joins = [(join, seat) for k, seat in enumerate(tree.seats) if (join := tree.join_of(k))]
+    assert any(abs(join.separation - seat[3] - 12.022505562) < 1e-8 for join, seat in joins)
+
+
+def test_a_way_does_not_depend_on_those_before_it(ways):
+    """What was near to the pegs there is not near here."""
+    for closing, starts, _ in ways:
+        ends, how = closing.run(starts, 0.005)
+        alone = [closing.run(start[None], 0.005) for start in starts]
+        assert np.array_equal(ends, np.concatenate([end for end, _ in alone]))
+        assert np.array_equal(how, np.concatenate([end for _, end in alone]))
+
+
+def test_no_peg_is_in_the_part_on_its_way(ways):
+    for closing, starts, _ in ways:
+        for level in np.linspace(starts[:, 3].min() - 20.0, starts[:, 3].max(), 12):
+            above = starts[starts[:, 3] >= level]
+            assert least_clearance(closing, closing.run(above, 0.005, stop=level)[0]) > -2e-8
+
+
+def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
+    """Told by small steps along every direction, of where ways down begin and end."""
+    seen = set()
+    for closing, starts, _ in ways:
+        configs = np.concatenate([closing.run(starts[::4], 0.005)[0], starts[1::12]])
+        for config, told in zip(configs, closing.escape(configs), strict=True):
+            free = []
+            for angle in np.arange(DIRECTIONS) * tau / DIRECTIONS:
+                # Pegs that move along a direction of the part's frame: the part moves the other way.
+                way = angle + config[0]
+                steps = np.concatenate([np.linspace(0.0, 6.0, 60), np.linspace(6.5, 120.0, 200)])
+                moved = np.repeat(config[None], len(steps), axis=0)
+                moved[:, 1] -= np.cos(way) * steps
+                moved[:, 2] -= np.sin(way) * steps
+                free.append(least_clearance(closing, moved))
+            # Between both it is a matter of rounding, or of steps too long to see a corner grazed.
+            assert told or max(free) < 1e-3
+            assert not told or max(free) > -2e-2
+            seen.add(bool(told))
+    assert seen == {True, False}
