@@ -156,11 +156,16 @@ class Tree:
 
 def lying_on(families: list[Family], configs: Array, size: float) -> list[int | None]:
     """Of each configuration (N, 4) the number of the first loose set that it lies on, with its separation; None of none."""
-    near = np.abs(separations(families) - configs[:, 3:]) < FALLS
+    near = (np.abs(separations(families) - configs[:, 3:]) < FALLS).tolist()
     return [
-        next((k for k in np.flatnonzero(row).tolist() if families[k].holds(config, size)), None)
+        next((k for k in numbers(row) if families[k].holds(config, size)), None)
         for config, row in zip(configs, near, strict=True)
     ]
+
+
+def numbers(told: list[bool]) -> list[int]:
+    """Numbers of those that are true."""
+    return [k for k, one in enumerate(told) if one]
 
 
 def separations(families: Iterable[Family]) -> Array:
@@ -210,7 +215,7 @@ class Builder:
     seats, loose, doubtful : as of :class:`Tree`, the last as far as they are known.
     falling : loose sets off which a way leads down, and a configuration on it.
     strict : (N,) which seats lie on no loose set.
-    below : what ways off the falling sets end in, as far as it was asked for.
+    fallen : places of what ways off the falling sets end in, as far as they were asked for.
     """
 
     closing: Closing
@@ -219,7 +224,7 @@ class Builder:
     falling: list[tuple[Family, Array]]
     doubtful: list[Array]
     strict: NDArray[np.bool_]
-    below: dict[int, tuple[Array, NDArray[np.int8]]] = field(factory=dict)
+    fallen: dict[int, int] = field(factory=dict)
 
     def places(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[int]:
         """The places of the ends (N, 4) of ways down that began at some configurations (N, 4)."""
@@ -229,13 +234,15 @@ class Builder:
         # What can be taken away at first can be, wherever closing the jaws leads.
         left = stopped & ~away
         away[left] = self.closing.escape(starts[left])
-        falls = np.abs(separations(family for family, _ in self.falling) - configs[:, 3:]) < SAME_LEVEL
-        loose = np.abs(separations(self.loose) - configs[:, 3:]) < SAME_LEVEL
-        near = self.near_seats(configs)
+        falls, loose = (
+            (np.abs(separations(families) - configs[:, 3:]) < SAME_LEVEL).tolist()
+            for families in ([family for family, _ in self.falling], self.loose)
+        )
+        near = self.near_seats(configs).tolist()
         return [
             (OUTSIDE if away[k] else STOP)
             if stopped[k]
-            else self.place(configs[k], int(how[k]), np.flatnonzero(falls[k]), int(near[k]), np.flatnonzero(loose[k]))
+            else self.place(configs[k], int(how[k]), numbers(falls[k]), near[k], numbers(loose[k]))
             for k in range(len(how))
         ]
 
@@ -243,15 +250,20 @@ class Builder:
         """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
         if not self.strict.any():
             return np.full(len(configs), -1)
-        numbers = np.flatnonzero(self.strict)
-        seats = self.seats[numbers][:, CONFIG]
+        strict = np.flatnonzero(self.strict)
+        seats = self.seats[strict][:, CONFIG]
         away = distances(configs[:, None], seats, self.closing.size)
         nearest = np.argmin(away, axis=1)
         is_in = away[np.arange(len(configs)), nearest] < AT_SEAT
         is_in &= np.abs(seats[nearest, 3] - configs[:, 3]) < SAME_LEVEL
-        return np.where(is_in, numbers[nearest], -1)
+        return np.where(is_in, strict[nearest], -1)
 
-    def place(self, config: Array, how: int, falls: NDArray[np.int64], near: int, loose: NDArray[np.int64]) -> int:
+    @cached_property
+    def below(self) -> tuple[Array, NDArray[np.int8]]:
+        """What ways off the falling sets end in, and how."""
+        return self.closing.run(np.array([beyond for _, beyond in self.falling]), FIRST_STEP)
+
+    def place(self, config: Array, how: int, falls: list[int], near: int, loose: list[int]) -> int:
         """The place of the end of a way down short of the stop; one that is not known is added to what is not settled.
 
         Parameters
@@ -260,17 +272,18 @@ class Builder:
         near : number of the seat that it is in, or -1.
         """
         size = self.closing.size
-        for k in map(int, falls):
+        for k in falls:
             family, beyond = self.falling[k]
             # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
             if how == AT_REST and config[3] >= family.separation - FALLS and family.holds(config, size):
-                if k not in self.below:
-                    self.below[k] = self.closing.run(beyond[None], FIRST_STEP)
-                if self.below[k][0][0, 3] < family.separation - FALLS:
-                    return self.places(beyond[None], *self.below[k])[0]
+                ends, ways = self.below
+                if ends[k, 3] < family.separation - FALLS:
+                    if k not in self.fallen:
+                        self.fallen[k] = self.places(beyond[None], ends[k : k + 1], ways[k : k + 1])[0]
+                    return self.fallen[k]
         if how == AT_REST and near >= 0:
             return near
-        for k in map(int, loose):
+        for k in loose:
             if how == AT_REST and self.loose[k].holds(config, size):
                 return len(self.seats) + k
         before = len(self.seats) + len(self.loose)
