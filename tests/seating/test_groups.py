@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import combinations
+from math import pi, tau
 
 import numpy as np
 import pytest
@@ -10,10 +12,25 @@ from attrs import evolve
 
 import workhold
 from workhold import Vise, Workpiece
-from workhold.kernels.seating.columns import PEG, PIECE, SEPARATION
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    FORCE,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SEPARATION,
+    THETA,
+)
+from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.slides import slides_stopped
 from workhold.seating import alone, holdings
 from workhold.seating.equilibria import Equilibria, equilibria
+from workhold.seating.filled import filled
 from workhold.seating.groups import Group, groups_of
+from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 
@@ -103,6 +120,55 @@ def test_groups_that_stand_otherwise_are_others():
         evolve(pattern, gap=pattern.gap + 1.0),
     ):
         assert Group.of(other, (0, 1, 2)).key != known
+
+
+def touch(row: np.ndarray, pattern: Pattern, locus: Locus) -> None:
+    """See that each peg of a candidate is on the piece it is said to touch."""
+    places, out = pattern.at(row[None, :4])[0], np.empty(1)
+    for peg, piece in zip(row[PEG:PIECE].astype(int), row[PIECE:FORCE].astype(int), strict=True):
+        if peg >= 0:
+            clearances(places[[peg]], locus.loose, piece, piece + 1, out)
+            assert abs(out[0]) < 1e-7
+
+
+def slides_on(row: np.ndarray, pattern: Pattern, locus: Locus) -> int:
+    """How many pegs of one jaw touch in a candidate, two of them on parallel faces on which the part slides; 0 of none."""
+    touching = [(int(row[PEG + k]), locus.rows[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
+    for (p, one), (q, two) in combinations(touching, 2):
+        across = abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X])
+        if p != q and pattern.right[p] == pattern.right[q] and one[IS_ARC] == two[IS_ARC] == 0.0 and across < 1e-9:
+            return len({peg for peg, _ in touching if pattern.right[peg] == pattern.right[p]})
+    return 0
+
+
+def test_parts_that_slide_are_stopped_and_clamped():
+    """Two pegs of a jaw on parallel faces: clamped by one of the other on an arc, by two, or stopped by a third of their
+    own; and in each all that touches does."""
+    told = set()
+    for pattern in patterns():
+        solver = Solver(STEP, VISE)
+        closing = solver.closing(pattern, False)
+        found = solve(solver, pattern)[0]
+        for row in np.concatenate([found.seats, found.passes]):
+            touch(row, pattern, closing.locus)
+            told.add((int(row[CONTACTS]), slides_on(row, pattern, closing.locus)))
+    assert told >= {(3, 2), (4, 2), (4, 3)}
+
+
+def test_slides_end_where_a_third_peg_of_the_jaw_touches():
+    """As three pegs in three places are found, which they are too where no two of them slide."""
+    pattern, solver = patterns()[-1], Solver(STEP, VISE)
+    locus, size = solver.closing(pattern, False).locus, solver.outline.arm
+    [group] = (group for group in groups_of(pattern) if group.is_of_a_jaw and len(group.sides) == 3)
+    held = holdings.Holdings.of(locus, group.pattern)
+    stopped = filled(CANDIDATE_LENGTH, 256, slides_stopped, held.slides, held.given)
+    assert len(stopped) > 2
+    every, told = np.split(alone.alone(locus, group, size).fixed, [-len(stopped)])
+    assert np.array_equal(told, stopped)
+    for row in stopped:
+        touch(row, group.pattern, locus)
+        turn = np.abs((every[:, THETA] - row[THETA] + pi) % tau - pi)
+        assert (turn + np.abs(every[:, PLACE_X : PLACE_Y + 1] - row[PLACE_X : PLACE_Y + 1]).sum(axis=1)).min() < 1e-6
 
 
 def test_all_kinds_of_groups_have_their_part():
