@@ -106,6 +106,8 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
     nearest = min((seat for seat in one.seats if seat.is_wrong), key=lambda seat: abs(seat.difference))
     near = attrs.evolve(one, seats=(*one.seats, attrs.evolve(nearest, kind="unsettled", difference=-0.09)))
     assert (small.warning_count, near.warning_count, one.warning_count) == (2, 1, 0)
+    alike = attrs.evolve(one, seats=(*one.seats, attrs.evolve(nearest, difference=2e-4)))
+    assert alike.warnings == ("a wrong seat reads the same",)
     assert "reads only 0.090 mm otherwise" in near.warnings[0] and not near.is_foolproof and one.is_foolproof
     for toolkit, opened in (
         (Plate(pitch=20, peg_radius=3), "the clamp is drawn back"),

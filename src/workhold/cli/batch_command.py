@@ -133,6 +133,10 @@ def batch(
             from workhold.cli.warming import compile_kernels
 
             compile_kernels(stop)
+        if cluster is None and any(is_seated(held) for request in requests for held in request.held_in):
+            from workhold.cli.warming import compile_seating
+
+            compile_seating(stop)
         with batch_progress() as progress, ExitStack() as workshop:
             queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
             workshop.enter_context(queue)
@@ -176,6 +180,13 @@ def refuse_no_cluster() -> None:
         raise InputError(
             "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
         )
+
+
+def is_seated(held: HeldIn) -> bool:
+    """Whether seating is asked for."""
+    from workhold.model.query import Query
+
+    return isinstance(held.query, Query) and held.query.seating is not None
 
 
 def place_to_work(

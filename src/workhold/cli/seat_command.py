@@ -169,8 +169,8 @@ def wrong_words(told: Seating, seats: list[Seat], opened: float | None, gauge: G
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
     if told.capture_opening is not None and opened is not None and opened < told.capture_opening:
-        done = f"{gauge.ways.done} so far, a part let go in its cage reaches no other place; let go elsewhere it may."
-        words.append(done)
+        far = f"{gauge.ways.done} by {unit.text(opened)}"
+        words.append(f"{far}, a part let go in its cage reaches no other place; let go elsewhere it may.")
     if not wrong:
         words.append("There is no wrong place where it can come to rest.")
     else:

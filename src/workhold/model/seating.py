@@ -20,6 +20,8 @@ DECIMALS = 9
 SMALL_CAPTURE = 1.0
 # mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
 CLOSE_READING = 0.1
+# mm: less is none as it is written.
+SAME_READING = 5e-4
 # What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
 JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
 CLAMP = "the clamp is drawn back"
@@ -248,7 +250,8 @@ class Seating:
         elif self.is_hardly_caught:
             out.append(f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm")
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
-            out.append(f"a wrong seat reads only {reading:.3f} mm otherwise, which a caliper hardly tells")
+            words = f"only {reading:.3f} mm otherwise, which a caliper hardly tells"
+            out.append(f"a wrong seat reads {'the same' if reading < SAME_READING else words}")
         return tuple(out)
 
     @property
