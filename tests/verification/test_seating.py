@@ -14,11 +14,13 @@ import workhold
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
 from workhold.model.fixture import WALL
+from workhold.seating.seating import Solver
+from workhold.verification.claims import claim_of
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
 from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
-from workhold.verification.patterns import pattern_faults
+from workhold.verification.patterns import pattern_faults, stance
 from workhold.verification.seating import Judged, SeatingJudge
 from workhold.verification.seating_contacts import touching_wall
 from workhold.verification.seating_stop import stop_of
@@ -174,6 +176,38 @@ def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> N
         changed = [attrs.evolve(first, seating=claim), *listing.fixtures[1:]]
         found += bool(list(pattern_faults(changed, listing.query)))
     assert found > 1
+
+
+def stepped(fixture: Any, toolkit: Any) -> Any:
+    """The same fixture two columns and, where nothing keeps it, three rows farther."""
+    rows = 0 if toolkit.wall is not None else 3
+    (px, py), pegs = toolkit.carriers[0].pitch, []
+    for peg in fixture.pegs:
+        moved = attrs.evolve(peg, x=peg.x + 2 * px, y=peg.y + rows * py)
+        pegs.append(moved if peg.is_on_wall else attrs.evolve(moved, column=peg.column + 2, row=peg.row + rows))
+    pose = attrs.evolve(fixture.pose, x=fixture.pose.x + 2 * px, y=fixture.pose.y + rows * py)
+    return attrs.evolve(fixture, pegs=tuple(pegs), pose=pose)
+
+
+@pytest.mark.parametrize(("part", "toolkit"), [(WEDGE, PLATE), (BOWED, FENCE)], ids=["plate", "fence"])
+def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, toolkit: Any) -> None:
+    """The first fixture on whose pegs others stand: all of them are its seats, and none may be left out."""
+    every = list(workhold.design(part, toolkit))
+    keys = [stance(fixture, toolkit).key for fixture in every]
+    place = next(k for k, key in enumerate(keys) if keys.count(key) > 1)
+    first, query = every[place], workhold.Query(part, toolkit, seating=1)
+    told = Solver(part, toolkit).of(first, with_cage=False).as_fields()
+    others = [stepped(every[k], toolkit) for k in range(len(every)) if k != place]
+    assert stance(stepped(first, toolkit), toolkit).key == keys[place]
+
+    def faults(fields: Fields) -> list[str]:
+        claim = claim_of(fields, first.pose, query, "the result", 1)
+        return list(pattern_faults([attrs.evolve(first, seating=claim), *others], query))
+
+    assert not faults(told)
+    missing = [faults(told | {"seats": [one for one in told["seats"] if one is not seat]}) for seat in told["seats"]]
+    assert sum(map(bool, missing)) >= 2, "the fixture itself, and another"
+    assert all("stands on the pegs of fixture 1" in words for found in missing for words in found)
 
 
 def test_the_order_is_that_of_the_seating(listing: Listing) -> None:

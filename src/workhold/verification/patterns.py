@@ -5,42 +5,90 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
+from attrs import frozen
 
-__all__ = ["pattern_faults"]
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
+from workhold.model.toolkit import Toolkit
+
+__all__ = ["pattern_faults", "stance"]
 
 # Degrees and mm. A fixture is a seat told whose pose and separation agree to this.
 SAME_SEAT = 1e-5
 
 
 def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
-    """A fault for the first fixture that is not among the seats of one whose pegs stand as its own do, in a vise."""
-    if query.toolkit.moving.on is not None:
+    """A fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
+    if query.toolkit.needs_pairs:
         return
     seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
-    patterns: dict[tuple[Any, ...], list[int]] = {stance(fixture)[0]: [] for fixture in seated}
-    for place, fixture in enumerate(fixtures if patterns else ()):
-        if (found := patterns.get(stance(fixture)[0])) is not None:
+    stances = [stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
+    patterns: dict[tuple[Any, ...], list[int]] = {stances[number].key: [] for number in range(len(seated))}
+    for place, other in enumerate(stances):
+        if (found := patterns.get(other.key)) is not None:
             found.append(place)
-    for number, fixture in enumerate(seated, 1):
-        key, (x, y), separation = stance(fixture)
-        for place in patterns[key]:
-            other = fixtures[place]
-            _, (u, v), apart = stance(other)
-            pose = {"theta_deg": other.pose.theta_deg, "x": other.pose.x - u + x, "y": other.pose.y - v + y}
-            if not any(is_seat(seat, pose, apart - separation) for seat in fixture.seating.fields["seats"]):
-                yield f"fixture {place + 1} stands on the pegs of fixture {number}, but is not among its seats"
+    for number, fixture in enumerate(seated):
+        own = stances[number]
+        for place in patterns[own.key]:
+            other, pose = stances[place], fixtures[place].pose
+            moved = {
+                "theta_deg": pose.theta_deg,
+                "x": pose.x - other.anchor[0] + own.anchor[0],
+                "y": pose.y - other.anchor[1] + own.anchor[1],
+            }
+            apart = other.apart - own.apart
+            if any(min(own.apart, other.apart) < there < max(own.apart, other.apart) for there in own.met):
+                continue
+            if not any(is_seat(seat, moved, apart) for seat in fixture.seating.fields["seats"]):
+                yield f"fixture {place + 1} stands on the pegs of fixture {number + 1}, but is not among its seats"
                 return
 
 
-def stance(fixture: Fixture) -> tuple[tuple[Any, ...], tuple[float, float], float]:
-    """How the pegs of a fixture in a vise stand to each other, where the first is, and how far apart its jaws are."""
-    still = sorted((peg.x, peg.y) for peg in fixture.pegs if peg.carrier == "left")
-    moved = sorted((peg.x, peg.y) for peg in fixture.pegs if peg.carrier != "left")
-    (x, y), (u, _) = still[0], moved[0]
-    places = [*((a - x, b - y) for a, b in still), *((a - u, b - y) for a, b in moved)]
-    return (len(still), *(round(part, 5) + 0.0 for place in places for part in place)), (x, y), u - x
+@frozen
+class Stance:
+    """How the pegs of a fixture stand to each other.
+
+    Parameters
+    ----------
+    key : what fixtures share that differ by a shift and by the travel of what moves.
+    anchor : in mm, the peg that stands still and is first.
+    apart : how far in mm the first that moves is from it, along the way on which the travel grows.
+    met : at how many mm of that a clamp's tip would be in one that stands still.
+    """
+
+    key: tuple[Any, ...]
+    anchor: tuple[float, float]
+    apart: float
+    met: tuple[float, ...]
+
+
+def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
+    """That of a fixture."""
+    by_place = sorted((peg for peg in fixture.pegs if not peg.is_on_wall), key=lambda peg: (peg.x, peg.y))
+    still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
+    moved = [peg for peg in by_place if peg not in still]
+    first, tip = still[0], moved[0]
+    carrier = toolkit.carrier(tip.carrier)
+    assert carrier.travel is not None
+    ux, uy = carrier.travel.unit
+
+    def along(peg: Peg, other: Peg) -> float:
+        return (peg.x - other.x) * ux + (peg.y - other.y) * uy
+
+    def across(peg: Peg, other: Peg) -> float:
+        return (peg.y - other.y) * ux - (peg.x - other.x) * uy
+
+    places = [(peg.x - first.x, peg.y - first.y) for peg in still] + [(peg.x - tip.x, peg.y - tip.y) for peg in moved]
+    numbers, met = [across(tip, first), *(part for place in places for part in place)], list[float]()
+    if carrier.on is not None:
+        # A clamp's stroke is counted from its hole, and a fence stands where it is.
+        x, y = carrier.place(tip.column, tip.row)
+        numbers += [x - first.x, y - first.y] if carrier.has_a_hole else []
+        numbers += [first.y] if toolkit.wall is not None else []
+        reach = [carrier.peg_radius + toolkit.carrier(peg.carrier).peg_radius for peg in still]
+        met = [along(peg, first) for peg, near in zip(still, reach, strict=True) if abs(across(peg, tip)) < near]
+    key = (fixture.direction, len(still), *(round(part, 5) + 0.0 for part in numbers))
+    return Stance(key, (first.x, first.y), along(tip, first), tuple(met))
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:
