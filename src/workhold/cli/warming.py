@@ -22,7 +22,7 @@ __all__ = ["compile_kernels", "compile_seating", "is_seating_compiled"]
 WORDS = "Compiling the kernels, on the first run only"
 SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
 # The last of them to be compiled, as its file is called.
-LAST_OF_SEATING = "leaving.leaves"
+LAST_OF_SEATING = "leaving.leave"
 # The part for the second process; the first compiles all others.
 LONGEST = "crossings"
 # Writes a line for each kernel that is done, and ends with this process, however that ends.
