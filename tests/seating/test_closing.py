@@ -10,14 +10,15 @@ from scipy.optimize import nnls
 
 from sharpness import changed
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
-from workhold.kernels.seating.closing import GAVE_UP, add_normal, shortest_out
-from workhold.kernels.seating.columns import WorkSpace
+from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP, add_normal, shortest_out
+from workhold.kernels.seating.columns import SECOND, WorkSpace
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating.descents import DIRECTIONS
+from workhold.seating.door import Door
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG, Tree, steps_off
+from workhold.seating.tree import CONFIG, OUTSIDE, STOP, Tree, steps_off
 
 NOTCH = Workpiece.from_loops(
     "notch", [[[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]], [[30, 12, -1], [14, 12, -1]]]
@@ -119,3 +120,36 @@ def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
             assert not told or max(free) > -2e-2
             seen.add(bool(told))
     assert seen == {True, False}
+
+
+def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
+    seen = set()
+    for closing, _, tree in ways:
+        joins = [join for join in tree.joins if join.candidate[SECOND] < 0.0]
+        rows = np.array([join.candidate for join in joins])
+        steps, lengths = steps_off(rows, closing.size)
+        for sign, side in ((1.0, 0), (-1.0, 1)):
+            starts = rows[:, CONFIG] + sign * steps
+            for k in np.flatnonzero(lengths == 0.01).tolist():
+                ends, how = closing.run(starts[k : k + 1], 0.005, np.ascontiguousarray(tree.seats[:, CONFIG]))
+                at_end, at_start = closing.escape(np.concatenate([ends, starts[k : k + 1]])).tolist()
+                if how[0] == AT_THE_STOP:
+                    assert joins[k].places[side] == (OUTSIDE if at_end or at_start else STOP)
+                    seen.add((at_end, at_start))
+    assert (False, False) in seen and len(seen) > 1, seen
+
+
+def test_a_seat_joins_at_the_lowest_pass_that_leads_elsewhere(ways):
+    for _, _, tree in ways:
+        for place in range(len(tree.seats) + len(tree.loose)):
+            known = tree.shared.get(place, place)
+            out = [join for join in tree.joins if known in join.places and join.places[0] != join.places[1]]
+            assert tree.join_of(place) is (min(out, key=lambda join: join.separation) if out else None)
+
+
+def test_a_door_leads_back():
+    for quarters in range(4):
+        for door in (Door(quarters, 1.0), Door(quarters, -1.0)):
+            config = np.array([0.3, 4.0, -5.0, 6.0])
+            assert door.leave(door.enter(config)) == pytest.approx(config, abs=1e-12)
+            assert np.array_equal(door.leave(config[None])[0], door.leave(config))
