@@ -156,7 +156,7 @@ def seats_and_passes() -> Calls:
     yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leave, (ways, obstacles, 1, np.zeros(0, np.bool_))
+    yield leave, (ways, obstacles, 1, np.zeros(0, np.int8))
 
 
 # Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.

@@ -71,6 +71,6 @@ class Closing:
     def escape(self, configs: Array) -> NDArray[np.bool_]:
         """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of
         many directions."""
-        out = np.empty(len(configs), np.bool_)
+        out = np.empty(len(configs), np.int8)
         leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, out)
-        return out
+        return out.astype(np.bool_)

@@ -64,12 +64,12 @@ def is_met(config: Array, obstacles: Obstacles, wx: float, wy: float) -> bool:
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, ways: int, out: NDArray[np.bool_]) -> None:
+def leave(configs: Array, obstacles: Obstacles, ways: int, out: NDArray[np.int8]) -> None:
     """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
     and without coming nearer to a wall; written to ``out`` (N,)."""
     for n in range(configs.shape[0]):
-        out[n] = False
+        out[n] = 0
         for k in range(ways):
             if not is_met(configs[n], obstacles, cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)):
-                out[n] = True
+                out[n] = 1
                 break
