@@ -105,7 +105,13 @@ def test_every_kernel_takes_what_a_library_can_be_handed():
     spec = spec_from_file_location("compile_kernels", path)
     builder = module_from_spec(spec)
     spec.loader.exec_module(builder)
+
+    def can_be_handed(signature: Any) -> bool:
+        try:
+            return bool([builder.described(kind) for kind in signature])
+        except AssertionError:
+            return False
+
+    # Other tests may have handed over other arrays.
     for kernel in (done for part in preparing.PARTS for done in preparing.prepared(part)):
-        (signature,) = kernel.signatures
-        for kind in signature:
-            builder.described(kind)
+        assert any(map(can_be_handed, kernel.signatures)), kernel.__name__
