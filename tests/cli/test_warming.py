@@ -75,3 +75,14 @@ def test_the_kernels_of_seating_are_compiled_once(shown, monkeypatch, tmp_path):
     (tmp_path / "seating_0" / f"{warming.LAST_OF_SEATING}-41.py311.nbi").touch()
     warming.compile_seating(Event())
     assert warming.is_seating_compiled() and len(shown) == SEATING + 1
+
+
+def test_where_kernels_were_built_in_no_cache_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its name is asked of a library that need not be there."""
+
+    def absent() -> None:
+        raise ModuleNotFoundError
+
+    monkeypatch.setattr(warming, "LIBRARY", object())
+    monkeypatch.setattr(warming, "cache_folder", absent)
+    assert warming.is_seating_compiled()

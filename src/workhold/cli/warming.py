@@ -73,10 +73,10 @@ def compile_kernels(cancel: Event) -> None:
 
 def is_seating_compiled() -> bool:
     """Whether the kernels of seating need not be compiled any more, a matter of half a minute or so."""
+    if LIBRARY is not None:
+        return True
     folder = cache_folder()
-    return LIBRARY is not None or (
-        folder is not None and next(folder.rglob(f"{LAST_OF_SEATING}-*.nbi"), None) is not None
-    )
+    return folder is not None and next(folder.rglob(f"{LAST_OF_SEATING}-*.nbi"), None) is not None
 
 
 def compile_seating(cancel: Event) -> None:
