@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
 from workhold.kernels.seating.leaving import leave
-from workhold.seating.locus import PAST_POCKET, Locus
+from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
 __all__ = ["Closing"]
@@ -41,12 +41,7 @@ class Closing:
     @cached_property
     def obstacles(self) -> Obstacles:
         """What kernels are given."""
-        locus, pattern = self.locus, self.pattern
-        pieces = np.array(locus.rows), locus.spans, locus.discs + np.array([0.0, 0.0, PAST_POCKET])
-        pegs = np.array(pattern.pegs), pattern.right, locus.parts
-        hull = np.zeros((0, 6)) if pattern.wall is None else np.array(locus.hull.rows)
-        wall = np.array(pattern.wall or (0.0, 0.0, 0.0))
-        return Obstacles(*pieces, *pegs, self.size, pattern.end(2.0 * self.size), hull, wall)
+        return self.locus.obstacles(self.pattern, self.size, self.pattern.end(2.0 * self.size))
 
     def run(
         self, configs: Array, first: float, seats: Array = NO_SEATS, stop: float | None = None

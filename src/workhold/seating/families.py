@@ -152,11 +152,8 @@ class Finder:
 
     @cached_property
     def around(self) -> Obstacles:
-        """What keeps the pegs off the part."""
-        locus, pattern = self.locus, self.pattern
-        hull = np.zeros((0, 6)) if pattern.wall is None else np.array(locus.hull.rows)
-        wall, pegs = np.array(pattern.wall or (0.0, 0.0, 0.0)), (np.array(pattern.pegs), pattern.right, locus.parts)
-        return Obstacles(np.array(locus.rows), locus.spans, locus.discs, *pegs, 1.0, 0.0, hull, wall)
+        """What keeps the pegs off the part; no turn is counted, and nothing stops."""
+        return self.locus.obstacles(self.pattern, 1.0, 0.0)
 
     @property
     def obstacles(self) -> int:

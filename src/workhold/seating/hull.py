@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from workhold.conventions import LEAST_HULL_EDGE, SAME_POSE, TOUCHING
 from workhold.geometry.hull_edges import Pieces
+from workhold.kernels.seating.walls import SUPPORTS
 from workhold.model.workpiece import Workpiece
 from workhold.seating.touch import Touch
 
 __all__ = ["Hull", "HullSide"]
 
 Array = NDArray[np.float64]
-# What supports in a direction may fall short of it by this much: rounding.
-SUPPORTS = 1e-12
 
 
 @frozen

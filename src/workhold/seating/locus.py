@@ -24,6 +24,7 @@ from workhold.geometry.segment import Arc, Point, Segment, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
 from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.seating.columns import Obstacles
 from workhold.model.workpiece import Workpiece
 from workhold.seating.hull import Hull
 from workhold.seating.touch import Touch
@@ -32,8 +33,9 @@ if TYPE_CHECKING:
     from workhold.seating.alone import Alone
     from workhold.seating.common_normals import CommonNormal
     from workhold.seating.holdings import JawHoldings
+    from workhold.seating.pattern import Pattern
 
-__all__ = ["PAST_POCKET", "Locus", "all_contained", "contains"]
+__all__ = ["Locus", "contains"]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.
@@ -87,6 +89,19 @@ class Locus:
     def fits(self, side: int, piece: int) -> bool:
         """Whether pegs that stand still (0), or that move (1), can touch a piece."""
         return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
+
+    def obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
+        """The pieces about the pegs of a pattern, as kernels take them.
+
+        Parameters
+        ----------
+        size : of the part in mm, by which turns are counted.
+        stop : S in mm at which what moves is stopped.
+        """
+        pieces = np.array(self.rows), self.spans, self.discs + np.array([0.0, 0.0, PAST_POCKET])
+        pegs = np.array(pattern.pegs), pattern.right, self.parts
+        hull = np.zeros((0, 6)) if pattern.wall is None else np.array(self.hull.rows)
+        return Obstacles(*pieces, *pegs, size, stop, hull, np.array(pattern.wall or (0.0, 0.0, 0.0)))
 
     @cached_property
     def loose(self) -> Array:
@@ -214,16 +229,6 @@ def contains(row: Array, x: float, y: float) -> bool:
     unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
     whole = row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi
     return bool(whole or abs(along(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
-
-
-def all_contained(row: Array, points: Array) -> NDArray[np.bool_]:
-    """Which of the points (N, 2) of a piece's carrier lie on the piece, up to rounding."""
-    dx, dy = (points - row[[X, Y]]).T
-    across, forth = row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy
-    if row[IS_ARC] == 0.0:
-        return np.asarray(np.abs(forth) <= row[HALF_EXTENT] + END_SLACK)
-    near = np.abs(np.arctan2(across, forth)) <= row[HALF_EXTENT] + END_SLACK / row[RADIUS]
-    return np.asarray(near | (row[HALF_EXTENT] >= pi))
 
 
 def along(row: Array, x: float, y: float) -> float:

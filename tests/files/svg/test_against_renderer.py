@@ -69,9 +69,12 @@ def disagreement(case: RandomDrawing, drawing: Drawing) -> str:
     if case.filled:
         rule = "evenodd" if 'fill-rule="evenodd"' in case.author else "nonzero"
         read = picture(redrawn(drawing, f'fill-rule="{rule}"'))
+        core = ~grown(~(seen ^ read))
+        if not core.any():
+            return ""
         # Half transparent groups in each other are faint, and some that reach far beyond the page it leaves out.
-        cores = [~grown(~(one ^ read)) for one in (seen, picture(case.plain.replace(":.5", ":1")))]
-        return "" if not all(core.any() for core in cores) else f"{cores[0].sum()} pixels"
+        solid = picture(case.plain.replace(":.5", ":1"))
+        return f"{core.sum()} pixels" if (~grown(~(solid ^ read))).any() else ""
     thin = picture(redrawn(drawing, 'fill="none" stroke="#000" stroke-width="0.5" stroke-linejoin="round"'))
     thick = picture(
         redrawn(drawing, 'fill="none" stroke="#000" stroke-width="5" stroke-linejoin="round" stroke-linecap="square"')

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections import namedtuple
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -17,7 +18,7 @@ import workhold
 from workhold.errors import InputError
 from workhold.kernels.base import built, compiling, distance, sources
 from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.preparing import PARTS
+from workhold.kernels.preparing import PARTS, prepared
 
 BUILDER = Path(workhold.__file__).parents[2] / "building" / "compile_kernels.py"
 SIDES = ((0, -10), (10, 0), (0, 10), (-10, 0))
@@ -50,6 +51,23 @@ def test_every_kernel_that_python_calls_is_compiled_ahead():
     texts = [path.read_text() for path in sources.KERNELS.rglob("*.py")]
     decorated = {name for text in texts for name in re.findall(r"^@compiled(?:_making_arrays)?\ndef (\w+)", text, re.M)}
     assert decorated == {kernel.__name__ for calls in PARTS.values() for kernel, _ in calls()}
+
+
+def test_every_kernel_takes_what_a_library_can_be_handed():
+    """Those that are called from Python: whole numbers, doubles and truths, and arrays of numbers one after the other."""
+    spec = spec_from_file_location("compile_kernels", BUILDER)
+    builder = module_from_spec(spec)
+    spec.loader.exec_module(builder)
+
+    def can_be_handed(signature: Any) -> bool:
+        try:
+            return bool([builder.described(kind) for kind in signature])
+        except AssertionError:
+            return False
+
+    # Other tests may have handed over other arrays.
+    for kernel in (done for part in PARTS for done in prepared(part)):
+        assert any(map(can_be_handed, kernel.signatures)), kernel.__name__
 
 
 def test_answers_are_the_same_to_the_last_bit(library):

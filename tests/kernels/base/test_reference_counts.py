@@ -5,8 +5,6 @@ from __future__ import annotations
 import pkgutil
 import re
 from importlib import import_module
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -97,21 +95,3 @@ def test_the_loops_of_a_search_count_no_references(kernel):
 def test_the_certificate_counts_no_references():
     """The kernel that proves fixtures makes no array at all."""
     assert counting_functions(certified) == {}
-
-
-def test_every_kernel_takes_what_a_library_can_be_handed():
-    """Those that are called from Python: whole numbers, doubles and truths, and arrays of numbers one after the other."""
-    path = Path(__file__).parents[3] / "building" / "compile_kernels.py"
-    spec = spec_from_file_location("compile_kernels", path)
-    builder = module_from_spec(spec)
-    spec.loader.exec_module(builder)
-
-    def can_be_handed(signature: Any) -> bool:
-        try:
-            return bool([builder.described(kind) for kind in signature])
-        except AssertionError:
-            return False
-
-    # Other tests may have handed over other arrays.
-    for kernel in (done for part in preparing.PARTS for done in preparing.prepared(part)):
-        assert any(map(can_be_handed, kernel.signatures)), kernel.__name__

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, pi, sin
+from math import hypot, inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.seating.columns import CONTACTS, PLACE_X, PLACE_Y, SEPARATION, THETA, Obstacles
-from workhold.kernels.seating.pieces import clearance, on_piece
+from workhold.kernels.seating.pieces import clearance, on_piece, place_on_part
+from workhold.kernels.seating.walls import SUPPORTS, off_wall
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -19,8 +20,6 @@ IntArray = NDArray[np.int64]
 TOUCHES = 1e-7
 # mm. By this much more than a peg moved it was clear, or in the part, where it surely still is.
 SURELY = 1e-6
-# What supports a part on a wall may fall short of it by this much: rounding.
-SUPPORTS = 1e-12
 # How often, and into how many parts, a step is cut to find where freedom ends.
 EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
@@ -31,10 +30,7 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
 
     Where none, as far as ``seen`` (3,), a place on the part and its clearance, tells: no nearer than that, and on its side.
     """
-    c, s = cos(config[0]), sin(config[0])
-    qx = around.pegs[peg, 0] + around.right[peg] * config[3] - config[1]
-    qy = around.pegs[peg, 1] - config[2]
-    x, y = c * qx + s * qy, c * qy - s * qx
+    x, y = place_on_part(config, around, peg)
     if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
         return -inf
     rest = abs(seen[2]) - hypot(x - seen[0], y - seen[1])
@@ -44,19 +40,6 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
     seen[0], seen[1] = x, y
     seen[2] = clearance(x, y, around.rows, around.parts[side, 0], around.parts[side, 1])
     return seen[2]
-
-
-@inner
-def off_the_wall(config: Array, around: Obstacles) -> float:
-    """Clearance of a wall in mm in a configuration (4,)."""
-    ux, uy = around.wall[0], around.wall[1]
-    angle, reach = atan2(-uy, -ux) - config[0], -inf
-    nx, ny = cos(angle), sin(angle)
-    for k in range(around.hull.shape[0]):
-        row = around.hull[k]
-        if nx * row[3] + ny * row[4] >= row[5] - SUPPORTS:
-            reach = max(reach, nx * row[0] + ny * row[1] + row[2])
-    return config[1] * ux + config[2] * uy - around.wall[2] - reach
 
 
 @inner
@@ -72,7 +55,7 @@ def write_clearances(config: Array, touched: IntArray, known: int, around: Obsta
                 if out[peg] <= -TOUCHES:
                     return False
     if around.hull.shape[0] > 0:
-        out[pegs] = off_the_wall(config, around)
+        out[pegs] = off_wall(config, around, SUPPORTS)
         return bool(out[pegs] > -TOUCHES)
     return True
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
-from workhold.kernels.seating.pieces import normal_at, on_piece
+from workhold.kernels.seating.pieces import normal_at, on_piece, place_on_part
 
 Array = NDArray[np.float64]
 # mm. A peg this near to a piece touches it; so it does a hair inside. No unit: ways this near to a face go along it.
@@ -54,9 +54,7 @@ def is_met(config: Array, obstacles: Obstacles, wx: float, wy: float) -> bool:
     if vx * obstacles.wall[0] + vy * obstacles.wall[1] > LEVEL:
         return True
     for peg in range(obstacles.pegs.shape[0]):
-        qx = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
-        qy = obstacles.pegs[peg, 1] - config[2]
-        x, y, side = cosine * qx + sine * qy, cosine * qy - sine * qx, obstacles.right[peg]
+        (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
         for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
             if meets(obstacles.rows[piece], x, y, wx, wy):
                 return True

@@ -10,11 +10,21 @@ from numpy.typing import NDArray
 from workhold.conventions import PARALLEL, SAME_CENTER
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import Obstacles
 
 Array = NDArray[np.float64]
 # mm. Two pieces are as near when their distances agree to this: they end in one point.
 SAME_END = 1e-9
 Foot = tuple[float, float, float, float, float, float]
+
+
+@inner
+def place_on_part(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
+    """Place of a peg's centre on the part in a configuration (4,)."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
+    y = obstacles.pegs[peg, 1] - config[2]
+    return (cosine * x + sine * y, cosine * y - sine * x)
 
 
 @inner

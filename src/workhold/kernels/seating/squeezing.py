@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
-from workhold.kernels.seating.pieces import angle_from_middle, clearance
+from workhold.kernels.seating.pieces import angle_from_middle, clearance, place_on_part
 from workhold.kernels.seating.walls import off_wall
 
 Array = NDArray[np.float64]
@@ -28,15 +28,6 @@ TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
 FLATTEST = 1e-9
 # How often a step is halved, at how many places it is looked at, and how much farther than both contacts the part may move.
 HALVINGS, PARTS, FARTHER = 3, 3, 3.0
-
-
-@inner
-def seen(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
-    """Place of a peg on the part."""
-    cosine, sine = cos(config[0]), sin(config[0])
-    x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
-    y = obstacles.pegs[peg, 1] - config[2]
-    return (cosine * x + sine * y, cosine * y - sine * x)
 
 
 @inner
@@ -132,7 +123,7 @@ def is_free(config: Array, p: int, q: int, obstacles: Obstacles, known: Array) -
         y = obstacles.pegs[peg, 1] - config[2]
         if not is_peg_free(cosine * x + sine * y, cosine * y - sine * x, peg, obstacles, known):
             return False
-    return off_wall(config, obstacles) >= -ENTERED
+    return off_wall(config, obstacles, 0.0) >= -ENTERED
 
 
 @inner
@@ -178,8 +169,8 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
         # The peg that moves pushes outward.
         return 0.0
     a, b = obstacles.rows[a_number], obstacles.rows[b_number]
-    ax, ay = seen(config, obstacles, p)
-    bx, by = seen(config, obstacles, q)
+    ax, ay = place_on_part(config, obstacles, p)
+    bx, by = place_on_part(config, obstacles, q)
     d = hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / d, (by - ay) / d
     sx, sy = tangent_at(a, ax, ay)

@@ -15,6 +15,8 @@ from workhold.kernels.base.compiling import inner
 from workhold.kernels.seating.columns import Obstacles
 
 Array = NDArray[np.float64]
+# What supports in a direction may fall short of it by this much: rounding.
+SUPPORTS = 1e-12
 
 
 @inner
@@ -39,14 +41,14 @@ def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, cou
 
 
 @inner
-def off_wall(config: Array, obstacles: Obstacles) -> float:
-    """Distance in mm of the part from the wall, infinite where there is none."""
+def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
+    """Distance in mm of the part from the wall, infinite where there is none; what supports may fall short by a slack."""
     cosine, sine, best = cos(config[0]), sin(config[0]), inf
     ux, uy = obstacles.wall[0], obstacles.wall[1]
     px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
     for k in range(obstacles.hull.shape[0]):
         row = obstacles.hull[k]
-        if -(px * row[3] + py * row[4]) >= row[5]:
+        if -(px * row[3] + py * row[4]) >= row[5] - slack:
             wx, wy = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
             best = min(best, ux * (wx + config[1]) + uy * (wy + config[2]) - row[2] - obstacles.wall[2])
     return best
