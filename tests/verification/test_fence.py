@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from attrs import evolve
+from numpy.typing import NDArray
 
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
@@ -207,12 +208,12 @@ def test_undecided_entries_must_name_faces_and_reasons() -> None:
 def test_a_tip_in_the_fence_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a search that does not keep it out."""
 
-    def pushing(self: FenceSearch, places: Places) -> Places:
-        return places.take(-(places.normal @ np.array(self.push)) > 0.0)
+    def pushing(self: FenceSearch, places: Places) -> NDArray[np.bool_]:
+        return np.asarray(-(places.normal @ np.array(self.push)) > 0.0)
 
     query = Query(part(KITE), Fence((10, 8), 2, clamp_radius=6, wall_offset=3))
     true = {one_of(fixture) for fixture in answer(query)}
-    monkeypatch.setattr(FenceSearch, "clear", pushing)
+    monkeypatch.setattr(FenceSearch, "may_press", pushing)
     low = [fixture for fixture in answer(query) if one_of(fixture) not in true]
     assert low
     for fixture in low:

@@ -18,7 +18,7 @@ from workhold.geometry.rotation import rotated
 from workhold.kernels.base.capsule import piece_distances
 from workhold.model.result import FixtureTable, unknown_quality
 
-__all__ = ["Pressed", "clear_holes", "in_order", "listed_on_fence", "listed_once", "turned"]
+__all__ = ["Pressed", "clear_holes", "listed_on_fence", "listed_once", "listing_order", "turned"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -159,10 +159,10 @@ def listed_on_fence(pressed: Pressed, problem: Problem) -> tuple[FixtureTable, P
     return written_out(pressed, hole[fits], problem), pressed
 
 
-def in_order(table: FixtureTable) -> FixtureTable:
-    """Fixtures in the order in which those are listed that are equally good: of holes, orientations and faces."""
+def listing_order(table: FixtureTable) -> IntArray:
+    """The order (N,) in which fixtures are listed that are equally good: of holes, orientations and faces."""
     words = [*table.column.T, *table.row.T, table.theta, *table.face.T]
-    return table.take(np.lexsort(words[::-1]))
+    return np.lexsort(words[::-1]).astype(np.int64)
 
 
 def written_out(pressed: Pressed, hole: IntArray, problem: Problem) -> FixtureTable:

@@ -149,6 +149,10 @@ def answer(
 
             return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
         return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
+    if query.toolkit.wall is not None:
+        from workhold.search.fence import answer_on_fence
+
+        return handed_over(answer_on_fence(query, progress, cancel), receiver)
     ways = query.toolkit.ways
     if len(ways) == 1:
         return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
@@ -186,10 +190,6 @@ def answer_of_a_way(
     receiver: Receiver | None = None,
 ) -> Result:
     """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
-    if query.toolkit.wall is not None:
-        from workhold.search.fence import answer_on_fence
-
-        return handed_over(answer_on_fence(query, progress, cancel), receiver)
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
     # Smaller blocks learn earlier what margin is to be reached.

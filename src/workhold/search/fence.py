@@ -5,13 +5,15 @@ from __future__ import annotations
 from threading import Event
 
 import numpy as np
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.listing.listed import Work, proof_of
-from workhold.listing.on_fence import Pressed, in_order, listed_on_fence
+from workhold.listing.on_fence import Pressed, listed_on_fence, listing_order
 from workhold.listing.ranking import measured, rank
+from workhold.listing.ways import joined_ways
 from workhold.model.notes import no_fixture_notes, no_place_note, undecided_note
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.query import Query
@@ -19,67 +21,103 @@ from workhold.model.result import FixtureTable, Result
 from workhold.model.wall import Flush
 from workhold.proof.deciding import Account
 from workhold.proof.flush import Candidate
-from workhold.search.fence_search import FenceSearch
+from workhold.search.fence_search import FenceSearch, pressed_by, searches_of
 
 __all__ = ["answer_on_fence"]
 
-# Fixtures that wait to be measured together.
+# Pairs that wait to be listed and measured together.
 WAITING = 1 << 14
 
 
 def answer_on_fence(query: Query, progress: Progress | None, cancel: Event | None) -> Result:
-    """The answer on a fence of which one clamp moves, see ``search.design.answer``."""
-    problem = Problem.of(query)
-    search = FenceSearch(problem)
-    edges, done, found, sets = search.edges, 0, 0, Sets(problem)
-    table, waiting = FixtureTable.empty(), [FixtureTable.empty()]
+    """The answer on a fence with one clamp, see ``search.design.answer``: one hull edge after the other lies on the wall."""
+    searches = searches_of(query, query.toolkit.ways)
+    kept = {search: Kept(search.problem) for search in searches}
+    edges, done = searches[0].edges, 0
     for edge in edges:
         if cancel is not None and cancel.is_set():
             break
-        parts = []
-        for part in search.pressed(edge):
-            parts.append(part)
+        for search, part in pressed_by(searches, edge):
+            kept[search].waiting.append(part)
             if cancel is not None and cancel.is_set():
                 break
         else:
             done += 1
-        if parts:
-            fresh, pressed = listed_on_fence(Pressed.joined(parts), problem)
-            found += len(fresh)
-            sets.add(pressed)
-            waiting.append(fresh)
-        if sum(map(len, waiting)) > WAITING:
-            table, waiting = ranked([table, measured(FixtureTable.joined(waiting), problem)], query), waiting[:1]
+        for one in kept.values():
+            one.list_many()
         if progress is not None:
-            progress(done / len(edges), found)
-    table = ranked([table, measured(FixtureTable.joined(waiting), problem)], query)
-    complete = done == len(edges)
-    undecided = tuple(entry(candidate, problem) for candidate in search.undecided)
+            progress(done / len(edges), sum(one.count for one in kept.values()))
+    results = [result_of(search, kept[search], done, len(edges)) for search in searches]
+    return results[0] if len(results) == 1 else joined_ways(results, query)
+
+
+def result_of(search: FenceSearch, kept: Kept, done: int, edges: int) -> Result:
+    """The result of one direction of the clamp, once so many of the hull edges are done."""
+    kept.list_waiting()
+    query, found = search.problem.query, kept.sets.found
+    undecided = tuple(entry(candidate, search.problem) for candidate in search.undecided)
     account = Account(search.examined, search.verified, search.escalated, 0, undecided)
     statistics = {
-        "features": len(problem.rows),
+        "features": len(search.problem.rows),
         "hull_edges": done,
         "locator_places": search.locators,
         "contacts_examined": search.examined,
     }
-    work = Work(complete, statistics, cells=done)
+    work = Work(done == edges, statistics, cells=done)
     name = query.toolkit.arrangements[0].name
     return Result(
         query=query,
-        table=table,
+        table=kept.table,
         found={name: found},
-        distinct={name: sets.count},
-        complete=complete,
-        notes=tuple(notes_of(search, found, len(edges))) if complete else (),
+        distinct={name: kept.sets.count},
+        complete=work.complete,
+        notes=tuple(notes_of(search, found, edges)) if work.complete else (),
         statistics=statistics,
         proof=proof_of(account, work),
     )
 
 
-def ranked(tables: list[FixtureTable], query: Query) -> FixtureTable:
-    """Fixtures in the order of their ranks, no more than are asked for."""
-    table = in_order(FixtureTable.joined(tables))
-    return table.take(rank(table.quality, query.ranking, query.tolerance)[: query.best])
+@define(eq=False)
+class Kept:
+    """The fixtures of one direction of the clamp, no more of them than are asked for.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    sets : the fixtures listed so far, as sets of those that a rotation of the part carries into each other.
+    table : the fixtures listed so far, best first.
+    waiting : pairs that are not listed yet, those of one hull edge after those of the other.
+    """
+
+    problem: Problem
+    sets: Sets = field(init=False)
+    table: FixtureTable = field(factory=FixtureTable.empty, init=False)
+    waiting: list[Pressed] = field(factory=list, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.sets = Sets(self.problem)
+
+    @property
+    def count(self) -> int:
+        """How many there are, with those that wait."""
+        return self.sets.found + sum(map(len, self.waiting))
+
+    def list_many(self) -> None:
+        """List what waits once it is much, and all of a hull edge."""
+        if sum(map(len, self.waiting)) > WAITING:
+            self.list_waiting()
+
+    def list_waiting(self) -> None:
+        """List what waits."""
+        if not self.waiting:
+            return
+        fresh, pressed = listed_on_fence(Pressed.joined(self.waiting), self.problem)
+        self.waiting = []
+        self.sets.add(pressed)
+        query, table = self.problem.query, FixtureTable.joined([self.table, measured(fresh, self.problem)])
+        order = listing_order(table)
+        order = order[rank(table.quality[order], query.ranking, query.tolerance)]
+        self.table = table.take(order[: query.best])
 
 
 class Sets:

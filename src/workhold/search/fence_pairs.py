@@ -15,7 +15,7 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
 from workhold.search.fence import entry
-from workhold.search.fence_search import FenceSearch
+from workhold.search.fence_search import FenceSearch, pressed_by, searches_of
 
 __all__ = ["answer_of_pairs_on_fence"]
 
@@ -24,20 +24,17 @@ def answer_of_pairs_on_fence(query: Query, progress: Progress | None, cancel: Ev
     """The fixtures of a fence with two clamps that a query asks for, see ``search.design.answer``: one hull edge after the
     other lies on the wall."""
     single = evolve(query, arrangements=None, ranking=None, best=None, listing=None, toolkit=query.toolkit.ways[0])
-    searches = [FenceSearch(Problem.of(evolve(single, toolkit=way), pairing=True)) for way in query.toolkit.ways]
+    searches = searches_of(single, query.toolkit.ways, pairing=True)
     kept = PairedOnFence(query, searches[0].problem)
     edges, done = searches[0].edges, 0
     for edge in edges:
         if cancel is not None and cancel.is_set():
             break
-        parts = []
-        for search in searches:
-            found = list(search.pressed(edge))
-            if found:
-                name = search.problem.toolkit.arrangements[0].direction or ""
-                parts.append((Pressed.joined(found), search.problem, name))
-        if parts:
-            kept.add(seats_on_fence(parts))
+        found: dict[FenceSearch, list[Pressed]] = {search: [] for search in searches}
+        for search, part in pressed_by(searches, edge):
+            found[search].append(part)
+        if any(found.values()):
+            kept.add(seats_on_fence([of_direction(search, parts) for search, parts in found.items() if parts]))
         done += 1
         if progress is not None:
             progress(done / len(edges), len(kept))
@@ -58,3 +55,8 @@ def answer_of_pairs_on_fence(query: Query, progress: Progress | None, cancel: Ev
     never, no_locator, _, _ = no_fixture_notes(query.toolkit.wording)
     note = no_pair_note(kept.seats_looked_at, verified)
     return evolve(result, notes=(never if not edges else no_locator if not statistics["locator_places"] else note,))
+
+
+def of_direction(search: FenceSearch, parts: list[Pressed]) -> tuple[Pressed, Problem, str]:
+    """The pairs of a search, at least one part of them, with its problem and the name of its direction."""
+    return Pressed.joined(parts), search.problem, search.problem.toolkit.arrangements[0].direction or ""

@@ -8,7 +8,7 @@ the hull edge strictly between its ends), with bounds of its error; what these l
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil, floor, inf
 
 import numpy as np
@@ -34,14 +34,16 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.contact.closure import ROUNDING
 from workhold.listing.on_fence import Pressed
 from workhold.model.fixture import Pose
-from workhold.model.toolkit import Carrier
+from workhold.model.query import Query
+from workhold.model.toolkit import Carrier, Toolkit
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
 from workhold.search.fence_places import Laid, Places, laid_on, places_on
 
-__all__ = ["FenceSearch"]
+__all__ = ["FenceSearch", "pressed_by", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 # Forces that may be off by more are told by balls: whether two clamps close is often a matter of an exact zero.
 DOUBTFUL = 1e-10
@@ -51,22 +53,23 @@ TOGETHER = 1 << 17
 
 @frozen(eq=False)
 class Clamps:
-    """Contacts of a clamp with M contacts of the locator they go with; -1 for those that go with any.
+    """Contacts of a clamp, each with a contact of the locator.
 
     Parameters
     ----------
-    places : contacts of the tip.
+    places : M contacts of the tip; their lines are rows, or columns counted from the locator's.
     locator : (M,) index of the locator's contact.
-    line : (M,) row of the clamp, or its column counted from the locator's.
     """
 
     places: Places
     locator: IntArray
-    line: IntArray
 
-    def take(self, order: IntArray) -> Clamps:
-        """The contacts of an index array, in its order."""
-        return Clamps(self.places.take(order), self.locator[order], self.line[order])
+    def __len__(self) -> int:
+        return len(self.locator)
+
+    def take(self, order: IntArray | BoolArray) -> Clamps:
+        """The contacts of an index array or mask, in its order."""
+        return Clamps(self.places.take(order), self.locator[order])
 
 
 @define(eq=False)
@@ -132,18 +135,7 @@ class FenceSearch:
 
     def pressed(self, edge: int) -> Iterator[Pressed]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
-        problem, laid = self.problem, self.laid(edge)
-        lines = laid.rows[:, IS_ARC] == 0.0
-        tilted = np.minimum(np.abs(laid.rows[:, AXIS_X]), np.abs(laid.rows[:, AXIS_Y])) > PARALLEL
-        self.is_square = self.is_square and bool((lines & ~tilted).all())
-        rows = self.rows_of(laid, problem.standing)
-        locators = self.on_rows(edge, laid, problem.standing, rows)
-        self.locators += len(locators)
-        if len(locators) == 0:
-            return
-        for part in self.clamps(edge, laid, locators):
-            if len(part.line):
-                yield self.closing(edge, laid, locators, part)
+        return (part for _, part in pressed_by([self], edge))
 
     def on_rows(self, edge: int, laid: Laid, chosen: tuple[int, int], rows: Array) -> Places:
         """Contacts of pegs in rows of holes, those where a row grazes an arc told by balls."""
@@ -168,17 +160,18 @@ class FenceSearch:
         rows = np.arange(count if self.plate.rows is None else min(count, self.plate.rows), dtype=np.float64)
         return np.asarray(first + pitch * rows)
 
-    def clamps(self, edge: int, laid: Laid, locators: Places) -> Iterator[Clamps]:
-        """Contacts of the clamp, those on columns with the locators that these are counted from."""
-        problem, margin = self.problem, self.problem.contact_margin
-        if self.clamp.is_along_x:
-            places = self.clear(self.on_rows(edge, laid, problem.moving, self.rows_of(laid, problem.moving)))
-            together = max(TOGETHER // max(len(places), 1), 1)
-            for start in range(0, len(locators), together):
-                numbers = np.arange(start, min(start + together, len(locators)))
-                which = np.tile(np.arange(len(places)), len(numbers))
-                yield Clamps(places.take(which), np.repeat(numbers, len(places)), places.line[which])
-            return
+    def of_rows(self, places: Places, locators: Places) -> Iterator[Clamps]:
+        """Contacts of the clamp on rows, each with every locator, some at a time."""
+        places = places.take(self.may_press(places))
+        together = max(TOGETHER // max(len(places), 1), 1)
+        for start in range(0, len(locators), together):
+            numbers = np.arange(start, min(start + together, len(locators)))
+            which = np.tile(np.arange(len(places)), len(numbers))
+            yield Clamps(places.take(which), np.repeat(numbers, len(places)))
+
+    def on_columns(self, laid: Laid, locators: Places) -> Iterator[Clamps]:
+        """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted from."""
+        problem = self.problem
         low, high = reach_of(laid.rows[slice(*problem.moving)], upward=False)
         pitch, columns = self.plate.pitch[0], self.plate.columns
         most = inf if columns is None else columns - 1
@@ -190,22 +183,23 @@ class FenceSearch:
         for start in range(0, len(locators) if len(steps) else 0, together):
             some = u[start : start + together]
             levels = (some[:, None] + pitch * steps).ravel()
-            places = self.clear(places_on(laid, problem.moving, levels, True, margin))
-            locator = start + places.line // len(steps)
+            places = places_on(laid, problem.moving, levels, True, problem.contact_margin)
+            locator, step = np.divmod(places.line, len(steps))
+            locator += start
             # The column is as uncertain as the locator it is counted from.
             grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + laid.off) / laid.off)
-            yield Clamps(evolve(places, reach=grown), locator, steps[places.line % len(steps)])
+            yield Clamps(evolve(places, line=steps[step], reach=grown), locator)
 
-    def clear(self, places: Places) -> Places:
-        """Contacts of the tip clear of the wall, in which it pushes the part."""
+    def may_press(self, places: Places) -> BoolArray:
+        """Which contacts (M,) of the tip are clear of the wall, and push the part."""
         x, y = self.push
         push = -(places.normal[:, 0] * x + places.normal[:, 1] * y)
         above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
-        return places.take(above & (push > -2.0 * places.swing))
+        return np.asarray(above & (push > -2.0 * places.swing))
 
     def closing(self, edge: int, laid: Laid, locators: Places, clamps: Clamps) -> Pressed:
         """The pairs of locators and clamps that press the part against the wall."""
-        self.examined += len(clamps.line)
+        self.examined += len(clamps)
         one, two = locators, clamps.places
         told = seating if self.problem.pairing else closure
         null, push, held, doubtful = told(laid, one, two, clamps.locator, self.push, self.problem)
@@ -223,7 +217,7 @@ class FenceSearch:
             return Pressed(
                 edge=np.full(len(chosen), edge),
                 row=one.line[locator],
-                line=clamps.line[chosen],
+                line=two.line[chosen],
                 locator=one.point[locator],
                 tip=two.point[chosen],
                 feature=np.stack([one.feature[locator], two.feature[chosen]], axis=1),
@@ -275,11 +269,51 @@ class FenceSearch:
         return Candidate(
             edge=edge,
             row=int(one.line[locator]),
-            line=int(clamps.line[k]),
+            line=int(two.line[k]),
             is_upright=not self.clamp.is_along_x,
             features=(int(one.feature[locator]), int(two.feature[k])),
             branches=(float(one.branch[locator]), float(two.branch[k])),
         )
+
+
+def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[FenceSearch]:
+    """The searches of a query on the ways of a fence, which differ in the clamp's direction alone."""
+    one, *others = (evolve(query, toolkit=way) for way in ways)
+    problem = Problem.of(one, pairing=pairing)
+    return [FenceSearch(problem), *(FenceSearch(evolve(problem, query=other)) for other in others)]
+
+
+def pressed_by(searches: Sequence[FenceSearch], edge: int) -> Iterator[tuple[FenceSearch, Pressed]]:
+    """The pairs that press the part as it lies on a hull edge, some at a time, each with its search.
+
+    What does not depend on the clamp's direction is looked at once for all searches (``searches_of``): where the part lies,
+    the locators, and what pegs touch on rows and on columns.
+    """
+    one = searches[0]
+    problem, laid = one.problem, one.laid(edge)
+    lines = laid.rows[:, IS_ARC] == 0.0
+    tilted = np.minimum(np.abs(laid.rows[:, AXIS_X]), np.abs(laid.rows[:, AXIS_Y])) > PARALLEL
+    locators = one.on_rows(edge, laid, problem.standing, one.rows_of(laid, problem.standing))
+    for search in searches:
+        search.is_square = search.is_square and bool((lines & ~tilted).all())
+        search.locators += len(locators)
+    if len(locators) == 0:
+        return
+    along = [search for search in searches if search.clamp.is_along_x]
+    if along:
+        places = locators
+        if problem.moving != problem.standing:
+            places = one.on_rows(edge, laid, problem.moving, one.rows_of(laid, problem.moving))
+        for search in along:
+            for part in search.of_rows(places, locators):
+                if len(part):
+                    yield search, search.closing(edge, laid, locators, part)
+    upright = [search for search in searches if not search.clamp.is_along_x]
+    for part in one.on_columns(laid, locators) if upright else ():
+        for search in upright:
+            pushing = part.take(search.may_press(part.places))
+            if len(pushing):
+                yield search, search.closing(edge, laid, locators, pushing)
 
 
 def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
