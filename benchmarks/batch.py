@@ -20,7 +20,7 @@ from workhold.batch.jobs import ANY_PART
 from workhold.batch.records import part_record
 from workhold.batch.tasks import Answering, Task
 from workhold.batch.workers import LocalWorkers
-from workhold.files.toolkit.presets import load_vise
+from workhold.files.toolkit.presets import load_toolkit
 from workhold.model.query import Query
 
 PRESETS = ("plate-20mm", "clamp-plate-20mm", "fence-20mm")
@@ -66,7 +66,7 @@ def run(quick: bool) -> Section:
 
 def searching(length: int) -> Iterator[Task]:
     """Searches of a catalogue in some toolkits."""
-    queries = [Query(ANY_PART, load_vise(name).toolkit) for name in PRESETS]
+    queries = [Query(ANY_PART, load_toolkit(name).toolkit) for name in PRESETS]
     for number, (part, query) in enumerate(product(catalogue(length), queries)):
         yield Answering(f"search-{number}", part.name, part_record(part, ()), query, 10)
 

@@ -67,7 +67,7 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
     from workhold.batch.jobs import ANY_PART
     from workhold.batch.records import part_record
     from workhold.batch.tasks import Answering, done
-    from workhold.files.toolkit.presets import load_vise
+    from workhold.files.toolkit.presets import load_toolkit
     from workhold.model.query import Query
 
     runs = []
@@ -77,7 +77,7 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
         for name in presets:
             if number % EVERY.get(name, 1):
                 continue
-            vise = load_vise(name)
+            vise = load_toolkit(name)
             task = Answering("", "", record, Query(ANY_PART, vise.toolkit, tolerance=vise.tolerance), 10)
             if not runs:
                 done(task)

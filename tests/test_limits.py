@@ -62,11 +62,11 @@ from workhold.model.tolerance import Tolerance
 from workhold.limits import thread_count
 from workhold.statics.loads import load_cases
 from workhold.files.toolkit.form import checked
-from workhold.files.toolkit.reader import described_vise
+from workhold.files.toolkit.reader import described_toolkit
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
-        part, held = Workpiece.from_loops("part", loops), described_vise("vise", checked({"unit": "mm", **vise})).toolkit
+        part, held = Workpiece.from_loops("part", loops), described_toolkit("vise", checked({"unit": "mm", **vise})).toolkit
         print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
     except InputError as error:
         print(error)

@@ -112,14 +112,14 @@ def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: 
     assert sorted(path.name for path in tmp_path.iterdir()) == ["nearest-miss.png", "nearest-miss.svg"]
 
 
-def test_explore_lists_every_vise(run: Any, tmp_path: Path) -> None:
-    """With counts as a design of its own finds them, the vises that cannot be, and the best."""
+def test_explore_lists_every_toolkit(run: Any, tmp_path: Path) -> None:
+    """With counts as a design of its own finds them, the toolkits that cannot be, and the best."""
     table = tmp_path / "table.csv"
     words = ["--pitch", "8,10x12,5", "--columns", "1", "--peg-radius", "3", "--out", table, "--rank-by", "end-distance"]
     outcome = run("explore", "widget", *words)
     assert outcome.exit_code == 0
     rows = [line.split(",") for line in table.read_text().splitlines()]
-    assert rows[0][:4] == ["vise", "fixtures", "type_I", "type_II"]
+    assert rows[0][:4] == ["toolkit", "fixtures", "type_I", "type_II"]
     assert len(rows) == 4
     assert "505" in outcome.stdout and "pegs of radius 3 overlap" in outcome.stdout
     assert "First choice: pitch" in outcome.stdout and "its first fixture has end distance mm" in outcome.stdout

@@ -33,7 +33,7 @@ def parts() -> Iterator[Any]:
 
 def toolkits() -> Iterator[Any]:
     """Every toolkit in TOML."""
-    yield from (tomllib.loads(path.read_text()) for path in (DATA / "vises").iterdir())
+    yield from (tomllib.loads(path.read_text()) for path in (DATA / "toolkits").iterdir())
 
 
 def results() -> Iterator[Any]:
@@ -135,7 +135,7 @@ def test_a_query_fits_that_the_server_takes() -> None:
         plate,
         {**plate, "kind": "edge", "wall_offset": 9},
     ):
-        assert FITS["query"]({"workpiece": workpiece, "vise": held_in})
+        assert FITS["query"]({"workpiece": workpiece, "toolkit": held_in})
 
 
 def test_the_command_prints_them(run: Any) -> None:

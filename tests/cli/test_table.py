@@ -63,7 +63,7 @@ def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: py
     """The tables of a fixture and of the vises."""
     write_result(fake_result(12), tmp_path / "r.json")
     monkeypatch.setenv("COLUMNS", "80")
-    for words in (("show", tmp_path / "r.json", 1), ("vises",), ("features", "widget")):
+    for words in (("show", tmp_path / "r.json", 1), ("toolkits",), ("features", "widget")):
         outcome = run(*words)
         assert outcome.exit_code == 0, outcome.stderr
         lines = outcome.stdout.splitlines()

@@ -1,4 +1,4 @@
-"""``--unit`` in and out, and ``workhold vises``."""
+"""``--unit`` in and out, and ``workhold toolkits``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from workhold.cli.tables import fixture_tables, result_table
 from workhold.cli.values import length, pitches
 from workhold.errors import InputError
 from workhold.files.result.writer import write_result
-from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.listing.alike import entries
 from workhold.model.units import INCH, MILLIMETRE
 
@@ -123,37 +123,37 @@ def test_a_drawing_without_a_unit_is_in_that_of_the_command(run: Any, tmp_path: 
 
 
 def test_parts_and_vises_in_inches(run: Any) -> None:
-    rows = [line.split() for line in run("vises", "--unit", "inch").stdout.splitlines()]
+    rows = [line.split() for line in run("toolkits", "--unit", "inch").stdout.splitlines()]
     assert rows[0][:4] == ["name", "pitch", "in", "peg"]
     assert [row[0] for row in rows[2:]] == list(preset_names())
     assert next(row for row in rows if row[0] == "plate-one-inch")[1:4] == ["1", "0.25", "3"]
     assert "width in" in run("parts", "--unit", "in").stdout
-    assert "pitch mm" in run("vises").stdout
+    assert "pitch mm" in run("toolkits").stdout
 
 
 @pytest.mark.parametrize("name", preset_names())
 def test_every_vise_is_shown_with_its_source(run: Any, name: str) -> None:
-    outcome = run("vises", name)
+    outcome = run("toolkits", name)
     assert outcome.exit_code == 0, outcome.stderr
     assert outcome.stdout.splitlines()[-1].startswith("Source: ")
 
 
 def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
     """In its own unit, or in the one asked for; a user's file too; what was assumed is said to be."""
-    inches = run("vises", "plate-one-inch").stdout
+    inches = run("toolkits", "plate-one-inch").stdout
     assert "distance between holes                     1 in" in inches
     assert "0.2501 to 0.2503 in" in inches
     assert "0.00039 in (assumed: no source says)" in inches
-    assert "6.353 to 6.358 mm" in run("vises", "plate-one-inch", "--unit", "mm").stdout
+    assert "6.353 to 6.358 mm" in run("toolkits", "plate-one-inch", "--unit", "mm").stdout
     path = tmp_path / "own.toml"
     path.write_text(
         'unit = "mm"\npitch = [20, 25]\ncolumns = 2\npeg_radius = 3\nrows = 8\nbody_radius = 5\nblocked = ["L-B"]\n'
         "row_offset = 5\nmax_opening = 90\n"
     )
-    own = run("vises", path).stdout
+    own = run("toolkits", path).stdout
     for words in ("20 x 25 mm", "rows on each jaw", "L-B", "90 mm", "5 mm", "(assumed: no pin and hole are given)"):
         assert words in own
-    refused = run("vises", "plate-one")
+    refused = run("toolkits", "plate-one")
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
     assert "try plate-one-inch" in refused.stderr
 
@@ -183,7 +183,7 @@ def test_the_vise_file_of_the_manual(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "hardware.md").read_text()
     (block,) = re.findall(r"```toml\n(.*?)```", page, flags=re.S)
     (tmp_path / "jaws.toml").write_text(block)
-    loaded = load_vise(tmp_path / "jaws.toml")
+    loaded = load_toolkit(tmp_path / "jaws.toml")
     assert isclose(loaded.tolerance.peg, 0.044)
     assert "0.044 mm" in page
 
@@ -192,7 +192,7 @@ def test_the_manual_lists_every_preset() -> None:
     """The table has a row for each preset with its pitch, peg and columns."""
     page = (ROOT / "docs" / "hardware.md").read_text()
     for name in preset_names():
-        loaded = load_vise(name)
+        loaded = load_toolkit(name)
         unit, first = loaded.unit, loaded.toolkit.carriers[0]
         pitch, peg = unit.figure(first.pitch[0]), unit.figure(2 * first.peg_radius)
         of = unit.abbreviation

@@ -8,8 +8,8 @@ from math import inf
 import pytest
 from attrs import fields
 
+from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import number, positive_number
-from workhold.cli.vise_options import ViseWords
 from workhold.errors import InputError
 from workhold.model.plate import Plate
 from workhold.model.units import MILLIMETRE
@@ -28,10 +28,10 @@ def test_fractions_have_signs() -> None:
     assert [number(text) for text in ("-1/2", "-1-1/2", "+1 1/4", "1/0")] == [-0.5, -1.5, 1.25, inf]
 
 
-def typed_words(**typed: str) -> ViseWords:
+def typed_words(**typed: str) -> ToolkitWords:
     """What was typed of a plate with two clamps."""
     plate = {"toolkit": "plate", "pitch": "20", "peg_radius": "3", "clamps": "2"}
-    return ViseWords(**{field.name: None for field in fields(ViseWords)} | plate | typed)
+    return ToolkitWords(**{field.name: None for field in fields(ToolkitWords)} | plate | typed)
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ from workhold.files.apart import limit_memory, limit_processor
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
-from workhold.files.toolkit.reader import read_vise_file
+from workhold.files.toolkit.reader import read_toolkit_file
 from workhold.kernels.base.distance import outline_distances
 from workhold.verification.columns import columns_of
 
@@ -106,7 +106,7 @@ def check_columns(path: Path) -> None:
 
 def check_vise(path: Path) -> None:
     """Every length is the file's."""
-    read = read_vise_file(path).toolkit
+    read = read_toolkit_file(path).toolkit
     content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     unit = {"mm": 1.0, "inch": 25.4}[content["unit"]]
     told = content["pitch"] if isinstance(content["pitch"], list) else [content["pitch"]] * 2

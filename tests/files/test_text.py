@@ -11,7 +11,7 @@ from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.text import json_value, read_text, toml_table
-from workhold.files.toolkit.reader import read_vise_file
+from workhold.files.toolkit.reader import read_toolkit_file
 from workhold.model.load import Load
 from workhold.model.restrictions import circle_zone
 from workhold.model.tolerance import Tolerance
@@ -26,7 +26,7 @@ VISE = 'unit = "mm"\npitch = 10\ncolumns = 2\npeg_radius = 2\n'
 LOADS = "[[load]]\nforce = 1\nat = [1, 2]\n"
 READERS = {
     "part.json": (read_workpiece, PLATE, "60"),
-    "vise.toml": (read_vise_file, VISE, "10"),
+    "vise.toml": (read_toolkit_file, VISE, "10"),
     "loads.toml": (read_loads, LOADS, "2]"),
     "loads.json": (read_loads, '{"load": [{"force": 1, "at": [1, 2]}]}', "2]"),
 }

@@ -8,7 +8,7 @@ import pytest
 
 import workhold
 from workhold.errors import InputError
-from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 
 CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence)
 
@@ -18,8 +18,8 @@ def test_every_preset_is_one_of_its_class_alone() -> None:
     listed = [(kind, name) for kind in CLASSES for name in kind.presets()]
     assert sorted(name for _, name in listed) == sorted(preset_names())
     for kind, name in listed:
-        assert kind.preset(name) == load_vise(name).toolkit
-        assert workhold.Tolerance.preset(name) == load_vise(name).tolerance
+        assert kind.preset(name) == load_toolkit(name).toolkit
+        assert workhold.Tolerance.preset(name) == load_toolkit(name).tolerance
 
 
 def test_fields_can_be_changed() -> None:

@@ -18,7 +18,7 @@ from toolkit_results import NOTCHED, assert_all_proven, part
 from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.contact.features import contact_features
-from workhold.files.toolkit.presets import load_vise
+from workhold.files.toolkit.presets import load_toolkit
 from workhold.geometry.offset import trimmed_offsets
 from workhold.geometry.segment import Arc, Line
 from workhold.model.flat import Flat, flat_of, standoff
@@ -198,7 +198,7 @@ def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
     """In inches; in a spreadsheet each peg's angle stands behind all else."""
     path = tmp_path / "flat.toml"
     path.write_text('unit = "inch"\nkind = "plate"\npitch = 0.75\npeg_radius = 0.125\nflat = [0.1, 0.05]\nclamps = 2\n')
-    fields = load_vise(path).fields
+    fields = load_toolkit(path).fields
     toolkit = Plate(**fields, columns=4, rows=4)
     assert toolkit.flat == Flat(2.54, 1.27)
     result = design(part(NOTCHED), toolkit, best=3)

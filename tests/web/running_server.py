@@ -28,13 +28,13 @@ SQUARE = [[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]
 # A search that takes longer than any test.
 LONG = {
     "workpiece": {"name": "8Handle", "loops": [loop.tolist() for loop in load("8Handle").loops]},
-    "vise": {"pitch": [3, 3], "columns": 7, "peg_radius": 1.4},
+    "toolkit": {"pitch": [3, 3], "columns": 7, "peg_radius": 1.4},
 }
 
 
 def request(**changes: Any) -> dict[str, Any]:
     """A search of the widget, with some values changed."""
-    return {"workpiece": WIDGET, "vise": VISE, **changes}
+    return {"workpiece": WIDGET, "toolkit": VISE, **changes}
 
 
 @define

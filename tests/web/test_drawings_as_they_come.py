@@ -89,7 +89,7 @@ def test_the_page_asks_and_leads_to_a_sheet(server: RunningServer, drawing: Draw
     x0, y0, x1, y1 = part["bounds"]
     assert of_that_size(drawing, x1 - x0, y1 - y0), part["bounds"]
     workpiece = {key: part[key] for key in ("name", "loops", "departure")}
-    job = server.done({"workpiece": workpiece, "vise": vise_for(x1 - x0, y1 - y0)})
+    job = server.done({"workpiece": workpiece, "toolkit": vise_for(x1 - x0, y1 - y0)})
     sheet = server.client.get(f"{job}/fixtures/1/sheet.pdf")
     assert sheet.status_code == 200 and sheet.content.startswith(b"%PDF")
 

@@ -28,7 +28,7 @@ def forms() -> list[dict[str, Any]]:
 
 def asked(**changes: Any) -> dict[str, Any]:
     """A family, with some values changed."""
-    return {"workpieces": [*forms(), DISC], "vise": VISE, **changes}
+    return {"workpieces": [*forms(), DISC], "toolkit": VISE, **changes}
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_what_cannot_be_is_told(server: RunningServer, job: str) -> None:
     client = server.client
     for body in (
         {"workpieces": []},
-        {"vise": None},
+        {"toolkit": None},
         {"workpieces": [{"name": "a", "loops": [[[0, 0, 0]]]}]},
         {"more": 1},
     ):
@@ -93,7 +93,7 @@ def test_what_cannot_be_is_told(server: RunningServer, job: str) -> None:
 
 
 def test_a_family_is_stopped(server: RunningServer) -> None:
-    url = server.submit({"workpieces": [LONG["workpiece"]] * 2, "vise": LONG["vise"]}, "/api/families")
+    url = server.submit({"workpieces": [LONG["workpiece"]] * 2, "toolkit": LONG["toolkit"]}, "/api/families")
     assert server.client.get(f"{url}/family").json()["error"] == "The search is not over yet."
     server.state_when(url, lambda state: state["state"] == "running")
     server.client.post(f"{url}/cancel")

@@ -64,7 +64,7 @@ def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, res
     assert state["counts"] == result.counts and state["found"] == len(result)
     assert state["complete"] and state["fraction"] == 1.0 and state["error"] is None
     assert state["proof"]["verified"] == result.proof.verified  # type: ignore[union-attr]
-    assert state["request"]["vise"]["pitch"] == [8, 8]
+    assert state["request"]["toolkit"]["pitch"] == [8, 8]
     listed = rows(server, job)
     assert [row["rank"] for row in listed] == list(range(1, len(result) + 1))
     for row, fixture in zip(listed, result, strict=True):
@@ -300,14 +300,14 @@ def test_restrictions_ranking_and_tolerance_are_heeded(server: RunningServer) ->
 @pytest.mark.parametrize(
     "change",
     [
-        {"vise": {**VISE, "pitch": [8]}},
-        {"vise": {**VISE, "pitch": [8, -8]}},
-        {"vise": {**VISE, "columns": 0}},
-        {"vise": {**VISE, "columns": 1.5}},
-        {"vise": {**VISE, "peg_radius": 5}},
-        {"vise": {**VISE, "blocked": ["hole 3"]}},
-        {"vise": {**VISE, "colour": "red"}},
-        {"vise": None},
+        {"toolkit": {**VISE, "pitch": [8]}},
+        {"toolkit": {**VISE, "pitch": [8, -8]}},
+        {"toolkit": {**VISE, "columns": 0}},
+        {"toolkit": {**VISE, "columns": 1.5}},
+        {"toolkit": {**VISE, "peg_radius": 5}},
+        {"toolkit": {**VISE, "blocked": ["hole 3"]}},
+        {"toolkit": {**VISE, "colour": "red"}},
+        {"toolkit": None},
         {"workpiece": {"name": "x", "loops": []}},
         {"types": ["III"]},
         {"types": []},
@@ -331,7 +331,7 @@ def test_searches_that_cannot_be_are_refused_before_they_begin(server: RunningSe
 
 def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
     url = server.done(
-        {"workpiece": {"name": "s", "loops": [SQUARE]}, "vise": {"pitch": [50, 50], "columns": 1, "peg_radius": 3}}
+        {"workpiece": {"name": "s", "loops": [SQUARE]}, "toolkit": {"pitch": [50, 50], "columns": 1, "peg_radius": 3}}
     )
     state = server.client.get(url).json()
     assert state["found"] == 0 and state["notes"]
@@ -341,21 +341,27 @@ def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
     refused(server.client.get(f"{job}/explanation"), 409)
 
 
-def test_a_plate_is_compared_with_a_vise_and_other_kinds_are_refused(server: RunningServer) -> None:
-    """A plate has fields of its own; those of a vise it does not take, whatever name it is given."""
+def test_all_kinds_are_compared_and_others_refused(server: RunningServer) -> None:
+    """A plate and a fence have fields of their own; those of a vise they do not take, whatever name is given."""
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "title": "plate"}
-    url = server.done({"workpiece": WIDGET, "vises": [{**VISE, "title": "vise"}, plate]}, "/api/explore")
-    table = server.client.get(url).json()["table"]
-    assert {row["title"]: sum(row["counts"].values()) > 0 for row in table} == {"vise": True, "plate": True}
+    fence = {**plate, "kind": "edge", "wall_offset": 10, "title": "fence"}
+    asked = {"workpiece": WIDGET, "toolkits": [{**VISE, "title": "vise"}, plate, fence]}
+    table = server.client.get(server.done(asked, "/api/explore")).json()["table"]
+    assert [(row["title"], sum(row["counts"].values()) > 0) for row in table] == [
+        ("vise", True),
+        ("plate", True),
+        ("fence", True),
+    ]
+    assert [row["toolkit"]["kind"] for row in table] == ["vise", "translating-clamp", "edge"]
     for kind in ("plate", "edge"):
         other = {**VISE, "kind": kind}
-        refused(server.client.post("/api/jobs", json=request(vise=other)))
-        refused(server.client.post("/api/explore", json={"workpiece": WIDGET, "vises": [other]}))
+        refused(server.client.post("/api/jobs", json=request(toolkit=other)))
+        refused(server.client.post("/api/explore", json={"workpiece": WIDGET, "toolkits": [other]}))
 
 
-def test_vises_are_compared(server: RunningServer) -> None:
-    vises = [{**VISE, "title": "one"}, {**VISE, "pitch": [12, 12], "title": "two"}, {**VISE, "pitch": [500, 500]}]
-    url = server.done({"workpiece": WIDGET, "vises": vises}, "/api/explore")
+def test_toolkits_are_compared(server: RunningServer) -> None:
+    toolkits = [{**VISE, "title": "one"}, {**VISE, "pitch": [12, 12], "title": "two"}, {**VISE, "pitch": [500, 500]}]
+    url = server.done({"workpiece": WIDGET, "toolkits": toolkits}, "/api/explore")
     state = server.client.get(url).json()
     assert [row["title"] for row in state["table"]] == ["one", "two", ""]
     assert state["table"][0]["counts"] == {"I": 459, "II": 46}

@@ -125,7 +125,7 @@ def test_a_search_that_takes_too_long_shows_what_it_found(hasty: RunningServer) 
 
 def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: RunningServer) -> None:
     huge = {"pitch": [0.2, 0.2], "columns": 200, "peg_radius": 0.01}
-    state = strict.outcome(strict.submit(request(vise=huge, workpiece={"name": "s", "loops": [SQUARE]})))
+    state = strict.outcome(strict.submit(request(toolkit=huge, workpiece={"name": "s", "loops": [SQUARE]})))
     assert state["state"] == "failed" and "memory" in state["error"]
     assert strict.outcome(strict.submit(request()))["state"] == "done"
 

@@ -1,4 +1,4 @@
-"""Parts, vises and figures over HTTP."""
+"""Parts, toolkits and figures over HTTP."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from running_server import SQUARE, WIDGET, RunningServer
 
 from workhold.files.part.load import builtin_parts, read_workpiece
-from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.model.kinds import toolkit_of
 from workhold.model.quality import FIGURES
 
@@ -154,11 +154,11 @@ def test_what_is_no_json_is_refused(server: RunningServer, body: bytes) -> None:
     refused(server.client.post("/api/parts/check", content=body, headers=headers))
 
 
-def test_vises_are_the_presets_and_can_be_asked_for(server: RunningServer) -> None:
-    vises = server.client.get("/api/vises").json()
-    assert [vise["name"] for vise in vises] == list(preset_names())
-    for vise in vises:
-        assert toolkit_of(vise["kind"], vise["fields"]) == load_vise(vise["name"]).toolkit
+def test_presets_are_told_and_can_be_asked_for(server: RunningServer) -> None:
+    presets = server.client.get("/api/presets").json()
+    assert [vise["name"] for vise in presets] == list(preset_names())
+    for vise in presets:
+        assert toolkit_of(vise["kind"], vise["fields"]) == load_toolkit(vise["name"]).toolkit
 
 
 def test_figures_are_all_told(server: RunningServer) -> None:

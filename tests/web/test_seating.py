@@ -40,7 +40,7 @@ def told(result: Result) -> Seating:
 @pytest.fixture(scope="module")
 def place(server: RunningServer) -> str:
     """The address of the second fixture."""
-    return f"{server.done(request(workpiece=WEDGE, vise=VISE))}/fixtures/2"
+    return f"{server.done(request(workpiece=WEDGE, toolkit=VISE))}/fixtures/2"
 
 
 def put(result: Result, turn: float, dx: float, dy: float, turned_over: bool = False) -> dict[str, Any]:
@@ -74,7 +74,7 @@ def test_figures_and_sentences_are_the_programs(server: RunningServer, place: st
 def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer, result: Result) -> None:
     """As the program does, in the order that it gives them; what cannot be asked is refused before it begins."""
     made = workhold.design(result.workpiece, result.toolkit, seating=3, opening=0.5)
-    job = server.done(request(workpiece=WEDGE, vise=VISE, seating=3, opening=0.5))
+    job = server.done(request(workpiece=WEDGE, toolkit=VISE, seating=3, opening=0.5))
     told = json.loads(server.client.get(f"{job}/result.json").content)
     assert (told["seating"], told["opening"], told["foolproof"]) == (3, 0.5, False)
     fields = [fixture["seating"] for fixture in told["fixtures"]]
@@ -84,8 +84,8 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
     assert [row["caught"] for row in rows] == [{"opening": one} for one in openings]
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
     for asked in ({"opening": 1.0}, {"foolproof": True}, {"seating": 0}, {"seating": 3, "opening": -1}):
-        refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, vise=VISE, **asked)), 400)
-    refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, vise=plate, seating=3)), 400)
+        refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=VISE, **asked)), 400)
+    refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=plate, seating=3)), 400)
 
 
 def test_a_closing_comes_home_from_the_cage(server: RunningServer, place: str, result: Result, told: Seating) -> None:
@@ -154,7 +154,7 @@ def test_what_there_is_not_is_404_or_409(server: RunningServer, place: str, resu
 
 
 def test_what_cannot_be_told_is_refused_in_the_programs_words(server: RunningServer) -> None:
-    points = server.done(request(workpiece=WEDGE, vise={**VISE, "peg_radius": 0}))
+    points = server.done(request(workpiece=WEDGE, toolkit={**VISE, "peg_radius": 0}))
     assert "radius 0" in refused(server.client.get(f"{points}/fixtures/1/seating"))
 
 
@@ -223,7 +223,7 @@ def test_a_closing_that_is_stopped_has_no_answer(result: Result, told: Seating) 
     ids=["vise", "clamp"],
 )
 def test_it_is_told_how_far_what_moves_can_be_opened(server: RunningServer, vise: Any, widest: Any) -> None:
-    job = server.done(request(workpiece=WEDGE, vise=vise))
+    job = server.done(request(workpiece=WEDGE, toolkit=vise))
     row = server.client.get(f"{job}/fixtures/1").json()
     row["stroke"] = row["settings"][0]["length"]
     answer = server.client.get(f"{job}/fixtures/1/seating").json()

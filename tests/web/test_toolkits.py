@@ -10,7 +10,7 @@ import pytest
 from attrs import fields_dict
 from running_server import WIDGET, RunningServer, request
 
-from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
 from workhold.model.plate import DIRECTIONS, Plate
 from workhold.web.forms import JobForm
@@ -22,8 +22,8 @@ PLATE = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "direc
 
 def asked(vise: Any) -> Any:
     """The toolkit that a request asks for."""
-    form = JobForm.model_validate({"workpiece": WIDGET, "vise": json.loads(json.dumps(vise))})
-    return form.vise.toolkit()
+    form = JobForm.model_validate({"workpiece": WIDGET, "toolkit": json.loads(json.dumps(vise))})
+    return form.toolkit.toolkit()
 
 
 def test_every_kind_is_on_the_page() -> None:
@@ -60,11 +60,11 @@ def test_every_choice_can_be_asked_for(one: Described) -> None:
 
 def test_a_preset_is_of_the_kind_that_says_most() -> None:
     """A vise of one column is a gripper; every preset is asked for as the page shows it."""
-    kinds = {name: page_kind(load_vise(name)) for name in preset_names()}
+    kinds = {name: page_kind(load_toolkit(name)) for name in preset_names()}
     assert kinds["gripper-one-column"] == "gripper" and kinds["gripper-two-columns"] == "vise"
     assert kinds["clamp-plate-20mm"] == "translating-clamp"
     for name, kind in kinds.items():
-        loaded = load_vise(name)
+        loaded = load_toolkit(name)
         assert asked({"kind": kind, **loaded.fields}) == loaded.toolkit
 
 
@@ -80,7 +80,7 @@ def test_the_words_are_of_the_toolkit() -> None:
 
 def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningServer) -> None:
     """The job tells what there is; each direction by itself, and both by the name they share."""
-    url = server.done(request(workpiece=RECTANGLE, vise=PLATE))
+    url = server.done(request(workpiece=RECTANGLE, toolkit=PLATE))
     state = server.client.get(url).json()
     assert [one["title"] for one in state["arrangements"]] == ["clamp -x", "clamp -y"]
     totals = {}
@@ -97,7 +97,7 @@ def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningSe
 def test_a_clamp_is_drawn_back_no_farther_than_it_goes(server: RunningServer) -> None:
     """From where it clamps to its least stroke; a clamp of which only the line is told has no end."""
     for travel in ([12.5, 40], None):
-        url = server.done(request(workpiece=RECTANGLE, vise={**PLATE, "travel": travel}))
+        url = server.done(request(workpiece=RECTANGLE, toolkit={**PLATE, "travel": travel}))
         for row in server.client.get(f"{url}/fixtures", params={"limit": 50}).json()["rows"]:
             clamp = row["carriers"][-1]["clamp"]
             if travel is None:
@@ -109,12 +109,14 @@ def test_a_clamp_is_drawn_back_no_farther_than_it_goes(server: RunningServer) ->
 def test_what_would_help_says_which_fields_change(server: RunningServer) -> None:
     """So that the page can make any change of any toolkit."""
     vise = {**PLATE, "columns": 2, "rows": 2, "directions": ["-x"]}
-    url = server.done(request(workpiece=RECTANGLE, vise=vise))
+    url = server.done(request(workpiece=RECTANGLE, toolkit=vise))
     helps = server.client.get(f"{url}/explanation").json()["helps"]
     changes = [one["toolkit"] for one in helps if one["toolkit"] is not None]
     assert changes
     for fields in changes:
-        assert server.client.get(server.done(request(workpiece=RECTANGLE, vise={**vise, **fields}))).json()["found"] > 0
+        assert (
+            server.client.get(server.done(request(workpiece=RECTANGLE, toolkit={**vise, **fields}))).json()["found"] > 0
+        )
 
 
 def test_directions_of_the_page_are_those_of_the_plate() -> None:
@@ -129,7 +131,7 @@ def test_directions_of_the_page_are_those_of_the_plate() -> None:
 def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:
     """The nearest miss of a part that no clamp of this stroke reaches has neither a body nor a length to draw."""
     vise = {**PLATE, "directions": ["-x"], "travel": [300, 301], "columns": 12, "rows": 8}
-    url = server.done(request(workpiece=RECTANGLE, vise=vise))
+    url = server.done(request(workpiece=RECTANGLE, toolkit=vise))
     nearest = server.client.get(f"{url}/explanation").json()["nearest"]
     clamp = nearest["row"]["carriers"][-1]
     assert (clamp["clamp"]["hole"], clamp["measured"]) == (None, None)
@@ -140,12 +142,12 @@ def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: Running
     """The ends of the contact are numbered among the pegs, after the locator; a corner tells that it is one."""
     shape = {**RECTANGLE, "loops": [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]]}
     vise = {"kind": "edge", "pitch": [10, 10], "peg_radius": 3, "wall_offset": 5}
-    url = server.done(request(workpiece=shape, vise=vise))
+    url = server.done(request(workpiece=shape, toolkit=vise))
     (row, *_) = server.client.get(f"{url}/fixtures", params={"limit": 5}).json()["rows"]
     assert row["flush"] == row["corners"] == [1, 2] and row["origin"] == "column A at the fence"
     assert [carrier["pegs"] for carrier in row["carriers"]] == [[0], [1, 2], [3]]
     assert row["carriers"][1]["plate"][3] == 0.0
     assert server.client.get(f"{url}/fixtures/1/sheet.svg").status_code == 200
-    square = server.done(request(workpiece=RECTANGLE, vise=vise))
+    square = server.done(request(workpiece=RECTANGLE, toolkit=vise))
     assert "three directions beside" in " ".join(server.client.get(square).json()["notes"])
     assert server.client.get(f"{square}/explanation").json()["removals"]

@@ -21,7 +21,7 @@ from workhold.files.loads_file import load_from_words
 from workhold.files.loads_form import LoadTable
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.result.save import save
-from workhold.files.toolkit.presets import load_vise
+from workhold.files.toolkit.presets import load_toolkit
 from workhold.listing.alike import entries
 from workhold.model.kinds import ALIASES, KINDS, toolkit_of
 from workhold.model.load import Load
@@ -155,7 +155,7 @@ def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | 
     try:
         if name in KINDS or name in ALIASES:
             return toolkit_of(name, fields), None
-        loaded = load_vise(name)
+        loaded = load_toolkit(name)
         return toolkit_of(loaded.kind, {**loaded.fields, **fields}), loaded.tolerance
     except (TypeError, ValueError) as error:
         if isinstance(error, InputError):

@@ -13,7 +13,7 @@ from workhold.cli.batch_progress import batch_progress
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.json_output import JsonOption, print_json
-from workhold.cli.many_toolkits import Named, asked_vises, query_of, words_of
+from workhold.cli.many_toolkits import Named, query_of, toolkits_to_try, words_of
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output_folder
 from workhold.cli.saying import tell
@@ -233,7 +233,7 @@ def requests_of(
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
-            raise InputError("no toolkit is given: name one or more with --toolkit (see workhold vises).")
+            raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
         options, held_in = reading.options(), held_in_all(named, words, reading)
         requests = [Request(part, options, held_in) for part in part_list(plain, [folder])]
     for name in parts:
@@ -263,7 +263,7 @@ def asked_toolkits(
     Raises
     ------
     InputError
-        See :func:`workhold.cli.many_toolkits.asked_vises`.
+        See :func:`workhold.cli.many_toolkits.toolkits_to_try`.
     """
     from workhold.model.kinds import ALIASES, KINDS
 
@@ -275,7 +275,7 @@ def asked_toolkits(
     if kinds and pitch is None and not others:
         raise InputError(f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits.")
     kind = kinds[0] if kinds else None
-    return asked_vises(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
+    return toolkits_to_try(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
 
 
 def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:

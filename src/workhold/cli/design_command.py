@@ -22,8 +22,8 @@ from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_fo
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords, with_fit_of
 from workhold.cli.seating_options import SeatingWords
+from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
-from workhold.cli.vise_options import ViseWords
 
 if TYPE_CHECKING:
     from workhold.model.query import Query
@@ -49,7 +49,7 @@ UnfitOption = Annotated[
 def design(
     part: PartArgument,
     *,
-    held_in: ViseWords,
+    held_in: ToolkitWords,
     words: QueryWords,
     seated_by: SeatingWords,
     type_: str = option(

@@ -11,8 +11,8 @@ from workhold.cli.commands import option, spread
 from workhold.cli.json_output import JsonOption, print_written
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, refuse_output
+from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import length, length_unit, optional_positive_length
-from workhold.cli.vise_options import ViseWords
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def drill(
         str, typer.Option("--out", "-o", metavar="FILE", help="The file to write; its name ends in .dxf or .step.")
     ],
     force: ForceOption = False,
-    held_in: ViseWords,
+    held_in: ToolkitWords,
     bolts: str | None = option(
         PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
     ),

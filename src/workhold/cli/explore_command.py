@@ -1,4 +1,4 @@
-"""``workhold explore``: the same part in many vises and plates."""
+"""``workhold explore``: the same part in many toolkits."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import typer
 from workhold.cli.commands import option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.json_output import JsonOption, print_json
-from workhold.cli.many_toolkits import asked_vises, query_of
+from workhold.cli.many_toolkits import query_of, toolkits_to_try
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords
+from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
-from workhold.cli.vise_options import TOOLKIT
 from workhold.errors import InputError
 from workhold.model.units import Unit
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["explore"]
 
-SWEEP = "Vises and plates to try"
+SWEEP = "Toolkits to try"
 
 
 @spread
@@ -53,16 +53,16 @@ def explore(
     json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
-    """Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each with its figures.
+    """Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its figures.
 
-    The lists of pitches, columns and radii are combined with each other, and with each vise that is named.
+    The lists of pitches, columns and radii are combined with each other, and with each toolkit that is named.
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
     from workhold.files.atomic import text_file
 
     shown = length_unit(reading.unit)
-    vises = asked_vises(vise, toolkit, pitch, columns, peg_radius, shown)
+    toolkits = toolkits_to_try(vise, toolkit, pitch, columns, peg_radius, shown)
     asked = words.asked(shown)
     if out is not None:
         refuse_output(out, (part, words.loads, *(name for names in vise or () for name in names.split(","))), force)
@@ -70,7 +70,7 @@ def explore(
 
     workpiece = reading.load(part).workpiece
     refuse_unknown_faces(workpiece, asked["restrictions"])
-    queries = [(one.name, query_of(workpiece, one, asked)) for one in vises]
+    queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
     from workhold.search.exploring import explore as try_all
 
     found: list[Explored] = []
@@ -82,7 +82,7 @@ def explore(
         with search_progress() as progress:
             for item in try_all(queries, cancel):
                 found.append(item)
-                progress(len(found) / len(vises), sum(one.fixtures for one in found))
+                progress(len(found) / len(toolkits), sum(one.fixtures for one in found))
     types = list(dict.fromkeys(name for one in found for name in one.found))
     # Toolkits with one clamp and with two have a default ranking each; the first that can be asked tells the columns.
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
@@ -101,13 +101,13 @@ def explore(
         from workhold.cli.tables import print_tables
 
         print_tables(f"Written to {out}.")
-    if len(found) < len(vises):
-        tell(f"interrupted: {len(vises) - len(found)} vises were not tried.")
+    if len(found) < len(toolkits):
+        tell(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
         raise typer.Exit(INTERRUPTED)
 
 
 def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:
-    """Refuse faces that do not exist, for which no vise is to blame.
+    """Refuse faces that do not exist, for which no toolkit is to blame.
 
     Raises
     ------
@@ -125,7 +125,7 @@ FIGURES_KEPT = 3
 
 
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
-    """Write the table and say which vise is best."""
+    """Write the table and say which toolkit is best."""
     from workhold.cli.tables import Table, figure_text, heading, print_tables
     from workhold.files.toolkit.presets import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR
@@ -154,7 +154,7 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
 
 
 def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
-    """The vise to take, see :func:`workhold.search.exploring.first_choice`."""
+    """The toolkit to take, see :func:`workhold.search.exploring.first_choice`."""
     from workhold.files.toolkit.presets import is_sold
     from workhold.search.exploring import first_choice
 
@@ -168,7 +168,7 @@ def table_text(found: list[Explored], types: list[str]) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     figures = [figure.key for figure in FIGURES]
-    writer.writerow(["vise", "fixtures", *(f"type_{name}" for name in types), *figures, "reason"])
+    writer.writerow(["toolkit", "fixtures", *(f"type_{name}" for name in types), *figures, "reason"])
     for item in found:
         values = [f"{item.figures[key]:.12g}" if key in item.figures else "" for key in figures]
         counts = [item.found.get(name, 0) for name in types]

@@ -18,8 +18,8 @@ from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
+from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
-from workhold.cli.vise_options import ViseWords
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ PartsArgument = Annotated[
 def family(
     parts: PartsArgument,
     *,
-    held_in: ViseWords,
+    held_in: ToolkitWords,
     max_loss: str | None = option(
         FAMILY, "LOSS", "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups."
     ),

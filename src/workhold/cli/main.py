@@ -69,8 +69,7 @@ COMMANDS = {
         "Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet."
     ),
     "explore": (
-        "Try PART in many vises and plates: how many fixtures there are in each, and the first choice in each "
-        "with its figures."
+        "Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its figures."
     ),
     "copies": "Tell how many copies of fixture N a plate holds at once, and where each stands.",
     "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
@@ -79,7 +78,7 @@ COMMANDS = {
     ),
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
-    "vises": "List the vises and plates that come with workhold, or show all figures of one.",
+    "toolkits": "List the vises, plates and fences that come with workhold, or show all figures of one.",
     "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
     "schema": "Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.",

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from workhold.model.tolerance import Tolerance
     from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_VISES", "Named", "asked_vises", "query_of", "words_of"]
+__all__ = ["MOST_TOOLKITS", "Named", "toolkits_to_try", "query_of", "words_of"]
 
-# More vises than this are more likely a slip than a wish.
-MOST_VISES = 1000
+# More toolkits than this are more likely a slip than a wish.
+MOST_TOOLKITS = 1000
 
 
 @frozen
 class Named:
-    """A vise to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
+    """A toolkit to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
 
     name: str
     kind: str
@@ -33,14 +33,14 @@ class Named:
     tolerance: Tolerance | None = None
 
     def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
-        """The vise after changes, each of which has a name."""
+        """The toolkit after changes, each of which has a name."""
         name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
         fields = {key: value for _, change in changes for key, value in change.items()}
         return Named(name, self.kind, self.fields | fields, self.tolerance)
 
 
 def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
-    """The query for a vise, or why there is no such vise."""
+    """The query for a toolkit, or why there is no such toolkit."""
     from workhold.model.kinds import toolkit_of
     from workhold.model.query import Query
 
@@ -54,7 +54,7 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
         return error
 
 
-def asked_vises(
+def toolkits_to_try(
     names: list[str] | None,
     toolkit: str | None,
     pitch: str | None,
@@ -62,14 +62,14 @@ def asked_vises(
     peg_radius: str | None,
     unit: Unit,
 ) -> list[Named]:
-    """The vises to try.
+    """The toolkits to try.
 
     Raises
     ------
     InputError
-        For words that mean nothing, lists that do not make a vise, and more than a thousand vises.
+        For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
     """
-    from workhold.files.toolkit.presets import load_vise, preset_names
+    from workhold.files.toolkit.presets import load_toolkit, preset_names
     from workhold.model.fence import Fence
     from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of
     from workhold.model.plate import Plate
@@ -95,17 +95,19 @@ def asked_vises(
         bases = [Named("", kind or USUAL, dict(said))]
     else:
         asked = preset_names() if names is None else [name for words in names for name in words_of("--vise", words)]
-        # A kind picks those of the kind, and makes one sort of vise of another.
+        # A kind picks those of the kind, and makes one sort of toolkit of another.
         bases = [
             Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
-            for one in map(load_vise, asked)
+            for one in map(load_toolkit, asked)
             if kind is None
             or all(issubclass(KINDS[kind], sort) == issubclass(KINDS[one.kind], sort) for sort in (Plate, Fence))
         ]
-    vises = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
-    if len(vises) > MOST_VISES:
-        raise InputError(f"the lists combine to {len(vises)} vises: give lists that combine to {MOST_VISES} or fewer.")
-    return vises
+    toolkits = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
+    if len(toolkits) > MOST_TOOLKITS:
+        raise InputError(
+            f"the lists combine to {len(toolkits)} toolkits: give lists that combine to {MOST_TOOLKITS} or fewer."
+        )
+    return toolkits
 
 
 def words_of(option: str, text: str) -> list[str]:

@@ -25,7 +25,7 @@ MARKS = (
     b'{"format": "workhold-family/',
     b"\0workhold-result/",
     b"number,type,theta_deg,x,y,jaw_separation,",
-    b"vise,fixtures,type_",
+    b"toolkit,fixtures,type_",
     b"hole,carrier,column,row,x,y,diameter,length,unit,dowel,face\n",
     b"part,file,toolkit,",
     b"workhold-table/1",

@@ -23,7 +23,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
-    from workhold.files.toolkit.reader import LoadedVise
+    from workhold.files.toolkit.reader import LoadedToolkit
     from workhold.listing.alike import Entries
     from workhold.search.exploring import Explored
     from workhold.statics.loads import LoadCase, Worst
@@ -184,7 +184,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
     }
 
 
-def toolkit_data(loaded: LoadedVise) -> dict[str, Any]:
+def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
     """A toolkit by name or of a file."""
     return {
         "name": loaded.name,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from workhold.errors import InputError
-from workhold.files.toolkit.presets import load_vise, preset, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset, preset_names
 from workhold.model.kinds import KINDS
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
@@ -24,9 +24,9 @@ def preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit.presets.load_vise`, and for a toolkit of another class.
+        As :func:`workhold.files.toolkit.presets.load_toolkit`, and for a toolkit of another class.
     """
-    loaded = load_vise(name)
+    loaded = load_toolkit(name)
     is_of = KINDS[loaded.kind]
     if not issubclass(kind, is_of):
         raise InputError(f"{loaded.name} is a {is_of.noun}: ask {is_of.__name__}.preset for it.")
@@ -39,6 +39,6 @@ def preset_tolerance(name: str) -> Tolerance:
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit.presets.load_vise`.
+        As :func:`workhold.files.toolkit.presets.load_toolkit`.
     """
-    return load_vise(name).tolerance
+    return load_toolkit(name).tolerance

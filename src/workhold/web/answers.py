@@ -29,7 +29,7 @@ from workhold.presenting.data import finite
 if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
     from workhold.files.part.survey import Survey
-    from workhold.files.toolkit.reader import LoadedVise
+    from workhold.files.toolkit.reader import LoadedToolkit
 
 __all__ = [
     "arrangements_answer",
@@ -42,7 +42,7 @@ __all__ = [
     "proof_answer",
     "rows_answer",
     "survey_answer",
-    "vise_answer",
+    "toolkit_answer",
 ]
 
 # Undecided candidates told of a proof; the result file has them all.
@@ -140,7 +140,7 @@ def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> di
     }
 
 
-def vise_answer(loaded: LoadedVise) -> dict[str, Any]:
+def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
     """A toolkit that comes with the program; its kind is one of those the page has fields for."""
     from workhold.web.toolkits import page_kind
 

@@ -35,7 +35,7 @@ class FamilyForm(Form):
     """Parts that are to be held in one toolkit with few set-ups."""
 
     workpieces: Annotated[list[WorkpieceForm], Field(min_length=1, max_length=MOST_PARTS)]
-    vise: HeldIn
+    toolkit: HeldIn
     types: list[Name] | None = Field(default=None, max_length=10)
     contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     ranking: list[Name] | None = Field(default=None, max_length=10)
@@ -54,7 +54,7 @@ class FamilyForm(Form):
         from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
 
         load_solver()
-        toolkit = self.vise.toolkit()
+        toolkit = self.toolkit.toolkit()
         usual = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
         ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()

@@ -23,7 +23,7 @@ __all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "
 
 # Beyond this, in mm, degrees, N or N mm, a number is a mistake.
 LARGEST = 1e9
-MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_VISES = 20_000, 50, 500, 50, 500, 60
+MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_TOOLKITS = 20_000, 50, 500, 50, 500, 60
 MOST_COLUMNS, MOST_ROWS = 200, 100_000
 # Fixtures whose seating is worked out in one search.
 MOST_SEATED = 1_000
@@ -211,7 +211,7 @@ def asked_loads(text: str | None) -> tuple[Load, ...] | None:
 
 
 class SearchForm(Form):
-    """What a search in one vise and a comparison of several have in common."""
+    """What a search in one toolkit and a comparison of several have in common."""
 
     workpiece: WorkpieceForm
     types: list[Name] | None = Field(default=None, max_length=10)
@@ -250,7 +250,7 @@ class SearchForm(Form):
 class JobForm(SearchForm):
     """A search for every fixture; of so many of the first ones the seating is told, and what is asked of it."""
 
-    vise: HeldIn
+    toolkit: HeldIn
     seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)
     opening: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     foolproof: bool = False
@@ -263,7 +263,7 @@ class JobForm(SearchForm):
         InputError
             For the first value that cannot be.
         """
-        query = self.query(self.vise.toolkit(), most_segments)
+        query = self.query(self.toolkit.toolkit(), most_segments)
         return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
 
 
@@ -279,18 +279,25 @@ class NamedPlateForm(PlateForm):
     title: Name = ""
 
 
+class NamedFenceForm(FenceForm):
+    """A fence to compare, with what to call it."""
+
+    title: Name = ""
+
+
 NamedHeldIn = Annotated[
-    Annotated[NamedViseForm, Tag(VISE)] | Annotated[NamedPlateForm, Tag(PLATE)], Discriminator(form_of)
+    Annotated[NamedViseForm, Tag(VISE)] | Annotated[NamedPlateForm, Tag(PLATE)] | Annotated[NamedFenceForm, Tag(FENCE)],
+    Discriminator(form_of),
 ]
 
 
 class ExploreForm(SearchForm):
-    """A comparison of vises; without vises, of all that come with the program."""
+    """A comparison of toolkits; where none are given, of all that come with the program."""
 
-    vises: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_VISES)
+    toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The queries, one for each vise, and what the vises are called.
+        """The queries, one for each toolkit, and what the toolkits are called.
 
         Raises
         ------
@@ -299,9 +306,9 @@ class ExploreForm(SearchForm):
         """
         from workhold.files.toolkit.presets import preset, preset_names
 
-        if self.vises is not None:
+        if self.toolkits is not None:
             named: list[tuple[str, Toolkit, Tolerance | None]] = [
-                (form.title, form.toolkit(), None) for form in self.vises
+                (form.title, form.toolkit(), None) for form in self.toolkits
             ]
         else:
             named = [(one.name, one.toolkit, one.tolerance) for one in map(preset, preset_names())]

@@ -59,7 +59,7 @@ def result_of_job(job: Job, revision: int | None = None, when_over: bool = False
         409 when there is nothing (yet), or the fixtures have changed.
     """
     if job.compares:
-        raise HTTPException(409, "A comparison of vises has no fixtures: search in one of the vises.")
+        raise HTTPException(409, "A comparison of toolkits has no fixtures: search in one of the toolkits.")
     if job.kind == "family":
         raise HTTPException(409, "A family has plans and no list of fixtures: search for one of its parts.")
     if revision is not None and revision != job.revision:
@@ -88,7 +88,7 @@ async def submit(request: Request, form: JobForm) -> Response:
     return await begin(request, form)
 
 
-@router.post("/explore", status_code=202, summary="Compare vises")
+@router.post("/explore", status_code=202, summary="Compare toolkits")
 async def explore(request: Request, form: ExploreForm) -> Response:
     """Begins a comparison; the rows appear in the job's ``table``."""
     return await begin(request, form)

@@ -2,7 +2,7 @@
 
 Glossary
 --------
-job : a search, a comparison of vises, or a family of parts, with what is known of it.
+job : a search, a comparison of toolkits, or a family of parts, with what is known of it.
 revision : a number that grows whenever the fixtures to show have changed.
 """
 
@@ -51,9 +51,9 @@ class Job:
     ----------
     name : a random token.
     request : what was asked for, as it came.
-    queries : the query, or those of a comparison and what their vises are called.
+    queries : the query, or those of a comparison and what their toolkits are called.
     address : who asked.
-    kind : "design", "explore" for a comparison of vises, or "family" of several parts.
+    kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Job:
 
     @property
     def compares(self) -> bool:
-        """Whether it is a comparison of vises."""
+        """Whether it is a comparison of toolkits."""
         return self.kind == "explore"
 
     @property
@@ -226,7 +226,7 @@ class Jobs:
             elif isinstance(outcome, FamilyFound):
                 job.family, job.fraction = outcome, 1.0
             elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
-                job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the vises was not tried.",)
+                job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the toolkits was not tried.",)
             job.state = "cancelled" if job.task.stop.is_set() else "done"
         except StoppedError:
             job.state = "cancelled"

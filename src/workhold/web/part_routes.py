@@ -1,4 +1,4 @@
-"""Routes about parts, vises and figures of quality."""
+"""Routes about parts, toolkits and figures of quality."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Query, Request
 from starlette.exceptions import HTTPException
 
 from workhold import __version__
-from workhold.web.answers import figures_answer, vise_answer
+from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.forms import WorkpieceForm
 from workhold.web.paper import has_step
 from workhold.web.state import at_desk, state_of
@@ -141,12 +141,12 @@ async def toolkits() -> list[dict[str, Any]]:
     return kinds_answer()
 
 
-@router.get("/vises", summary="The toolkits that come with the program")
-async def vises() -> list[dict[str, Any]]:
+@router.get("/presets", summary="The toolkits that come with the program")
+async def presets() -> list[dict[str, Any]]:
     """What people own, by name; lengths in mm."""
     from workhold.files.toolkit.presets import preset, preset_names
 
-    return [vise_answer(one) for one in map(preset, preset_names())]
+    return [toolkit_answer(one) for one in map(preset, preset_names())]
 
 
 @router.get("/figures", summary="The figures of quality")

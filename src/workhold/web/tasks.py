@@ -136,7 +136,7 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
         total += row.fixtures
         entry = {
             "title": row.name,
-            "vise": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
+            "toolkit": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
             "counts": dict(row.found),
             "figures": dict(row.figures),
             "fit": row.fit,

@@ -17,7 +17,7 @@ from typing import Any, Literal
 from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.toolkit.reader import LoadedVise
+from workhold.files.toolkit.reader import LoadedToolkit
 from workhold.model.kinds import kind_of, toolkit_of
 from workhold.model.plate import DIRECTIONS
 from workhold.model.toolkit import TOWARDS
@@ -193,7 +193,7 @@ def kinds_answer() -> list[dict[str, Any]]:
     return [one.answer() for one in DESCRIBED]
 
 
-def page_kind(loaded: LoadedVise) -> str:
+def page_kind(loaded: LoadedToolkit) -> str:
     """The name under which the page shows a toolkit: of those that say some of its fields, the one that says most."""
     fits = [
         one for one in DESCRIBED if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()

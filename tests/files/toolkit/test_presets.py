@@ -13,9 +13,10 @@ import pytest
 from workhold.errors import InputError
 from workhold.files.toolkit.dowels import dowel_series, dowel_size
 from workhold.files.toolkit.form import checked
-from workhold.files.toolkit.presets import load_vise, preset_names
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.model.plate import Plate
 from workhold.model.tolerance import Tolerance
+from workhold.model.vise import Vise
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 
@@ -28,14 +29,16 @@ def write(folder: Path, entries: dict[str, Any]) -> Path:
 
 
 @pytest.mark.parametrize("name", preset_names())
-def test_presets_are_vises_with_a_source(name: str) -> None:
-    """Each makes a vise, has words and a source, and passes the checks that a user's file has to pass."""
-    loaded = load_vise(name)
+def test_presets_are_toolkits_with_a_source(name: str) -> None:
+    """Each makes a toolkit, has words and a source, and passes the checks that a user's file has to pass."""
+    loaded = load_toolkit(name)
     assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)+", name)
     assert loaded.name == name
     assert loaded.title and loaded.source
+    # "plate" in a name does not tell whether jaws or clamps press against its dowels.
+    assert isinstance(loaded.toolkit, Vise) == loaded.title.startswith(("vise, ", "the paper's"))
     assert loaded.toolkit.rows is None
-    content = tomllib.loads((files("workhold") / "data" / "vises" / f"{name}.toml").read_text())
+    content = tomllib.loads((files("workhold") / "data" / "toolkits" / f"{name}.toml").read_text())
     assert checked(content) == content
     assert 0 < loaded.tolerance.peg < 0.2
     assert loaded.tolerance.face == Tolerance().face
@@ -43,7 +46,7 @@ def test_presets_are_vises_with_a_source(name: str) -> None:
 
 def test_figures_of_the_presets() -> None:
     """Pitch, peg diameter and columns as published, in mm; an inch is 25.4 mm."""
-    figures = {name: load_vise(name).fields for name in preset_names()}
+    figures = {name: load_toolkit(name).fields for name in preset_names()}
     told = {name: (f["pitch"], 2 * f["peg_radius"], f.get("columns")) for name, f in figures.items()}
     assert told == {
         "clamp-plate-20mm": ((20, 20), 6, None),
@@ -64,10 +67,10 @@ def test_figures_of_the_presets() -> None:
 
 def test_tolerances_follow_from_pin_and_hole() -> None:
     """By hand: a pressed 6 mm pin at most 0.009 too wide, hole placed to the assumed 0.01; a 16 h7 pin in a D10 hole."""
-    assert load_vise("plate-20mm").tolerance.peg == pytest.approx(0.009 / 2 + 0.01, abs=1e-12)
-    assert load_vise("table-50mm").tolerance.peg == pytest.approx((0.138 + 0.018) / 2 + 0.05, abs=1e-12)
-    assert load_vise("plate-one-inch").tolerance.peg == pytest.approx(0.0003 / 2 * 25.4 + 0.01, abs=1e-12)
-    assert load_vise("gripper-one-column").tolerance == Tolerance()
+    assert load_toolkit("plate-20mm").tolerance.peg == pytest.approx(0.009 / 2 + 0.01, abs=1e-12)
+    assert load_toolkit("table-50mm").tolerance.peg == pytest.approx((0.138 + 0.018) / 2 + 0.05, abs=1e-12)
+    assert load_toolkit("plate-one-inch").tolerance.peg == pytest.approx(0.0003 / 2 * 25.4 + 0.01, abs=1e-12)
+    assert load_toolkit("gripper-one-column").tolerance == Tolerance()
 
 
 def test_dowels_are_near_their_names_and_grow() -> None:
@@ -115,7 +118,7 @@ def test_a_file_in_inches(tmp_path: Path) -> None:
             "face_tolerance": "0.002",
         },
     )
-    loaded = load_vise(path)
+    loaded = load_toolkit(path)
     assert loaded.fields == {
         "pitch": (25.4, 12.7),
         "columns": 3,
@@ -136,18 +139,18 @@ def test_a_file_in_inches(tmp_path: Path) -> None:
 def test_a_standard_gives_the_pin_and_the_file_the_hole(tmp_path: Path) -> None:
     """ISO 2338 recommends no hole; an entry of the file goes before the standard's; a plain tolerance before both."""
     pin = {**OWN, "dowel": '"iso 2338 H8"', "hole_diameter": "[6.0, 6.012]"}
-    fit = load_vise(write(tmp_path, pin)).fit
+    fit = load_toolkit(write(tmp_path, pin)).fit
     assert fit is not None and (fit.pin, fit.hole) == ((5.982, 6.0), (6.0, 6.012))
-    assert load_vise(write(tmp_path, {**pin, "peg_tolerance": "0.5"})).tolerance.peg == 0.5
+    assert load_toolkit(write(tmp_path, {**pin, "peg_tolerance": "0.5"})).tolerance.peg == 0.5
 
 
 def test_a_file_goes_before_a_preset(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Unlike a folder, a file of a preset's name is meant; capitals of a preset do not matter."""
     monkeypatch.chdir(tmp_path)
     Path("table-50mm").mkdir()
-    assert load_vise("Table-50MM").fields["pitch"] == (50, 50)
+    assert load_toolkit("Table-50MM").fields["pitch"] == (50, 50)
     write(tmp_path, OWN).rename("plate-25mm")
-    assert load_vise("plate-25mm").fields["pitch"] == (20, 20)
+    assert load_toolkit("plate-25mm").fields["pitch"] == (20, 20)
 
 
 WITHOUT = object()
@@ -188,7 +191,7 @@ def test_bad_files_are_one_sentence_with_the_file_and_the_entry(
 ) -> None:
     entries = {key: value for key, value in (OWN | change).items() if value is not WITHOUT}
     with pytest.raises(InputError) as caught:
-        load_vise(write(tmp_path, entries))
+        load_toolkit(write(tmp_path, entries))
     told = str(caught.value)
     assert told.startswith("jaws.toml: ")
     assert message in told
@@ -210,7 +213,7 @@ def test_unknown_vises_come_with_names_that_are_near(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError) as caught:
-        load_vise(name)
+        load_toolkit(name)
     assert message in str(caught.value)
 
 
@@ -218,7 +221,7 @@ def test_binary_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "jaws.toml"
     path.write_bytes(b"pitch = \xff")
     with pytest.raises(InputError, match=r"jaws\.toml: the file is not UTF-8 text \(byte 8\)"):
-        load_vise(path)
+        load_toolkit(path)
 
 
 def test_two_clamps_in_a_file(tmp_path: Path) -> None:
@@ -227,7 +230,7 @@ def test_two_clamps_in_a_file(tmp_path: Path) -> None:
     lines = 'unit = "mm"\nkind = "plate"\npitch = 20\npeg_radius = 3\nclamps = {}\ndirections = {}\n'
     for directions, told in (('[["-x", "-y"]]', (("-x", "-y"),)), ('["-x"]', (("-x", "-x"),))):
         path.write_text(lines.format(2, directions))
-        toolkit = load_vise(path).toolkit
+        toolkit = load_toolkit(path).toolkit
         assert isinstance(toolkit, Plate) and toolkit.directions == told
     for clamps, directions, message in (
         (2, '[["-x"]]', "directions is not what it should be"),
@@ -237,4 +240,4 @@ def test_two_clamps_in_a_file(tmp_path: Path) -> None:
     ):
         path.write_text(lines.format(clamps, directions))
         with pytest.raises(InputError, match=message):
-            load_vise(path)
+            load_toolkit(path)

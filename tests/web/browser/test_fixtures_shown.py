@@ -236,10 +236,10 @@ def test_the_sweep_tells_which_vise_suits(walk: Walk) -> None:
     page = walk.page
     walk.take(pitch=None)
     page.click("#sweep")
-    page.wait_for_selector("#vises-progress", state="hidden", timeout=SEARCH_PATIENCE)
-    presets = [vise["name"] for vise in walk.server.client.get("/api/vises").json()]
-    assert sorted(page.locator("#vises-table th[scope=row]").all_inner_texts()) == sorted(presets)
-    page.click("#vises-table button[aria-label='Use plate-25mm']")
+    page.wait_for_selector("#comparison-progress", state="hidden", timeout=SEARCH_PATIENCE)
+    presets = [vise["name"] for vise in walk.server.client.get("/api/presets").json()]
+    assert sorted(page.locator("#comparison-table th[scope=row]").all_inner_texts()) == sorted(presets)
+    page.click("#comparison-table button[aria-label='Use plate-25mm']")
     assert page.input_value("#preset") == "plate-25mm"
     assert float(page.input_value("#pitch-x")) == 25
 
@@ -259,7 +259,7 @@ def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> 
         "directions": [way],
     }
     loop = [[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]
-    kept = {"vise": plate | ({"travel": [10, 30]} if bolted else {}), "viseName": "own", "types": None}
+    kept = {"toolkit": plate | ({"travel": [10, 30]} if bolted else {}), "toolkitName": "own", "types": None}
     kept |= {
         "part": {"name": "rectangle", "loops": [loop]},
         "job": None,

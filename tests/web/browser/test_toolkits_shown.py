@@ -13,7 +13,7 @@ STATE = "async () => (await import('/static/state.js')).state"
 
 def held_in(walk: Walk) -> dict[str, Any]:
     """The toolkit that a search would be asked in."""
-    return dict(walk.page.evaluate("async () => (await import('/static/state.js')).request().vise"))
+    return dict(walk.page.evaluate("async () => (await import('/static/state.js')).request().toolkit"))
 
 
 def fill(walk: Walk, **values: str) -> None:
@@ -60,9 +60,9 @@ def test_the_fields_are_those_of_the_kind(walk: Walk) -> None:
     # An emptied field is left to its usual value, and half a pair is none.
     fill(walk, columns="", travel_least="")
     assert page.get_attribute("#travel-least", "aria-invalid") == "true"
-    assert "Stroke" in walk.seen("#vise-trouble").inner_text()
+    assert "Stroke" in walk.seen("#toolkit-trouble").inner_text()
     fill(walk, travel_most="")
-    page.wait_for_selector("#vise-trouble", state="hidden")
+    page.wait_for_selector("#toolkit-trouble", state="hidden")
     assert not {"travel", "columns"} & set(held_in(walk))
 
 
@@ -127,7 +127,7 @@ def test_another_kind_keeps_what_both_have(walk: Walk) -> None:
     assert page.input_value("#toolkit") == "translating-clamp"
     page.select_option("#toolkit", "gripper")
     page.wait_for_selector("#columns", state="detached")
-    vise = page.evaluate(STATE)["vise"]
+    vise = page.evaluate(STATE)["toolkit"]
     assert vise == {"kind": "gripper", "pitch": [50, 50], "peg_radius": 8, "columns": 1}
     assert page.locator("#types input").count() == 2
     page.select_option("#preset", "plate-20mm")

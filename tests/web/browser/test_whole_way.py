@@ -106,7 +106,7 @@ def test_a_search_can_be_cancelled(walk: Walk) -> None:
     page = walk.page
     walk.take("8Handle", None)
     page.select_option("#toolkit", "vise")
-    vise = LONG["vise"]
+    vise = LONG["toolkit"]
     for name, value in (
         ("#peg-radius", vise["peg_radius"]),
         ("#columns", vise["columns"]),

@@ -1,4 +1,4 @@
-"""Toolkits that people own, by name; each file in ``data/vises`` says where its figures are from.
+"""Toolkits that people own, by name; each file in ``data/toolkits`` says where its figures are from.
 
 A preset of a vise is a plate on each jaw, as in the paper: no vise that comes with a lattice of dowel holes on both jaws
 is known to us. How many columns a jaw has is for its owner to say; a preset's number is only a usual one.
@@ -13,27 +13,28 @@ from importlib.resources import files
 from pathlib import Path
 
 from workhold.errors import InputError
-from workhold.files.toolkit.reader import LoadedVise, described_vise, read_vise_file
+from workhold.files.toolkit.reader import LoadedToolkit, described_toolkit, read_toolkit_file
+from workhold.model.vise import Vise
 
-__all__ = ["LoadedVise", "is_sold", "load_vise", "preset", "preset_names"]
+__all__ = ["LoadedToolkit", "is_sold", "load_toolkit", "preset", "preset_names"]
 
 ENDING = ".toml"
 
 
 @cache
 def preset_names() -> tuple[str, ...]:
-    """The names of the presets, what is sold first, then by kind and by pitch.
+    """The names of the presets, what is sold first, of that plates before vises, then by kind and by pitch.
 
     Examples
     --------
     >>> preset_names()[0]
     'clamp-plate-20mm'
     """
-    found = [entry.name for entry in (files("workhold") / "data" / "vises").iterdir() if entry.name.endswith(ENDING)]
+    found = [entry.name for entry in (files("workhold") / "data" / "toolkits").iterdir() if entry.name.endswith(ENDING)]
     presets = [preset(name.removesuffix(ENDING)) for name in found]
     presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
-    presets.sort(key=lambda vise: not is_sold(vise.name))
-    return tuple(vise.name for vise in presets)
+    presets.sort(key=lambda one: (not is_sold(one.name), isinstance(one.toolkit, Vise)))
+    return tuple(one.name for one in presets)
 
 
 def is_sold(name: str) -> bool:
@@ -45,13 +46,13 @@ def is_sold(name: str) -> bool:
     return not name.startswith("gripper-")
 
 
-def preset(name: str) -> LoadedVise:
+def preset(name: str) -> LoadedToolkit:
     """The preset of a name that exists."""
-    text = (files("workhold") / "data" / "vises" / f"{name}{ENDING}").read_text(encoding="utf-8")
-    return described_vise(name, tomllib.loads(text))
+    text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
+    return described_toolkit(name, tomllib.loads(text))
 
 
-def load_vise(name: str | Path) -> LoadedVise:
+def load_toolkit(name: str | Path) -> LoadedToolkit:
     """Load a toolkit by the name of a preset or from a TOML file; a file wins.
 
     Parameters
@@ -66,7 +67,7 @@ def load_vise(name: str | Path) -> LoadedVise:
     Examples
     --------
     >>> from workhold import Vise
-    >>> loaded = load_vise("plate-20mm")
+    >>> loaded = load_toolkit("plate-20mm")
     >>> Vise(**loaded.fields | {"columns": 2}).pitch
     (20.0, 20.0)
     """
@@ -78,7 +79,7 @@ def load_vise(name: str | Path) -> LoadedVise:
     names = preset_names()
     asked = str(name).strip().lower()
     if is_path and asked and not (path.is_dir() and asked in names):
-        return read_vise_file(path)
+        return read_toolkit_file(path)
     if asked in names:
         return preset(asked)
     close = get_close_matches(asked, names, n=3, cutoff=0.5) or names

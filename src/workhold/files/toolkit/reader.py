@@ -24,9 +24,9 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import Unit, unit_named
 
-__all__ = ["LoadedVise", "described_vise", "read_vise_file"]
+__all__ = ["LoadedToolkit", "described_toolkit", "read_toolkit_file"]
 
-# Bytes; a vise takes a few hundred.
+# Bytes; a toolkit takes a few hundred.
 LARGEST_FILE = 1_000_000
 LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius", "wall_offset")
 # Entries that are handed on as they are.
@@ -36,8 +36,8 @@ ASSUMED_POSITION = Tolerance().peg
 
 
 @frozen
-class LoadedVise:
-    """A vise as its file describes it.
+class LoadedToolkit:
+    """A toolkit as its file describes it.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ class LoadedVise:
         return toolkit_of(self.kind, self.fields)
 
 
-def read_vise_file(path: Path) -> LoadedVise:
-    """The vise of a user's file.
+def read_toolkit_file(path: Path) -> LoadedToolkit:
+    """The toolkit of a user's file.
 
     Raises
     ------
@@ -79,18 +79,18 @@ def read_vise_file(path: Path) -> LoadedVise:
     from workhold.files.toolkit.form import checked
 
     try:
-        return described_vise(path.stem, checked(toml_table(read_text(path, LARGEST_FILE, "a toolkit"))))
+        return described_toolkit(path.stem, checked(toml_table(read_text(path, LARGEST_FILE, "a toolkit"))))
     except InputError as error:
         raise InputError(f"{path.name or path}: {error}") from error
 
 
-def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
-    """The vise of a file's entries, which are of the right types.
+def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
+    """The toolkit of a file's entries, which are of the right types.
 
     Raises
     ------
     InputError
-        For values that no vise can have.
+        For values that no toolkit can have.
     """
     unit = unit_named(entries["unit"])
     if unit.name not in ("mm", "inch"):
@@ -111,7 +111,7 @@ def described_vise(name: str, entries: Mapping[str, Any]) -> LoadedVise:
         fields["flat"] = tuple(unit.length(number) for number in (flat if isinstance(flat, list) else [flat]))
     toolkit_of(kind, fields)
     fit = fit_of(entries, unit, fields["peg_radius"])
-    return LoadedVise(
+    return LoadedToolkit(
         name=name,
         title=entries.get("title", ""),
         source=entries.get("source", ""),

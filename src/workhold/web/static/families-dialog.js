@@ -102,7 +102,7 @@ async function search() {
   show(bar, true);
   try {
     const workpieces = entries.filter((entry) => entry.part).map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0 }));
-    const asked = { workpieces, vise: state.vise, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
+    const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
     const begun = await send("families", asked);
     if (mine !== latest) {
       ask(`jobs/${encodeURIComponent(begun.job)}`, { method: "DELETE" }).catch(() => {});

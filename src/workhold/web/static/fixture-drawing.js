@@ -41,18 +41,18 @@ export class FixtureDrawing {
   /**
    * Draw a fixture.
    * @param {any} part
-   * @param {any} vise
+   * @param {any} toolkit
    * @param {import("./pose.js").Row} row
    * @param {{keepView?: boolean}} [options]
    */
-  show(part, vise, row, { keepView = false } = {}) {
+  show(part, toolkit, row, { keepView = false } = {}) {
     cancelAnimationFrame(this.frame);
     this.open = 0;
     this.lying = null;
     const toVise = intoVise(row);
     const box = boundsOf(partSegments(part).map(({ segment }) => segment), toVise);
     this.part = part;
-    this.vise = vise;
+    this.toolkit = toolkit;
     this.row = row;
     this.toVise = toVise;
     this.contacts = contactsOf(part, row).map(({ contact, normal }) => {
@@ -170,11 +170,11 @@ export class FixtureDrawing {
 
   /** A peg that can be pointed at and focused. */
   peg([x, y], k, { peg_radius: size, flat }, looks) {
-    const radius = Math.max(size, Math.min(...this.vise.pitch) / 12);
+    const radius = Math.max(size, Math.min(...this.toolkit.pitch) / 12);
     const { row, clearance } = this;
     const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${row.mover} force`;
     const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
-    if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.vise.body_radius ?? size) + clearance }));
+    if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.toolkit.body_radius ?? size) + clearance }));
     if (looks === null || flat >= size) group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
     else group.append(draw("path.peg-body", { d: flattedPath([x, y], radius, (looks * Math.PI) / 180, Math.acos(flat / size)) }));
     const cross = radius / 2;

@@ -134,7 +134,7 @@ function mover() {
 /** What the jaw is, in words. */
 function kindWords(kind) {
   if (kind === "constant") return `a ${mover()} that keeps its force`;
-  const { locked } = kindOf(state.vise);
+  const { locked } = kindOf(state.toolkit);
   return typeof kind === "number" ? `${locked.replace(/,$/, "")} ${number(kind, 3)} times as stiff as a contact` : locked.split(",")[0];
 }
 

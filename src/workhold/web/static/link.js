@@ -7,7 +7,7 @@ import { state } from "./state.js";
 
 /** Keys of the state that a link carries. */
 const CARRIED = [
-  "viseName", "vise", "unit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
+  "toolkitName", "toolkit", "unit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
   "list", "view", "force", "sheet",
 ];
 

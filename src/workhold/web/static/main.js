@@ -19,7 +19,7 @@ import { takePanel } from "./take-panel.js";
 import { trialPanel } from "./trial-panel.js";
 import { unitWord } from "./units.js";
 import { offerToolkits, toolkitPanel } from "./toolkit-panel.js";
-import { visesDialog } from "./vises-dialog.js";
+import { comparisonDialog } from "./comparison-dialog.js";
 import { warningsPanel } from "./warnings-panel.js";
 import { whyPanel } from "./why-panel.js";
 
@@ -81,7 +81,7 @@ async function begin() {
   trialPanel();
   resultsPanel(figures);
   whyPanel();
-  visesDialog(figures);
+  comparisonDialog(figures);
   familiesDialog();
   takePanel(about);
   warningsPanel();

@@ -38,9 +38,9 @@ export function rulesPanel(drawing, showPart) {
   on(["avoid"], markFaces);
   on(["zones", "unit"], writeZones);
   on(["angles", "contactMargin", "unit"], write);
-  on(["vise", "types"], writeTypes);
+  on(["toolkit", "types"], writeTypes);
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
-  on(["vise", "listing"], writeListing);
+  on(["toolkit", "listing"], writeListing);
   on(["loads"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
@@ -162,14 +162,14 @@ function writeSeating() {
 
 /** Whether every pair of clamps is listed, where there are two. */
 function writeListing() {
-  show(byId("pairs-box"), state.vise.clamps === 2);
+  show(byId("pairs-box"), state.toolkit.clamps === 2);
   field("every-pair").checked = state.listing === "all";
 }
 
 /** A box for each type of fixture where there are several; ticked means sought. */
 function writeTypes() {
   if (!kinds.length) return;
-  const { types } = kindOf(state.vise);
+  const { types } = kindOf(state.toolkit);
   show(byId("types-box"), types.length > 1);
   byId("types").replaceChildren(
     ...types.map(({ name, words }) => {

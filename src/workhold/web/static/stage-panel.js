@@ -52,7 +52,7 @@ export function stagePanel() {
   on(["selected"], showSelected);
   on(["pinned"], showPinned);
   on(["selected", "index", "job"], showPlace);
-  on(["vise"], () => (byId("close-vise").textContent = kinds.length ? kindOf(state.vise).closes : "Close"));
+  on(["toolkit"], () => (byId("close-vise").textContent = kinds.length ? kindOf(state.toolkit).closes : "Close"));
   on(["sheet"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.keepOff(state.sheet.clearance ?? null)));
   on(["unit"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.letter()));
 }
@@ -106,7 +106,7 @@ function showSelected() {
   miss = null;
   // The title first: it takes room from the drawing.
   showTitle(state.pinned ? `Shown: ${row.rank}` : "");
-  fixtureDrawing.show(state.part, state.vise, row);
+  fixtureDrawing.show(state.part, state.toolkit, row);
   const now = performance.now();
   if (now - shownAt > 700) fixtureDrawing.close();
   shownAt = now;
@@ -127,7 +127,7 @@ export function showMiss(row, words = "") {
     return;
   }
   change({ view: "fixture" });
-  fixtureDrawing.show(state.part, state.vise, row);
+  fixtureDrawing.show(state.part, state.toolkit, row);
   byId("drawing-fixture").setAttribute("aria-label", `The nearest miss: ${words}`);
 }
 
@@ -144,7 +144,7 @@ function showPinned() {
   if (row) {
     if (state.selected) showTitle(`Shown: ${state.selected.rank}`);
     byId("pinned-title").textContent = `Pinned: ${row.rank}`;
-    pinnedDrawing.show(state.part, state.vise, row);
+    pinnedDrawing.show(state.part, state.toolkit, row);
   } else {
     pinnedDrawing.clear();
     if (state.selected) showTitle("");

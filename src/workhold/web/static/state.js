@@ -6,14 +6,14 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "vise", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
+  "part", "toolkit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
 ];
 
 /**
  * @typedef {Object} State
  * @property {any} part the part as the server tells it, or null
- * @property {string} viseName the preset chosen; "own" for own values
- * @property {any} vise kind and fields of the toolkit in mm
+ * @property {string} toolkitName the preset chosen; "own" for own values
+ * @property {any} toolkit kind and fields of the toolkit in mm
  * @property {string} unit "mm" or "inch", for reading and typing only
  * @property {string[]|null} types names of the arrangements sought; null is all
  * @property {"all"|null} listing of two clamps every pair of each seat; null is the best of each
@@ -40,8 +40,8 @@ export const SETTINGS = [
 /** @type {State} */
 export const state = {
   part: null,
-  viseName: "",
-  vise: { pitch: [10, 10], columns: 2, peg_radius: 3 },
+  toolkitName: "",
+  toolkit: { pitch: [10, 10], columns: 2, peg_radius: 3 },
   unit: "mm",
   types: null,
   listing: null,
@@ -92,7 +92,7 @@ export function change(patch) {
 export function request() {
   return {
     workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0 },
-    vise: state.vise,
+    toolkit: state.toolkit,
     types: state.types,
     listing: state.listing,
     contact_margin: state.contactMargin,

@@ -33,12 +33,12 @@ export function toolkitPanel() {
   byId("preset").addEventListener("change", (event) => usePreset(/** @type {HTMLSelectElement} */ (event.target).value));
   byId("toolkit").addEventListener("change", (event) => useKind(/** @type {HTMLSelectElement} */ (event.target).value));
   byId("unit").addEventListener("change", (event) => change({ unit: /** @type {HTMLSelectElement} */ (event.target).value }));
-  on(["vise", "viseName", "unit", "tolerance"], write);
+  on(["toolkit", "toolkitName", "unit", "tolerance"], write);
 }
 
 /** Offer what there is. */
 export async function offerToolkits() {
-  [presets] = await Promise.all([ask("vises"), learnKinds()]);
+  [presets] = await Promise.all([ask("presets"), learnKinds()]);
   const groups = kinds.map((kind) => [kind, presets.filter((preset) => preset.kind === kind.name)]);
   byId("preset").replaceChildren(
     ...groups.filter(([, own]) => own.length).map(([kind, own]) =>
@@ -56,13 +56,13 @@ export async function offerToolkits() {
 export function usePreset(name) {
   const preset = presets.find((each) => each.name === name);
   if (!preset) {
-    change({ viseName: OWN });
+    change({ toolkitName: OWN });
     return;
   }
   const { kind, tolerance } = preset;
-  const vise = asKind(kinds.find((each) => each.name === kind), preset.fields);
+  const toolkit = asKind(kinds.find((each) => each.name === kind), preset.fields);
   const given = Object.fromEntries(Object.entries(preset.fields).filter(([, value]) => value !== null));
-  change({ viseName: name, vise: { ...vise, ...given }, tolerance, types: typesOf({ kind }), unit: preset.unit ?? state.unit });
+  change({ toolkitName: name, toolkit: { ...toolkit, ...given }, tolerance, types: typesOf({ kind }), unit: preset.unit ?? state.unit });
 }
 
 /** What a preset is, in words. @param {string} name */
@@ -73,43 +73,43 @@ export function titleOf(name) {
 /** Take a kind in own values, with what it has in common with the toolkit there was. */
 function useKind(name) {
   const kind = kinds.find((each) => each.name === name);
-  if (kind) change({ viseName: OWN, vise: asKind(kind, state.vise), types: typesOf({ kind: name }) });
+  if (kind) change({ toolkitName: OWN, toolkit: asKind(kind, state.toolkit), types: typesOf({ kind: name }) });
 }
 
 /** What is left of the types sought in another kind; null for all. */
-function typesOf(vise) {
-  const types = state.types?.filter((type) => kindOf(vise).types.some((each) => each.name === type));
+function typesOf(toolkit) {
+  const types = state.types?.filter((type) => kindOf(toolkit).types.some((each) => each.name === type));
   return types?.length ? types : null;
 }
 
 /** Read the fields into the state; what cannot be read is marked and changes nothing. */
 function read() {
-  const kind = kindOf(state.vise);
-  const vise = { kind: kind.name, ...kind.said };
+  const kind = kindOf(state.toolkit);
+  const toolkit = { kind: kind.name, ...kind.said };
   let bad = "";
-  for (const each of fieldsOf(kind, state.vise)) {
-    const { value, wrong } = readField(each, state.vise[each.name]);
+  for (const each of fieldsOf(kind, state.toolkit)) {
+    const { value, wrong } = readField(each, state.toolkit[each.name]);
     if (wrong) bad = bad || each.label;
-    else if (value !== null) vise[each.name] = value;
+    else if (value !== null) toolkit[each.name] = value;
   }
   // What belongs to another choice than the one just made is left behind.
-  const left = fieldsOf(kind, state.vise).filter((each) => !fieldsOf(kind, vise).includes(each));
-  for (const { name } of left) delete vise[name];
+  const left = fieldsOf(kind, state.toolkit).filter((each) => !fieldsOf(kind, toolkit).includes(each));
+  for (const { name } of left) delete toolkit[name];
   const off = TOLERANCES.map((id) => readLength(field(id).value) ?? 0.01);
   TOLERANCES.forEach((id, k) => field(id).setAttribute("aria-invalid", String(!(off[k] >= 0))));
   let words = "";
   if (bad) words = `${bad} is not a number that can be used.`;
-  else if (2 * vise.peg_radius > Math.min(...vise.pitch)) words = "Pegs would overlap in neighbouring holes: take a smaller peg or a larger pitch.";
-  byId("vise-trouble").textContent = words;
-  show(byId("vise-trouble"), words !== "");
+  else if (2 * toolkit.peg_radius > Math.min(...toolkit.pitch)) words = "Pegs would overlap in neighbouring holes: take a smaller peg or a larger pitch.";
+  byId("toolkit-trouble").textContent = words;
+  show(byId("toolkit-trouble"), words !== "");
   if (words || !off.every((value) => value >= 0)) return;
-  const fit = vise.peg_radius === state.vise.peg_radius ? (state.tolerance?.fit ?? null) : null;
+  const fit = toolkit.peg_radius === state.toolkit.peg_radius ? (state.tolerance?.fit ?? null) : null;
   const tolerance = { peg: off[0], face: off[1], fit };
-  const unchanged = same(sorted(vise), sorted({ kind: kind.name, ...state.vise }));
+  const unchanged = same(sorted(toolkit), sorted({ kind: kind.name, ...state.toolkit }));
   const sameOff = off[0] === (state.tolerance?.peg ?? 0.01) && off[1] === (state.tolerance?.face ?? 0.01)
     && fit === (state.tolerance?.fit ?? null);
   if (unchanged && sameOff) return;
-  change({ ...(unchanged ? {} : { vise, viseName: OWN }), ...(sameOff ? {} : { tolerance }) });
+  change({ ...(unchanged ? {} : { toolkit, toolkitName: OWN }), ...(sameOff ? {} : { tolerance }) });
 }
 
 /** An object's entries in the order of their keys. */
@@ -120,16 +120,16 @@ function sorted(values) {
 /** Write the state into the fields, but not under the user's fingers. */
 function write() {
   if (!kinds.length) return;
-  const { vise } = state;
-  const kind = kindOf(vise);
-  const fields = fieldsOf(kind, vise);
+  const { toolkit } = state;
+  const kind = kindOf(toolkit);
+  const fields = fieldsOf(kind, toolkit);
   const wanted = JSON.stringify([kind.name, fields.map(({ name, when }) => [name, when])]);
   if (wanted !== shown) {
     shown = wanted;
     byId("toolkit-usual").replaceChildren(...fields.filter((each) => each.is_usual).flatMap(makeFields));
     byId("toolkit-more").replaceChildren(...fields.filter((each) => !each.is_usual).flatMap(makeFields));
   }
-  for (const each of fields) writeField(each, vise[each.name]);
+  for (const each of fields) writeField(each, toolkit[each.name]);
   const off = [state.tolerance?.peg, state.tolerance?.face];
   TOLERANCES.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = fieldLength(off[k]);
@@ -137,9 +137,9 @@ function write() {
   for (const word of document.querySelectorAll(".unit")) word.textContent = unitWord();
   byId("more-title").textContent = `More about the ${kind.noun}`;
   field("toolkit").value = kind.name;
-  field("preset").value = state.viseName || OWN;
+  field("preset").value = state.toolkitName || OWN;
   field("unit").value = state.unit;
-  const preset = presets.find((each) => each.name === state.viseName);
+  const preset = presets.find((each) => each.name === state.toolkitName);
   const assumed = preset?.assumed.length ? ` Assumed: ${preset.assumed.join(", ").replaceAll("_", " ")}.` : "";
   byId("preset-words").textContent = preset ? `${preset.name}. Source: ${preset.source}.${assumed}` : "Own values.";
 }

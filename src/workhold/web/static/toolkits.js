@@ -19,10 +19,10 @@ export async function learnKinds() {
 
 /**
  * The kind of a toolkit's fields.
- * @param {any} vise
+ * @param {any} toolkit
  */
-export function kindOf(vise) {
-  const name = vise.kind ?? USUAL;
+export function kindOf(toolkit) {
+  const name = toolkit.kind ?? USUAL;
   return kinds.find((kind) => kind.name === name) ?? kinds.find((kind) => kind.name === USUAL) ?? kinds[0];
 }
 
@@ -34,37 +34,37 @@ export function same(a, b) {
 /**
  * The fields of a kind that there are with some values.
  * @param {Kind} kind
- * @param {any} vise
+ * @param {any} toolkit
  */
-export function fieldsOf(kind, vise) {
-  return kind.fields.filter(({ when }) => Object.entries(when).every(([name, value]) => same(vise[name] ?? kind.start[name], value)));
+export function fieldsOf(kind, toolkit) {
+  return kind.fields.filter(({ when }) => Object.entries(when).every(([name, value]) => same(toolkit[name] ?? kind.start[name], value)));
 }
 
 /**
  * A toolkit with some fields changed; null leaves one to its usual value. A kind that says a field by its name is left for
  * the one it stands for where that field becomes another.
- * @param {any} vise
+ * @param {any} toolkit
  * @param {Object<string, any>} fields
  */
-export function withFields(vise, fields) {
-  const kind = kindOf(vise);
+export function withFields(toolkit, fields) {
+  const kind = kindOf(toolkit);
   const left = Object.entries(kind.said).some(([name, value]) => name in fields && !same(fields[name], value));
-  return tidy({ ...vise, ...(left ? { kind: kind.kind } : {}), ...fields });
+  return tidy({ ...toolkit, ...(left ? { kind: kind.kind } : {}), ...fields });
 }
 
 /**
  * A toolkit of a kind that keeps what it can of another one.
  * @param {Kind} kind
- * @param {any} vise
+ * @param {any} toolkit
  */
-export function asKind(kind, vise) {
-  const kept = kind.fields.map(({ name }) => name).filter((name) => name in vise);
-  return tidy({ kind: kind.name, ...kind.start, ...Object.fromEntries(kept.map((name) => [name, vise[name]])), ...kind.said });
+export function asKind(kind, toolkit) {
+  const kept = kind.fields.map(({ name }) => name).filter((name) => name in toolkit);
+  return tidy({ kind: kind.name, ...kind.start, ...Object.fromEntries(kept.map((name) => [name, toolkit[name]])), ...kind.said });
 }
 
 /** Without what is null. */
-function tidy(vise) {
-  return Object.fromEntries(Object.entries(vise).filter(([, value]) => value !== null && value !== undefined));
+function tidy(toolkit) {
+  return Object.fromEntries(Object.entries(toolkit).filter(([, value]) => value !== null && value !== undefined));
 }
 
 /**

@@ -88,7 +88,7 @@ function follow(changed) {
   const { trial, selected } = state;
   const on = trial !== null && selected !== null;
   show(byId("seating"), on);
-  byId("try-close").textContent = kindOf(state.vise).closes;
+  byId("try-close").textContent = kindOf(state.toolkit).closes;
   byId("try").setAttribute("aria-pressed", String(on));
   byId("try").toggleAttribute("disabled", selected === null);
   byId("close-vise").toggleAttribute("disabled", selected === null || on);

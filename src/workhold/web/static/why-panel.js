@@ -6,7 +6,7 @@ import { byId, make, show } from "./dom.js";
 import { appliedHelp } from "./helps.js";
 import { showMiss } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
-import { openVises } from "./vises-dialog.js";
+import { openComparison } from "./comparison-dialog.js";
 import { kindOf, withFields } from "./toolkits.js";
 import { countText } from "./units.js";
 
@@ -47,7 +47,7 @@ export async function explain(job) {
 function write(box, { contacts, removals, nearest, helps }) {
   const parts = [make("p", {}, contacts
     ? `Four pegs can touch the part at the same time in ${countText(contacts)} ways. Each rule takes some of them away:`
-    : `Four pegs of this ${kindOf(state.vise).noun} cannot touch the part at the same time in any way.`)];
+    : `Four pegs of this ${kindOf(state.toolkit).noun} cannot touch the part at the same time in any way.`)];
   if (removals.length) {
     const lines = removals.map((removal, k) =>
       make(k === removals.length - 1 ? "tr.last" : "tr", {},
@@ -60,7 +60,7 @@ function write(box, { contacts, removals, nearest, helps }) {
   parts.push(make("h3", {}, "What would help"));
   if (helps.length) parts.push(make("div.helps", {}, ...helps.map(helpButton)));
   else parts.push(make("p", {}, "No single change that was tried gives a fixture."));
-  parts.push(make("div", {}, make("button.strong", { type: "button", click: openVises }, "Try all others")));
+  parts.push(make("div", {}, make("button.strong", { type: "button", click: openComparison }, "Try all others")));
   box.replaceChildren(...parts);
 }
 
@@ -68,7 +68,7 @@ function write(box, { contacts, removals, nearest, helps }) {
 function helpButton(help) {
   const count = `${help.complete ? "" : "over "}${countText(help.fixtures)}`;
   const words = `${help.change}: ${count} fixture${help.fixtures === 1 ? "" : "s"}`;
-  const patch = help.toolkit ? { vise: withFields(state.vise, help.toolkit), viseName: "own" } : appliedHelp(help.change, state);
+  const patch = help.toolkit ? { toolkit: withFields(state.toolkit, help.toolkit), toolkitName: "own" } : appliedHelp(help.change, state);
   if (!patch) return make("p", {}, words);
   return make("button", { type: "button", click: () => change(patch) }, words);
 }

@@ -13,26 +13,26 @@ let latest = 0;
 let figures = [];
 
 /** @param {any[]} known the figures of quality */
-export function visesDialog(known) {
+export function comparisonDialog(known) {
   figures = known;
-  byId("sweep").addEventListener("click", openVises);
-  byId("vises").addEventListener("close", () => (latest += 1));
+  byId("sweep").addEventListener("click", openComparison);
+  byId("comparison").addEventListener("close", () => (latest += 1));
 }
 
 /** Open the dialog and let the server compare. */
-export async function openVises() {
+export async function openComparison() {
   if (!state.part) return;
   const mine = ++latest;
-  const dialog = /** @type {HTMLDialogElement} */ (byId("vises"));
-  const bar = /** @type {HTMLProgressElement} */ (byId("vises-progress"));
-  byId("vises-table").replaceChildren();
+  const dialog = /** @type {HTMLDialogElement} */ (byId("comparison"));
+  const bar = /** @type {HTMLProgressElement} */ (byId("comparison-progress"));
+  byId("comparison-table").replaceChildren();
   bar.removeAttribute("value");
   show(bar, true);
   dialog.showModal();
   let job = null;
   try {
-    const { vise, seating, opening, foolproof, ...rest } = request();
-    ({ job } = await send("explore", { ...rest, tolerance: null, vises: null }));
+    const { toolkit, seating, opening, foolproof, ...rest } = request();
+    ({ job } = await send("explore", { ...rest, tolerance: null, toolkits: null }));
     for (;;) {
       const answer = await ask(`jobs/${encodeURIComponent(job)}`);
       if (mine !== latest) break;
@@ -44,7 +44,7 @@ export async function openVises() {
     }
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (mine === latest) byId("vises-table").replaceChildren(make("p.trouble-box", {}, error.message));
+    if (mine === latest) byId("comparison-table").replaceChildren(make("p.trouble-box", {}, error.message));
   } finally {
     if (mine === latest) show(bar, false);
     if (job) ask(`jobs/${encodeURIComponent(job)}`, { method: "DELETE" }).catch(() => {});
@@ -58,12 +58,12 @@ function write(table) {
   const usual = ["warnings", "tilt", "location_error", "clamp_amplification", "closure_margin"];
   const columns = usual.map((key) => shown.find((figure) => figure.key === key)).filter(Boolean);
   const lines = table.map((line) => {
-    const name = line.name ?? line.title ?? line.vise?.name ?? line.vise?.title ?? "";
+    const name = line.name ?? line.title ?? line.toolkit?.name ?? line.toolkit?.title ?? "";
     const counts = line.counts ?? {};
     const total = Object.values(counts).reduce((sum, count) => sum + count, 0);
     const first = figuresOf(line);
     const take = () => {
-      /** @type {HTMLDialogElement} */ (byId("vises")).close();
+      /** @type {HTMLDialogElement} */ (byId("comparison")).close();
       usePreset(name);
     };
     return make(total && !line.fit ? "tr.unfit" : "tr", {},
@@ -72,14 +72,14 @@ function write(table) {
       make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
   });
   const heads = ["What you have", "Fixtures", ...columns.map((figure) => figure.words), ""];
-  byId("vises-table").replaceChildren(
+  byId("comparison-table").replaceChildren(
     make("table", {}, make("caption.unseen", {}, "The first choice in each"),
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(k && words ? "th.number" : words ? "th" : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
   );
 }
 
-/** The figures of the first choice in a vise, by key. */
+/** The figures of the first choice in a toolkit, by key. */
 function figuresOf(line) {
   return line.figures ?? {};
 }

@@ -1,4 +1,4 @@
-"""Options that describe the vise or plate, shared by the commands that search."""
+"""Options that describe the toolkit, shared by the commands that search."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from workhold.model.tolerance import Tolerance
     from workhold.model.toolkit import Toolkit
 
-__all__ = ["TOOLKIT", "ViseWords"]
+__all__ = ["TOOLKIT", "ToolkitWords"]
 
-VISE = "The vise or plate"
-PLATE = "The clamps of a plate"
+HELD_IN = "The toolkit"
+CLAMPS = "The clamps of a plate or fence"
 
 
 TOOLKIT = option(
-    VISE,
+    HELD_IN,
     "NAME|FILE",
     "vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. gripper: a vise of "
     "one column. plate: three locators on a plate of holes, and a clamp or two. fence: a straight wall that the part lies "
-    "flush against, one locator and a clamp. Or a name of workhold vises, or a TOML file. vise if not given.",
+    "flush against, one locator and a clamp. Or a name of workhold toolkits, or a TOML file. vise if not given.",
     "--toolkit",
 )
 # Options that only one kind of toolkit has.
@@ -35,67 +35,69 @@ OF_PLATES = ("clamps", "clamp_radius", "travel", "direction", "wall_offset")
 
 
 @frozen
-class ViseWords:
-    """What was typed about the vise or plate; None for options not given."""
+class ToolkitWords:
+    """What was typed about the toolkit; None for options not given."""
 
     vise: str | None = option(
-        VISE,
+        HELD_IN,
         "NAME|FILE",
         "The same as --toolkit; the options below change what it says.",
     )
     toolkit: str | None = TOOLKIT
-    pitch: str | None = option(VISE, "X[,Y]", "Distance between neighbouring holes, one for both directions or X,Y.")
+    pitch: str | None = option(HELD_IN, "X[,Y]", "Distance between neighbouring holes, one for both directions or X,Y.")
     columns: str | None = option(
-        VISE, "N", "Columns of holes on each jaw, or on the plate: as many as needed if not given."
+        HELD_IN, "N", "Columns of holes on each jaw, or on the plate: as many as needed if not given."
     )
-    peg_radius: str | None = option(VISE, "LENGTH", "Radius of the pegs where they touch the part.")
+    peg_radius: str | None = option(HELD_IN, "LENGTH", "Radius of the pegs where they touch the part.")
     body_radius: str | None = option(
-        VISE,
+        HELD_IN,
         "LENGTH",
         "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
     )
     flat: str | None = option(
-        VISE,
+        HELD_IN,
         "DISTANCE[,WIDTH/2]",
         "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its width.",
     )
-    rows: str | None = option(VISE, "N", "Rows of holes; as many as needed if not given.")
+    rows: str | None = option(HELD_IN, "N", "Rows of holes; as many as needed if not given.")
     blocked: list[str] | None = option(
-        VISE, "HOLES", "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated."
+        HELD_IN, "HOLES", "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated."
     )
     min_gap: str | None = option(
-        VISE, "LENGTH", "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given."
+        HELD_IN,
+        "LENGTH",
+        "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
     )
     min_opening: str | None = option(
-        VISE, "LENGTH", "Smallest distance from the left jaw's last column to the right jaw's first, if larger."
+        HELD_IN, "LENGTH", "Smallest distance from the left jaw's last column to the right jaw's first, if larger."
     )
     max_opening: str | None = option(
-        VISE,
+        HELD_IN,
         "LENGTH",
         "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
     )
-    row_offset: str | None = option(VISE, "LENGTH", "Height of the right jaw's rows above the left jaw's.")
+    row_offset: str | None = option(HELD_IN, "LENGTH", "Height of the right jaw's rows above the left jaw's.")
     clamps: str | None = option(
-        PLATE,
+        CLAMPS,
         "1|2",
         "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
     )
-    clamp_radius: str | None = option(PLATE, "LENGTH", "Radius of the clamp's round tip; the peg radius if not given.")
+    clamp_radius: str | None = option(CLAMPS, "LENGTH", "Radius of the clamp's round tip; the peg radius if not given.")
     travel: str | None = option(
-        PLATE,
+        CLAMPS,
         "LEAST,MOST",
         "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its body, if not "
         "given.",
     )
     direction: str | None = option(
-        PLATE,
+        CLAMPS,
         "LIST",
         "In which the clamp may push: among -x, +x, -y, +y, such as --direction=-x,-y; all that a turn of the "
         "plate does not make of another one, if not given. Of two clamps pairs, such as --direction=-x:-y,-x:+y, or single "
         "ones for all pairs of them.",
     )
     wall_offset: str | None = option(
-        PLATE, "LENGTH", "Of a fence: distance from its wall to the first row of holes' centres; must be given."
+        CLAMPS, "LENGTH", "Of a fence: distance from its wall to the first row of holes' centres; must be given."
     )
 
     def fields(self, unit: Unit) -> dict[str, Any]:
@@ -184,9 +186,9 @@ class ViseWords:
         if len(named) > 1:
             raise InputError(f"--vise {named[0]} and --toolkit {named[1]} name two toolkits: give one of them.")
         if named:
-            from workhold.files.toolkit.presets import load_vise
+            from workhold.files.toolkit.presets import load_toolkit
 
-            loaded = load_vise(named[0])
+            loaded = load_toolkit(named[0])
             kind, said, tolerance = loaded.kind, loaded.fields, loaded.tolerance
             if fields.get("peg_radius", said["peg_radius"]) != said["peg_radius"]:
                 tolerance = evolve(tolerance, fit=None)
@@ -207,7 +209,7 @@ class ViseWords:
                 noun = KINDS[kind].noun
                 raise InputError(
                     f"the {noun}'s {words} is not given: add {option_name}, or name a {noun} with --toolkit (see workhold "
-                    "vises)."
+                    "toolkits)."
                 )
         vise = toolkit_of(kind, fields)
         if not isinstance(vise, Vise):

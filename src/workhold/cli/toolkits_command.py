@@ -1,4 +1,4 @@
-"""``workhold vises``: the vises and plates that come with workhold, and what a file of one says."""
+"""``workhold toolkits``: the vises, plates and fences that come with workhold, and what a file of one says."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from workhold.cli.values import length_unit
 
 if TYPE_CHECKING:
     from workhold.cli.tables import Table
-    from workhold.files.toolkit.reader import LoadedVise
+    from workhold.files.toolkit.reader import LoadedToolkit
     from workhold.model.dowel import Limits
     from workhold.model.units import Unit
 
-__all__ = ["vises"]
+__all__ = ["toolkits"]
 
 
-def vises(
+def toolkits(
     name: Annotated[
         str | None,
         typer.Argument(metavar="[VISE]", help="Show all figures of this one: a name, or a TOML file of your own."),
@@ -28,41 +28,42 @@ def vises(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """List the vises and plates that come with workhold, or show all figures of one.
+    """List the vises, plates and fences that come with workhold, or show all figures of one.
 
-    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with two. The others
-    are such plates, one on each jaw of a vise; their number of columns is a usual one: your jaws may have more or fewer.
+    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with two, fence- with
+    a fence and one locator. The others are vises with such a plate on each jaw; their number of columns is a usual one:
+    your jaws may have more or fewer.
 
-    Example: workhold vises plate-one-inch --unit inch
+    Example: workhold toolkits plate-one-inch --unit inch
     """
     shown = None if unit is None else length_unit(unit)
     from workhold.cli.tables import print_tables
-    from workhold.files.toolkit.presets import load_vise, preset_names
+    from workhold.files.toolkit.presets import load_toolkit, preset_names
     from workhold.model.units import MILLIMETRE
 
     if json_:
         from workhold.presenting.data import toolkit_data
 
-        print_json(toolkits=[toolkit_data(load_vise(one)) for one in (preset_names() if name is None else [name])])
+        print_json(toolkits=[toolkit_data(load_toolkit(one)) for one in (preset_names() if name is None else [name])])
         return
     if name is None:
-        print_tables(vises_table(shown or MILLIMETRE))
+        print_tables(toolkits_table(shown or MILLIMETRE))
         return
-    loaded = load_vise(name)
+    loaded = load_toolkit(name)
     print_tables(*(line for line in (loaded.name, loaded.title) if line), figures_table(loaded, shown or loaded.unit))
     if loaded.source:
         print_tables(f"Source: {loaded.source}.")
 
 
-def vises_table(unit: Unit) -> Table:
+def toolkits_table(unit: Unit) -> Table:
     """All presets, one line each, with lengths in a unit."""
     from workhold.cli.tables import Table
-    from workhold.files.toolkit.presets import load_vise, preset_names
+    from workhold.files.toolkit.presets import load_toolkit, preset_names
 
     of = unit.abbreviation
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
     for name in preset_names():
-        loaded = load_vise(name)
+        loaded = load_toolkit(name)
         first = loaded.toolkit.carriers[0]
         table.add_row(
             name,
@@ -75,8 +76,8 @@ def vises_table(unit: Unit) -> Table:
     return table
 
 
-def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
-    """Every figure of a vise or plate, one line each."""
+def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
+    """Every figure of a toolkit, one line each."""
     from workhold.cli.tables import Table
     from workhold.model.vise import Vise
 
@@ -103,7 +104,7 @@ def figures_table(loaded: LoadedVise, unit: Unit) -> Table:
     return table
 
 
-def own_figures(loaded: LoadedVise, unit: Unit) -> Iterator[tuple[str, str]]:
+def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     """What only a toolkit of its kind has, and its value in words."""
     from workhold.model.fence import Fence
     from workhold.model.plate import Plate
