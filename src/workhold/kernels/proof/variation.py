@@ -140,6 +140,20 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
 
 
 @inner
+def face_one_way(pairs: Array, b: Array) -> bool:
+    """Whether all normals have a part along the first one everywhere in a part: no forces of such contacts add up to none.
+
+    So it is where pegs in one row of holes touch a line and the arcs beside it at tangent joints, along which the workpiece
+    seems to slide: these contacts hardly tell where it is, but which way they face.
+    """
+    for k in range(4):
+        along = pairs[2, 0, 0] * pairs[2, k, 0] + pairs[2, 0, 1] * pairs[2, k, 1]
+        if along <= b[TILT, k] + ROUNDINGS:
+            return False
+    return True
+
+
+@inner
 def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array) -> bool:
     """Whether some rule is broken everywhere in a part."""
     reach = 0.0
@@ -168,6 +182,8 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
     if setting.limits.pairing != 0.0:
         pushes = setting.limits.clamping * b[ALONG_X, 3] + b[FORCE_BAND, 3] >= LEAST_PUSH
         return not (pushes and abs(null[3]) + b[MINOR_BAND, 3] >= LEAST_SEAT)
+    if face_one_way(pairs, b):
+        return True
     doubt = b[MINOR_BAND, 0] + b[MINOR_BAND, 1] + b[MINOR_BAND, 2] + b[MINOR_BAND, 3]
     if size + doubt < LEAST_SPAN:
         return True
