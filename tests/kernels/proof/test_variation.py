@@ -39,7 +39,7 @@ def tilted(*tilts: float) -> np.ndarray:
 
 @pytest.mark.parametrize("turned", [0.0, 2.0, 4.0])
 def test_normals_face_one_way_up_to_what_each_may_turn(turned: float) -> None:
-    """Four within 1.5 radians of the first do, unless one may turn so far that it is square to it; opposite ones never do."""
+    """Four within 1.5 radians of the first do, unless one may turn so far that it is square to it; opposite ones never."""
     at = [turned + angle for angle in (0.0, 0.3, -0.8, 1.5)]
     assert face_one_way(normals(*at), tilted(0, 0, 0, 0))
     assert face_one_way(normals(*at), tilted(0.9, 0.9, 0.6, 0.9 * cos(1.5)))
