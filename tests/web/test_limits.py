@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Iterator
+from math import cos, sin, tau
 
 import pytest
-from running_server import LONG, PATIENCE, SQUARE, RunningServer, arriving, request, running_server
+from running_server import LONG, PATIENCE, RunningServer, arriving, request, running_server
 from test_parts import refused
 
 LIMITED = {
@@ -124,8 +125,9 @@ def test_a_search_that_takes_too_long_shows_what_it_found(hasty: RunningServer) 
 
 
 def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: RunningServer) -> None:
-    huge = {"pitch": [0.2, 0.2], "columns": 200, "peg_radius": 0.01}
-    state = strict.outcome(strict.submit(request(toolkit=huge, workpiece={"name": "s", "loops": [SQUARE]})))
+    corners = [[30 * cos(tau * k / 120), (30 - k % 3) * sin(tau * k / 120), 0.0] for k in range(120)]
+    huge = {"pitch": [0.5, 0.5], "columns": 60, "peg_radius": 0.01}
+    state = strict.outcome(strict.submit(request(toolkit=huge, workpiece={"name": "s", "loops": [corners]})))
     assert state["state"] == "failed" and "memory" in state["error"]
     assert strict.outcome(strict.submit(request()))["state"] == "done"
 
