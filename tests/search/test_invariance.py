@@ -14,7 +14,7 @@ from fixture_sets import Judge, assert_same, listed, mirrored, turned
 from strategies import outlines
 from workhold import Vise, Workpiece, design
 
-EXAMPLES = 8
+EXAMPLES = 5
 pitches = st.sampled_from([9.0, 12.0, 16.0])
 columns = st.integers(1, 2)
 offsets = st.sampled_from([0.0, 0.0, 0.5, 0.3])

@@ -157,7 +157,7 @@ def test_a_crowned_edge_costs_like_an_arc(bulge: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "bulge", [1e-4, -1e-5, *(pytest.param(bulge, marks=pytest.mark.prove) for bulge in (1e-5, -1e-4))]
+    "bulge", [-1e-5, *(pytest.param(bulge, marks=pytest.mark.prove) for bulge in (1e-4, 1e-5, -1e-4))]
 )
 def test_fixtures_of_a_crowned_edge_become_those_of_a_straight_one(bulge: float) -> None:
     """All fixtures of the straight plate follow. What there is besides holds by the slope of the crown alone: all four pegs
