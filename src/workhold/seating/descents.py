@@ -60,7 +60,8 @@ class Closing:
         out = np.array(configs, dtype=np.float64)
         ends = np.zeros(len(out), np.int8)
         work = WorkSpace.for_pieces(len(obstacles.rows))
-        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, np.array(seats), work, ends)
+        known = seats[np.argsort(seats[:, 3], kind="stable")]
+        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, known, work, ends)
         return out, ends
 
     def escape(self, configs: Array) -> NDArray[np.bool_]:

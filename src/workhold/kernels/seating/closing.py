@@ -20,6 +20,7 @@ from workhold.kernels.seating.squeezing import squeeze
 from workhold.kernels.seating.walls import add_wall
 
 Array = NDArray[np.float64]
+Four = tuple[float, float, float, float]
 
 # How a descent ended.
 GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
@@ -32,6 +33,8 @@ AROUND = 0.1
 REACH = 6.0
 # mm. What is entered by less is not; how often what is met may change on one way out.
 BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40
+# No unit. Ways that come nearer to something by less than this share go along it.
+ALONG = 1e-10
 # Steps of linear programs that follow where squeezing found something in the way.
 WAIT = 3
 # mm. Configurations as near to a seat as this, in place and in separation, go there.
@@ -118,7 +121,8 @@ def add_normal(number: int, count: int, place: int, work: WorkSpace) -> bool:
             new[j] -= dot * work.basis[p, j]
     norm = sqrt(new[0] * new[0] + new[1] * new[1] + new[2] * new[2] + new[3] * new[3])
     triangle[place, place] = norm
-    if norm < 1e-9:
+    if norm < 1e-9 or place == 4:
+        # There are four unknowns: what a fifth has left is rounding.
         return False
     for j in range(4):
         new[j] /= norm
@@ -202,6 +206,60 @@ def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace)
 
 
 @inner
+def way_left(work: WorkSpace, size: int) -> Four:
+    """The way on which S falls fastest and that ``size`` normals of the basis leave."""
+    basis = work.basis
+    wx, wy, wz, ws = 0.0, 0.0, 0.0, -1.0
+    for q in range(size):
+        dot = basis[q, 0] * wx + basis[q, 1] * wy + basis[q, 2] * wz + basis[q, 3] * ws
+        wx -= dot * basis[q, 0]
+        wy -= dot * basis[q, 1]
+        wz -= dot * basis[q, 2]
+        ws -= dot * basis[q, 3]
+    return (wx, wy, wz, ws)
+
+
+@inner
+def holding_back(work: WorkSpace, size: int) -> int:
+    """The place of the working normal that pulls most, -1 where none does: multipliers by back substitution in the triangle
+    that orthogonalizing left."""
+    basis, triangle = work.basis, work.triangle
+    worst, dropped = -1e-9, -1
+    for q in range(size - 1, -1, -1):
+        multiplier = basis[q, 3]
+        for p in range(q + 1, size):
+            multiplier -= triangle[q, p] * triangle[p, 5]
+        triangle[q, 5] = multiplier / triangle[q, q]
+        if triangle[q, 5] < worst:
+            worst, dropped = triangle[q, 5], q
+    return dropped
+
+
+@inner
+def first_to_block(count: int, trust: float, step: Four, way: Four, taken: int, work: WorkSpace) -> tuple[float, int]:
+    """How far a step can go on along a way, and the clearance or, from ``count`` on, the side of the box that ends it, -1
+    where none does; ``taken`` has a bit for each clearance that the way keeps."""
+    near, length, blocking = work.near, inf, -1
+    for i in range(count):
+        if taken >> i & 1:
+            continue
+        rate = near[i, 0] * way[0] + near[i, 1] * way[1] + near[i, 2] * way[2] + near[i, 3] * way[3]
+        if rate < -ALONG:
+            room = max(near[i, 4], 0.0) + near[i, 0] * step[0] + near[i, 1] * step[1]
+            room = max(room + near[i, 2] * step[2] + near[i, 3] * step[3], 0.0)
+            if room < length * -rate:
+                length, blocking = room / -rate, i
+    for j in range(4):
+        # A side that the way keeps it does not come nearer to.
+        rate = -abs(way[j])
+        if rate < -ALONG:
+            room = max(trust - step[j] if way[j] > 0.0 else trust + step[j], 0.0)
+            if room < length * -rate:
+                length, blocking = room / -rate, count + 2 * j + (1 if way[j] > 0.0 else 0)
+    return (length, blocking)
+
+
+@inner
 def best_step(count: int, trust: float, work: WorkSpace) -> float:
     """Write the step that lowers S most within a box of half width ``trust`` and ``count`` linearized clearances; return by
     how much S falls.
@@ -209,83 +267,59 @@ def best_step(count: int, trust: float, work: WorkSpace) -> float:
     A primal active-set method: descend in the null space of the working normals to what blocks, and drop a normal that holds
     back (M. J. Best and K. Ritter, *Linear Programming: Active Set Analysis and Computer Programs*, 1985).
     """
-    near, basis, triangle, step, way, members = work.near, work.basis, work.triangle, work.step, work.way, work.members
-    for j in range(4):
-        step[j] = 0.0
-    size = 0
+    step, members = (0.0, 0.0, 0.0, 0.0), work.members
+    size, taken = 0, 0
     for _ in range(60):
-        for j in range(4):
-            way[j] = -1.0 if j == 3 else 0.0
-        for q in range(size):
-            dot = 0.0
-            for j in range(4):
-                dot += basis[q, j] * way[j]
-            for j in range(4):
-                way[j] -= dot * basis[q, j]
+        way = way_left(work, size)
         if way[0] * way[0] + way[1] * way[1] + way[2] * way[2] + way[3] * way[3] < 1e-14:
-            # Multipliers by back substitution in the triangle that orthogonalizing left.
-            worst, dropped = -1e-9, -1
-            for q in range(size - 1, -1, -1):
-                multiplier = basis[q, 3]
-                for p in range(q + 1, size):
-                    multiplier -= triangle[q, p] * triangle[p, 5]
-                triangle[q, 5] = multiplier / triangle[q, q]
-                if triangle[q, 5] < worst:
-                    worst, dropped = triangle[q, 5], q
+            dropped = holding_back(work, size)
             if dropped < 0:
                 break
+            if members[dropped] < count:
+                taken ^= 1 << members[dropped]
             for q in range(dropped, size - 1):
                 members[q] = members[q + 1]
             size -= 1
             for q in range(size):
                 add_normal(members[q], count, q, work)
             continue
-        length, blocking = inf, -1
-        for i in range(count + 8):
-            taken = False
-            for q in range(size):
-                taken = taken or members[q] == i
-            if taken:
-                continue
-            if i < count:
-                rate, room = 0.0, max(near[i, 4], 0.0)
-                for j in range(4):
-                    rate += near[i, j] * way[j]
-                    room += near[i, j] * step[j]
-            else:
-                j = (i - count) // 2
-                sign = 1.0 if (i - count) % 2 == 0 else -1.0
-                rate, room = sign * way[j], trust + sign * step[j]
-            if rate < -1e-10 and max(room, 0.0) < length * -rate:
-                length, blocking = max(room, 0.0) / -rate, i
+        length, blocking = first_to_block(count, trust, step, way, taken, work)
         if blocking < 0:
             break
-        for j in range(4):
-            step[j] += length * way[j]
+        step = (
+            step[0] + length * way[0],
+            step[1] + length * way[1],
+            step[2] + length * way[2],
+            step[3] + length * way[3],
+        )
         members[size] = blocking
         if add_normal(blocking, count, size, work):
+            taken |= 1 << blocking if blocking < count else 0
             size += 1
         elif length == 0.0:
             break
+    for j in range(4):
+        work.step[j] = step[j]
     return -step[3]
 
 
 @inner
-def is_in_one_of(config: Array, seats: Array, size: float) -> bool:
-    """Whether a configuration is as good as that of a seat."""
-    for k in range(seats.shape[0]):
-        if abs(config[3] - seats[k, 3]) < SAME_LEVEL:
-            away = abs(config[1] - seats[k, 1]) + abs(config[2] - seats[k, 2])
-            turn = config[0] - seats[k, 0]
-            if away + abs(turn - 2.0 * pi * floor(turn / (2.0 * pi) + 0.5)) * size < SAME_PLACE:
-                return True
+def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
+    """Whether a configuration is as good as that of one of the first ``end`` seats, which are ordered by S."""
+    for k in range(end - 1, -1, -1):
+        if seats[k, 3] <= config[3] - SAME_LEVEL:
+            break
+        away = abs(config[1] - seats[k, 1]) + abs(config[2] - seats[k, 2])
+        turn = config[0] - seats[k, 0]
+        if away + abs(turn - 2.0 * pi * floor(turn / (2.0 * pi) + 0.5)) * size < SAME_PLACE:
+            return True
     return False
 
 
 @inner
 def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, seats: Array, work: WorkSpace) -> int:
     """Close the jaws from a configuration, in place; how it ended."""
-    trial, longest, wait = work.trial, trust, 0
+    trial, longest, wait, below = work.trial, trust, 0, seats.shape[0]
     count = push_out(config, obstacles, 8.0 * trust + 1e-6, work)
     if count < 0:
         return GAVE_UP
@@ -293,7 +327,9 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
         if config[3] <= obstacles.stop + 1e-9:
             config[3] = obstacles.stop
             return AT_THE_STOP
-        if is_in_one_of(config, seats, obstacles.size):
+        while below > 0 and seats[below - 1, 3] >= config[3] + SAME_LEVEL:
+            below -= 1
+        if is_in_one_of(config, seats, below, obstacles.size):
             return AT_REST
         if count < 0:
             count = look_around(config, obstacles, REACH * trust, work)
@@ -345,7 +381,7 @@ def close_jaws(
     Parameters
     ----------
     first, most : how long the first steps are, and all, in mm.
-    seats : (M, 4) configurations at which closing ends, known beforehand.
+    seats : (M, 4) configurations at which closing ends, known beforehand, ordered by S.
     ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
     """
     for peg in range(obstacles.pegs.shape[0]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, inf, pi, sin
+from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,15 +87,18 @@ def distance_to(row: Array, x: float, y: float) -> float:
     if row[IS_ARC] == 0.0:
         across = dx * row[AXIS_Y] - dy * row[AXIS_X]
         beyond = max(abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) - row[HALF_EXTENT], 0.0)
-        return hypot(beyond, across) if across >= 0.0 else -hypot(beyond, across)
-    size = hypot(dx, dy)
-    if row[HALF_EXTENT] >= pi or abs(angle_from_middle(row, dx, dy)) <= row[HALF_EXTENT]:
+        away = sqrt(beyond * beyond + across * across)
+        return away if across >= 0.0 else -away
+    size = sqrt(dx * dx + dy * dy)
+    angle = 0.0 if row[HALF_EXTENT] >= pi else angle_from_middle(row, dx, dy)
+    if abs(angle) <= row[HALF_EXTENT]:
         return row[SIGN] * (size - row[RADIUS])
-    end = row[HALF_EXTENT] if angle_from_middle(row, dx, dy) > 0.0 else -row[HALF_EXTENT]
+    end = row[HALF_EXTENT] if angle > 0.0 else -row[HALF_EXTENT]
     nx = row[AXIS_X] * cos(end) - row[AXIS_Y] * sin(end)
     ny = row[AXIS_Y] * cos(end) + row[AXIS_X] * sin(end)
     ex, ey = dx - row[RADIUS] * nx, dy - row[RADIUS] * ny
-    return hypot(ex, ey) if row[SIGN] * (ex * nx + ey * ny) >= 0.0 else -hypot(ex, ey)
+    away = sqrt(ex * ex + ey * ey)
+    return away if row[SIGN] * (ex * nx + ey * ny) >= 0.0 else -away
 
 
 @inner
@@ -110,7 +113,7 @@ def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
         row = rows[k]
         # What cannot be nearer: its carrier is not.
         dx, dy = x - row[X], y - row[Y]
-        off = dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else hypot(dx, dy) - row[RADIUS]
+        off = dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else sqrt(dx * dx + dy * dy) - row[RADIUS]
         if abs(off) < abs(best) + SAME_END:
             d = distance_to(row, x, y)
             if abs(d) < abs(best) - SAME_END or (abs(d) < abs(best) + SAME_END and d < 0.0):

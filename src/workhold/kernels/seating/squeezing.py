@@ -9,7 +9,7 @@ programs go to and fro.
 
 from __future__ import annotations
 
-from math import asin, atan2, cos, floor, hypot, pi, sin
+from math import atan2, cos, floor, hypot, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,8 +67,8 @@ def parameter(row: Array, x: float, y: float) -> float:
 def is_peg_free(x: float, y: float, peg: int, obstacles: Obstacles, known: Array) -> bool:
     """Whether a peg at a place of the part is not in it. Nor is it where the part is farther than the place from one at
     which its clearance is known, or in other words within a disc (x, y, radius) that is."""
-    off = hypot(x - known[peg, 0], y - known[peg, 1])
-    if off < known[peg, 2]:
+    dx, dy = x - known[peg, 0], y - known[peg, 1]
+    if known[peg, 2] > 0.0 and dx * dx + dy * dy < known[peg, 2] * known[peg, 2]:
         return True
     side = obstacles.right[peg]
     free = clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1])
@@ -95,27 +95,28 @@ def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: 
 @inner
 def squeezed(
     config: Array, p: int, q: int, x: float, y: float, v: float, w: float, obstacles: Obstacles, trial: Array
-) -> bool:
+) -> tuple[bool, float, float]:
     """Write the configuration in which pegs p and q stand at two places of the part; whether there is one, short of the
-    stop."""
+    stop, and the cosine and the sine of its orientation."""
     run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
-    d = hypot(v - x, w - y)
-    if d <= abs(rise):
-        return False
-    omega = asin(rise / d)
-    theta = omega - atan2(w - y, v - x)
+    dx, dy = v - x, w - y
+    square = dx * dx + dy * dy
+    if square <= rise * rise:
+        return (False, 1.0, 0.0)
+    # From the direction of both places on the part to that of both pegs.
+    along = sqrt(square - rise * rise)
+    cosine, sine = (along * dx + rise * dy) / square, (rise * dx - along * dy) / square
+    theta = atan2(sine, cosine)
     theta += 2.0 * pi * floor((config[0] - theta) / (2.0 * pi) + 0.5)
-    cosine, sine = cos(theta), sin(theta)
-    trial[0], trial[3] = theta, d * cos(omega) - run
+    trial[0], trial[3] = theta, along - run
     trial[1] = obstacles.pegs[p, 0] - (cosine * x - sine * y)
     trial[2] = obstacles.pegs[p, 1] - (sine * x + cosine * y)
-    return trial[3] > obstacles.stop
+    return (trial[3] > obstacles.stop, cosine, sine)
 
 
 @inner
-def is_free(config: Array, p: int, q: int, obstacles: Obstacles, known: Array) -> bool:
-    """Whether no peg but two is in the part, and the part in no wall."""
-    cosine, sine = cos(config[0]), sin(config[0])
+def is_free(config: Array, cosine: float, sine: float, p: int, q: int, obstacles: Obstacles, known: Array) -> bool:
+    """Whether no peg but two is in the part, and the part in no wall, at an orientation of which both are known."""
     for peg in range(obstacles.pegs.shape[0]):
         if peg in (p, q):
             continue
@@ -192,12 +193,13 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
             s, t = along_a * part / PARTS, along_b * part / PARTS
             x, y = moved_along(a, ax, ay, s)
             v, w = moved_along(b, bx, by, t)
+            good, cosine, sine = squeezed(config, p, q, x, y, v, w, obstacles, trial)
             good = (
-                keeps_to(a_number, a_at + s / a_unit, p, x, y, obstacles, known)
-                and keeps_to(b_number, b_at + t / b_unit, q, v, w, obstacles, known)
-                and squeezed(config, p, q, x, y, v, w, obstacles, trial)
+                good
                 and trial[3] < level - GAIN
-                and is_free(trial, p, q, obstacles, known)
+                and keeps_to(a_number, a_at + s / a_unit, p, x, y, obstacles, known)
+                and keeps_to(b_number, b_at + t / b_unit, q, v, w, obstacles, known)
+                and is_free(trial, cosine, sine, p, q, obstacles, known)
             )
             if not good:
                 break

@@ -23,6 +23,8 @@ SUPPORTS = 1e-12
 def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, count: int) -> int:
     """Write clearances from the wall within a reach after ``count`` others, see ``closing.look_around``; the new count. In
     the place of a peg stands -1."""
+    if obstacles.hull.shape[0] == 0:
+        return count
     cosine, sine = cos(config[0]), sin(config[0])
     ux, uy = obstacles.wall[0], obstacles.wall[1]
     px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
@@ -43,7 +45,10 @@ def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, cou
 @inner
 def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
     """Distance in mm of the part from the wall, infinite where there is none; what supports may fall short by a slack."""
-    cosine, sine, best = cos(config[0]), sin(config[0]), inf
+    best = inf
+    if obstacles.hull.shape[0] == 0:
+        return best
+    cosine, sine = cos(config[0]), sin(config[0])
     ux, uy = obstacles.wall[0], obstacles.wall[1]
     px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
     for k in range(obstacles.hull.shape[0]):
