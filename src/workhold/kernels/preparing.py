@@ -53,7 +53,7 @@ from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
-from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces
+from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
 from workhold.kernels.seating.standing import CHANGE_LENGTH, stationary
@@ -144,6 +144,7 @@ def seats_and_passes() -> Calls:
         yield slid, (slides, given, many)
     yield slides_held, (slides, cells, cells, given, pockets, many)
     yield at_tangencies, (0, 0, np.zeros((0, ALPHA + 1)), 0.0, 0.0, given, many)
+    yield tangent_chords, (rows, 0, 0, 1.0, np.zeros((0, ALPHA + 1)))
     yield on_three_faces, (slides, given, 0.0, 0.0, np.zeros((0, THREE_FACES)))
     touched, seen, clear = np.zeros(4, np.int64), np.zeros((4, 3)), np.zeros((0, 4))
     yield free_ones, (np.zeros((0, 4)), touched, 0, obstacles, seen, clear, np.zeros(0, np.int8))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,47 @@ def are_parallel(one: Array, two: Array) -> bool:
     if one[IS_ARC] != 0.0 or two[IS_ARC] != 0.0:
         return False
     return abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X]) <= PARALLEL
+
+
+@inner
+def has_parallel(rows: Array, number: int) -> bool:
+    """Whether another line is parallel to one."""
+    count = 0
+    for k in range(rows.shape[0]):
+        count += are_parallel(rows[number], rows[k])
+    return count > 1
+
+
+@compiled
+def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> int:
+    """Write the tangencies (C, 5) of chords of length d from lines that have a parallel to arcs, both of pieces ``first`` to
+    ``end``: the arc's normal at the head is the line's. Return their number, or -1 where they do not fit."""
+    count = 0
+    for a in range(first, end):
+        line = rows[a]
+        if line[IS_ARC] != 0.0 or not has_parallel(rows, a):
+            continue
+        nx, ny = line[AXIS_Y], -line[AXIS_X]
+        for number in range(2 * first, 2 * end):
+            arc, side = rows[number // 2], 1.0 - 2.0 * (number % 2)
+            if arc[IS_ARC] == 0.0:
+                continue
+            x, y = arc[X] + side * arc[RADIUS] * nx, arc[Y] + side * arc[RADIUS] * ny
+            rise = (x - line[X]) * nx + (y - line[Y]) * ny
+            if abs(rise) >= d or not on_piece(arc, x, y, END_SLACK):
+                continue
+            for way in range(2):
+                run = (1.0 - 2.0 * way) * sqrt(d * d - rise * rise)
+                wx, wy = rise * nx + run * line[AXIS_X], rise * ny + run * line[AXIS_Y]
+                if not on_piece(line, x - wx, y - wy, END_SLACK):
+                    continue
+                if count >= out.shape[0]:
+                    return -1
+                row = out[count]
+                row[ON_LINE], row[ON_ARC], row[ALPHA] = a, number // 2, atan2(wy, wx)
+                row[TAIL_X], row[TAIL_Y] = x - wx, y - wy
+                count += 1
+    return count
 
 
 @inner

@@ -171,7 +171,6 @@ def roots_of_cell(
     number: int,
     side: float,
     middle: Held,
-    whole: tuple[Interval, Interval],
     given: Given,
     stack: Array,
     out: Array,
@@ -203,10 +202,8 @@ def roots_of_cell(
             turn = 0.0 if piece[IS_ARC] == 0.0 else asin(move / f[4])
             if not may_balance(a, b, d, alpha, s, f, low, high, move, turn):
                 continue
-            motion = whole
-            if not first:
-                sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-                motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
+            sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+            motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
             if is_steady(piece, side, cosine, sine, s, f, motion, speed, reach):
                 found, psi = root_between(MISS, holding, holding, piece, above, side, given, low, high)
                 if found:
@@ -261,8 +258,6 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
         middle = held(holding, given, psi)
         cosine, sine = cos(psi), sin(psi)
-        sign = 1.0 if middle[2] * middle[5] - middle[3] * middle[4] >= 0.0 else -1.0
-        whole, is_known = ((0.0, 0.0), (0.0, 0.0)), False
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
                 continue
@@ -276,12 +271,9 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
                 # Where its normal is that of another contact throughout, the one that is left has no force.
                 if share_normals(a, c) or share_normals(b, c):
                     continue
-                if not is_known:
-                    low, high = cell[LOW] + holding[ANGLE], cell[HIGH] + holding[ANGLE]
-                    whole, is_known = center_velocity(a, b, given.reals[k], low, high, sign), True
                 for sides in range(1 if c[IS_ARC] == 0.0 else 2):
                     side = 1.0 - 2.0 * sides
-                    count = roots_of_cell(cell, third, piece, side, middle, whole, given, stack, out, count)
+                    count = roots_of_cell(cell, third, piece, side, middle, given, stack, out, count)
                     if count < 0:
                         return -1
     return count
