@@ -50,7 +50,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free
+from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free, lies_along
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
@@ -149,6 +149,7 @@ def seats_and_passes() -> Calls:
     touched, seen, clear = np.zeros(4, np.int64), np.zeros((4, 3)), np.zeros((0, 4))
     yield free_ones, (np.zeros((0, 4)), touched, 0, obstacles, seen, clear, np.zeros(0, np.int8))
     yield last_free, (np.zeros((2, 4)), touched, obstacles, one, seen, np.zeros(5))
+    yield lies_along, (0.0, 0.0, 0.0, np.zeros((0, 4)), 1.0)
     yield first_of_each, (many, 1.0, 1.0, none)
     standing = np.zeros(0), np.zeros(6), np.zeros(3), np.zeros((2, 2)), rows, points, points
     yield stationary, (*standing, points, np.zeros((0, CHANGE_LENGTH)))
@@ -157,7 +158,7 @@ def seats_and_passes() -> Calls:
     yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leave, (ways, obstacles, 1, np.zeros(0, np.int8))
+    yield leave, (ways, obstacles, 1, points, np.zeros(0, np.int8))
 
 
 # Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.

@@ -68,5 +68,6 @@ class Closing:
         """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of
         many directions."""
         out = np.empty(len(configs), np.int8)
-        leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, out)
+        if len(out):
+            leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, np.empty((4, 2)), out)
         return out.astype(np.bool_)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations, product
-from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
+from math import asin, atan2, cos, hypot, sin, sqrt, tau
 
 import numpy as np
 from attrs import define, evolve, frozen
@@ -26,7 +26,7 @@ from workhold.kernels.seating.columns import (
     Given,
     Obstacles,
 )
-from workhold.kernels.seating.freedom import TOUCHES, free_ones, last_free
+from workhold.kernels.seating.freedom import TOUCHES, free_ones, last_free, lies_along
 from workhold.kernels.seating.parallel import (
     AT_HIGH,
     AT_LOW,
@@ -87,15 +87,7 @@ class Family:
         """Whether a configuration lies in the set, as far as its steps tell."""
         if abs(config[3] - self.candidate[SEPARATION]) >= SAME_LEVEL:
             return False
-        turn = (self.configs[:, 0] - config[0] + pi) % tau - pi
-        away = np.abs(turn) * arm + np.hypot(*(self.configs[:, 1:3] - config[1:3]).T)
-        turns, x, y = self.steps
-        return bool(away.min() <= (turns * arm + x + y).max(initial=0.0) + 0.02)
-
-    @cached_property
-    def steps(self) -> Array:
-        """By how much (3, N - 1) it turns and moves along x and y from each configuration to the next."""
-        return np.ascontiguousarray(np.abs(np.diff(self.configs[:, :3], axis=0)).T)
+        return bool(lies_along(float(config[0]), float(config[1]), float(config[2]), self.configs, arm))
 
 
 @frozen(eq=False)

@@ -28,6 +28,7 @@ from workhold.seating.families import Family
 __all__ = ["OUTSIDE", "STOP", "Join", "Tree"]
 
 Array = NDArray[np.float64]
+Seen = tuple[Array, int, bool, list[int], int, list[int]]
 OUTSIDE, STOP = -1, -2
 # mm. How far from a pass a way down begins, and how long its first steps are; how near it begins at least, and by which
 # part of its way the motion may have bent there.
@@ -156,16 +157,19 @@ class Tree:
 
 def lying_on(families: list[Family], configs: Array, size: float) -> list[int | None]:
     """Of each configuration (N, 4) the number of the first loose set that it lies on, with its separation; None of none."""
-    near = (np.abs(separations(families) - configs[:, 3:]) < FALLS).tolist()
+    near = numbers_of(np.abs(separations(families) - configs[:, 3:]) < FALLS)
     return [
-        next((k for k in numbers(row) if families[k].holds(config, size)), None)
-        for config, row in zip(configs, near, strict=True)
+        next((k for k in some if families[k].holds(config, size)), None)
+        for config, some in zip(configs, near, strict=True)
     ]
 
 
-def numbers(told: list[bool]) -> list[int]:
-    """Numbers of those that are true."""
-    return [k for k, one in enumerate(told) if one]
+def numbers_of(told: NDArray[np.bool_]) -> list[list[int]]:
+    """Of each row (N, M) the numbers of those that are true."""
+    out: list[list[int]] = [[] for _ in told]
+    for n, k in np.argwhere(told).tolist():
+        out[n].append(k)
+    return out
 
 
 def separations(families: Iterable[Family]) -> Array:
@@ -205,7 +209,7 @@ def ends_of(family: Family, size: float) -> Array:
     return np.array(out).reshape(-1, 4)
 
 
-@define(eq=False)
+@define(eq=False, slots=False)
 class Builder:
     """What ways down have ended in so far.
 
@@ -228,6 +232,10 @@ class Builder:
 
     def places(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[int]:
         """The places of the ends (N, 4) of ways down that began at some configurations (N, 4)."""
+        return [self.place(*one) for one in self.seen(starts, configs, how)]
+
+    def seen(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[Seen]:
+        """What is asked of the ends of ways down, all at once; see ``place``."""
         stopped = how == AT_THE_STOP
         away = np.zeros(len(how), np.bool_)
         away[stopped] = self.closing.escape(configs[stopped])
@@ -235,16 +243,20 @@ class Builder:
         left = stopped & ~away
         away[left] = self.closing.escape(starts[left])
         falls, loose = (
-            (np.abs(separations(families) - configs[:, 3:]) < SAME_LEVEL).tolist()
-            for families in ([family for family, _ in self.falling], self.loose)
+            numbers_of(np.abs(levels - configs[:, 3:]) < SAME_LEVEL) for levels in (self.fall_levels, self.loose_levels)
         )
         near = self.near_seats(configs).tolist()
-        return [
-            (OUTSIDE if away[k] else STOP)
-            if stopped[k]
-            else self.place(configs[k], int(how[k]), numbers(falls[k]), near[k], numbers(loose[k]))
-            for k in range(len(how))
-        ]
+        return list(zip(configs, how.tolist(), away.tolist(), falls, near, loose, strict=True))
+
+    @cached_property
+    def fall_levels(self) -> Array:
+        """The separations of the falling sets, in mm."""
+        return separations(family for family, _ in self.falling)
+
+    @cached_property
+    def loose_levels(self) -> Array:
+        """The separations of the loose sets, in mm."""
+        return separations(self.loose)
 
     def near_seats(self, configs: Array) -> NDArray[np.int64]:
         """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
@@ -259,27 +271,31 @@ class Builder:
         return np.where(is_in, strict[nearest], -1)
 
     @cached_property
-    def below(self) -> tuple[Array, NDArray[np.int8]]:
-        """What ways off the falling sets end in, and how."""
-        return self.closing.run(np.array([beyond for _, beyond in self.falling]), FIRST_STEP)
+    def below(self) -> list[Seen]:
+        """What ways off the falling sets end in."""
+        starts = np.array([beyond for _, beyond in self.falling])
+        return self.seen(starts, *self.closing.run(starts, FIRST_STEP))
 
-    def place(self, config: Array, how: int, falls: list[int], near: int, loose: list[int]) -> int:
-        """The place of the end of a way down short of the stop; one that is not known is added to what is not settled.
+    def place(self, config: Array, how: int, is_away: bool, falls: list[int], near: int, loose: list[int]) -> int:
+        """The place of the end of a way down; one that is not known is added to what is not settled.
 
         Parameters
         ----------
+        is_away : whether the part can be taken away there.
         falls, loose : numbers of loose sets with nearly its separation, off which a way leads, and that are rests.
         near : number of the seat that it is in, or -1.
         """
+        if how == AT_THE_STOP:
+            return OUTSIDE if is_away else STOP
         size = self.closing.size
         for k in falls:
-            family, beyond = self.falling[k]
+            family, _ = self.falling[k]
             # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
             if how == AT_REST and config[3] >= family.separation - FALLS and family.holds(config, size):
-                ends, ways = self.below
-                if ends[k, 3] < family.separation - FALLS:
+                end = self.below[k]
+                if end[0][3] < family.separation - FALLS:
                     if k not in self.fallen:
-                        self.fallen[k] = self.places(beyond[None], ends[k : k + 1], ways[k : k + 1])[0]
+                        self.fallen[k] = self.place(*end)
                     return self.fallen[k]
         if how == AT_REST and near >= 0:
             return near

@@ -20,6 +20,8 @@ IntArray = NDArray[np.int64]
 TOUCHES = 1e-7
 # mm. By this much more than a peg moved it was clear, or in the part, where it surely still is.
 SURELY = 1e-6
+# mm. How much farther than to the next of its steps a place may be from a way on which it lies.
+BESIDE = 0.02
 # How often, and into how many parts, a step is cut to find where freedom ends.
 EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
@@ -105,18 +107,39 @@ def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, s
     trial, seen, clear : (4,), (K, 3) and (K,) work space.
     """
     nothing_seen(seen)
-    for _ in range(EDGE_ROUNDS):
-        last = 0
-        for part in range(1, EDGE_PARTS):
+    for attempt in range(EDGE_ROUNDS):
+        last, end = 0, EDGE_PARTS
+        while last + 1 < end:
+            # From the first where all of a step is looked at, in the middle where freedom surely ends but once.
+            part = last + 1 if attempt == 0 else (last + end) // 2
             for k in range(4):
                 trial[k] = ends[0, k] + part / EDGE_PARTS * (ends[1, k] - ends[0, k])
-            if not write_clearances(trial, touched, 0, around, seen, clear):
-                break
-            last = part
+            if write_clearances(trial, touched, 0, around, seen, clear):
+                last = part
+            else:
+                end = part
         for k in range(4):
             low, way = ends[0, k], ends[1, k] - ends[0, k]
             ends[0, k] = low + last / EDGE_PARTS * way
             ends[1, k] = low + (last + 1) / EDGE_PARTS * way
+
+
+@compiled
+def lies_along(theta: float, x: float, y: float, configs: Array, arm: float) -> bool:
+    """Whether a place of the part is as near to one of some configurations (N, 4) as they are to each other.
+
+    Parameters
+    ----------
+    arm : in mm, by which turns are counted.
+    """
+    nearest, longest = inf, 0.0
+    for n in range(configs.shape[0]):
+        turn = (configs[n, 0] - theta + pi) % (2.0 * pi) - pi
+        nearest = min(nearest, abs(turn) * arm + hypot(configs[n, 1] - x, configs[n, 2] - y))
+        if n > 0:
+            dx, dy = configs[n, 1] - configs[n - 1, 1], configs[n, 2] - configs[n - 1, 2]
+            longest = max(longest, abs(configs[n, 0] - configs[n - 1, 0]) * arm + abs(dx) + abs(dy))
+    return nearest <= longest + BESIDE
 
 
 @compiled

@@ -47,27 +47,53 @@ def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
 
 
 @inner
-def is_met(config: Array, obstacles: Obstacles, wx: float, wy: float) -> bool:
-    """Whether a peg meets the part, or the part its wall, as all pegs move away along a direction of the part's frame."""
-    cosine, sine = cos(config[0]), sin(config[0])
-    vx, vy = cosine * wx - sine * wy, sine * wx + cosine * wy
-    if vx * obstacles.wall[0] + vy * obstacles.wall[1] > LEVEL:
-        return True
+def first_met(obstacles: Obstacles, wx: float, wy: float, places: Array, last: int) -> int:
+    """The number of the peg and the piece that meet as all pegs move away along a direction of the part's frame, -1 where
+    none do.
+
+    Parameters
+    ----------
+    places : (K, 2) of the pegs on the part.
+    last : what was met on another way, which is looked at first, or -1.
+    """
+    pieces = obstacles.rows.shape[0]
+    if last >= 0:
+        peg = last // pieces
+        if meets(obstacles.rows[last % pieces], places[peg, 0], places[peg, 1], wx, wy):
+            return last
     for peg in range(obstacles.pegs.shape[0]):
-        (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
+        side = obstacles.right[peg]
         for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
-            if meets(obstacles.rows[piece], x, y, wx, wy):
+            if meets(obstacles.rows[piece], places[peg, 0], places[peg, 1], wx, wy):
+                return peg * pieces + piece
+    return -1
+
+
+@inner
+def leads_away(config: Array, obstacles: Obstacles, ways: int, places: Array) -> bool:
+    """See ``leave``, of one configuration."""
+    cosine, sine = cos(config[0]), sin(config[0])
+    for peg in range(obstacles.pegs.shape[0]):
+        places[peg, 0], places[peg, 1] = place_on_part(config, obstacles, peg)
+    met = -1
+    for k in range(ways):
+        wx, wy = cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)
+        vx, vy = cosine * wx - sine * wy, sine * wx + cosine * wy
+        if vx * obstacles.wall[0] + vy * obstacles.wall[1] <= LEVEL:
+            met = first_met(obstacles, wx, wy, places, met)
+            if met < 0:
                 return True
     return False
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, ways: int, out: NDArray[np.int8]) -> None:
+def leave(configs: Array, obstacles: Obstacles, ways: int, places: Array, out: NDArray[np.int8]) -> None:
     """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
-    and without coming nearer to a wall; written to ``out`` (N,)."""
+    and without coming nearer to a wall; written to ``out`` (N,).
+
+    Parameters
+    ----------
+    places : (K, 2) work space.
+    """
     for n in range(configs.shape[0]):
-        out[n] = 0
-        for k in range(ways):
-            if not is_met(configs[n], obstacles, cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)):
-                out[n] = 1
-                break
+        out[n] = 1 if leads_away(configs[n], obstacles, ways, places) else 0
