@@ -55,9 +55,11 @@ from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
 from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.pocketed import tip_in_pocket
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
-from workhold.kernels.seating.standing import CHANGE_LENGTH, stationary
+from workhold.kernels.seating.standing import Stood, stationary
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.kernels.seating.turning import SHAPE_LENGTH
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.kernels.statics.quality import figures
 from workhold.kernels.statics.reactions import LOAD_LENGTH
@@ -151,8 +153,9 @@ def seats_and_passes() -> Calls:
     yield last_free, (np.zeros((2, 4)), touched, obstacles, one, seen, np.zeros(5))
     yield lies_along, (0.0, 0.0, 0.0, np.zeros((0, 4)), 1.0)
     yield first_of_each, (many, 1.0, 1.0, none)
-    standing = np.zeros(0), np.zeros(6), np.zeros(3), np.zeros((2, 2)), rows, points, points
-    yield stationary, (*standing, points, np.zeros((0, CHANGE_LENGTH)))
+    stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
+    yield stationary, (stood, np.zeros((0, SHAPE_LENGTH)), stack, many)
+    yield tip_in_pocket, (stood, points, pockets, stack, points, many)
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
     yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))

@@ -79,8 +79,8 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     """The same between a wall, a locator and a tip."""
-    candidates = np.array(squeezed(pattern, locus.common_normals) + fence_candidates(locus, pattern))
-    candidates = candidates.reshape(-1, CANDIDATE_LENGTH)
+    pressed = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
+    candidates = np.concatenate([pressed, fence_candidates(locus, pattern)])
     settle_on_wall(candidates, locus, pattern, size)
     finder = Finder(locus, pattern)
     return sorted_out(candidates, finder.families(finder.cut_all(finder.on_one_line()) + on_wall(finder)))

@@ -38,7 +38,7 @@ def sliding_on_wall(finder: Finder, fence: Fence) -> list[Family]:
         nx, ny = c * row[AXIS_Y] + s * row[AXIS_X], s * row[AXIS_Y] - c * row[AXIS_X]
         if nx < 0.0 or abs(ny) > PARALLEL or not finder.locus.fits(1, number):
             continue
-        known = float(fence.resting(side.pieces[0], np.array([theta]))[0])
+        known = fence.resting(side.pieces[0], theta)
         ends = sorted(float(s * x + c * y) for x, y in finder.locus.hull.rows[list(side.pieces), :2])
         middle = s * row[X] + c * row[Y]
         low = max(ty - ends[1], ty - middle - row[HALF_EXTENT])

@@ -1,126 +1,228 @@
-"""A part on a wall, between a locator and a tip: where their three forces are in balance, over the orientation."""
+"""A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces balance.
+
+The orientation tells the separation S, and the forces balance where S' = 0, which is enclosed with S'' by intervals (see
+``turning``): the part turns about the centre of the piece of its hull, which keeps its distance from the wall. Ranges in
+which it cannot vanish, or a force cannot press, are dropped, and its roots isolated in the others (see ``isolating``).
+"""
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sin, sqrt
+from math import ceil, cos, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.conventions import SAME_CENTER
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.pieces import angle_from_middle
+from workhold.kernels.base.interval import Interval, imul, ineg, iscale, ishift, isub
+from workhold.kernels.seating.candidates import write_pose
+from workhold.kernels.seating.columns import DOUBT, MOTION, PEG, PIECE, SECOND, SEPARATION
+from workhold.kernels.seating.isolating import HALVES, NONE, ROOT, has_none, judged, to_look_at
+from workhold.kernels.seating.turning import AWAY, CURVATURE, NOTHING, Contact, contact, write_shape
 
 Array = NDArray[np.float64]
 
-# mm. How far past its end a contact may lie: rounding. No unit: normals nearer to a direction than this are square to it.
-END, LEVEL = 1e-9, 1e-9
-# No unit. Slopes of the separation below this, times mm, are level.
-FLAT = 1e-9
-# Columns of what changes: the branches of locator and tip, and the number of the orientation before the change.
-OF_LOCATOR, OF_TIP, BEFORE = range(3)
-CHANGE_LENGTH = 3
-# Where a line crosses a piece: along it, outward normal, and whether it does.
-Crossed = tuple[float, float, float, bool]
-NOWHERE = (0.0, 0.0, 0.0, False)
+# Radians. Ranges into which a run is cut first.
+CELL = 0.3
+# The pegs of a pattern on a fence, and the first and second contact with the wall.
+LOCATOR, TIP, ON_WALL, ON_WALL_TOO = range(4)
+# Whether a balance is possible, whether S is smooth throughout, S' and S''.
+Rate = tuple[bool, bool, Interval, Interval]
+NOWHERE = (False, False, NOTHING, NOTHING)
 
 
-@inner
-def crossed(row: Array, side: float, c: float, s: float, level: float) -> Crossed:
-    """Where a level line, counted from the part's place, crosses a piece of a part turned by an angle of cosine c and
-    sine s; ``side`` of an arc's two. See ``seating.crossings``."""
-    up = level - (s * row[X] + c * row[Y])
-    if row[IS_ARC] == 0.0:
-        mx, my = c * row[AXIS_X] - s * row[AXIS_Y], s * row[AXIS_X] + c * row[AXIS_Y]
-        if abs(my) < LEVEL or abs(up) > (row[HALF_EXTENT] + END) * abs(my):
-            return NOWHERE
-        return (c * row[X] - s * row[Y] + up / my * mx, my, -mx, True)
-    if abs(up) >= row[RADIUS]:
-        return NOWHERE
-    dx = side * sqrt((row[RADIUS] - up) * (row[RADIUS] + up))
-    # The way there from the centre, in the part's frame.
-    angle = 0.0 if row[HALF_EXTENT] >= pi else angle_from_middle(row, c * dx + s * up, c * up - s * dx)
-    if abs(angle) > row[HALF_EXTENT] + END / row[RADIUS]:
-        return NOWHERE
-    return (c * row[X] - s * row[Y] + dx, row[SIGN] * dx / row[RADIUS], row[SIGN] * up / row[RADIUS], True)
-
-
-@inner
-def crossed_upright(row: Array, side: float, c: float, s: float, level: float) -> Crossed:
-    """The same of an upright line: a level one of a part turned by a quarter more."""
-    at = crossed(row, side, -s, c, level)
-    return (-at[0], at[2], -at[1], at[3])
-
-
-@compiled
-def stationary(
-    thetas: Array,
-    on_wall: Array,
-    wall: Array,
-    pegs: Array,
-    rows: Array,
-    locators: Array,
-    tips: Array,
-    before: Array,
-    out: Array,
-) -> int:
-    """Write between which orientations (N,) the slope of the separation changes its sign, for each branch of the locator and
-    of the tip; return their number, or -1 where they do not fit.
+class Stood(NamedTuple):
+    """A part on a wall.
 
     Parameters
     ----------
-    on_wall : (6,) piece of the hull that is on the wall throughout; see ``seating.walls``.
-    wall : (3,) unit vector from the wall to the part, and how far in mm along it the wall is.
+    rows, discs : (N, 10) pieces of the boundary on which the pegs' centres lie, and (N, 3) discs around them.
+    parts : (2, 2) first and past-the-last number of the pieces that the locator, and the tip, touch.
+    hull : (H, 6) pieces of the hull, see ``seating.walls``.
+    runs : (M, 3) numbers of such a piece, and first and last orientation in which it is on the wall.
     pegs : (2, 2) of the locator, and of the tip at separation 0, in mm.
-    locators, tips : (L, 2) and (T, 2) numbers of pieces, and sides of arcs.
-    before : (L * T, 2) work space.
+    wall : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall is.
     """
-    count, (ux, uy, off) = 0, (wall[0], wall[1], wall[2])
-    lx, ly, ty = pegs[0, 0], pegs[0, 1], pegs[1, 1]
-    upright = ux != 0.0
-    # The slope before, infinite where there was no contact, and whether all pressed.
-    for k in range(before.shape[0]):
-        before[k, 0], before[k, 1] = inf, 0.0
-    for n in range(thetas.shape[0]):
-        c, s = cos(thetas[n]), sin(thetas[n])
-        hx, hy = c * on_wall[0] - s * on_wall[1], s * on_wall[0] + c * on_wall[1]
-        known = (ux + uy) * (off + on_wall[2]) - (hx if upright else hy)
-        for i in range(locators.shape[0]):
-            row = rows[int(locators[i, 0])]
-            if upright:
-                one = crossed_upright(row, locators[i, 1], c, s, lx - known)
-                px, py = known, ly - one[0]
-            else:
-                one = crossed(row, locators[i, 1], c, s, ly - known)
-                px, py = lx - one[0], known
-            steep = one[2] if upright else one[1]
-            for j in range(tips.shape[0]):
-                at = before[i * tips.shape[0] + j]
-                slope, presses = inf, 0.0
-                if one[3]:
-                    two = crossed(rows[int(tips[j, 0])], tips[j, 1], c, s, ty - py)
-                    bx, by = two[1], two[2]
-                    if two[3]:
-                        ax, ay = one[1], one[2]
-                        if upright:
-                            cx, cy = lx + (py + hy - ly) * ax / ay, py + hy
-                            first, second = -by / bx / ay, ux * (1.0 - by / bx / ay * ax)
-                        else:
-                            cx, cy = px + hx, ly + (px + hx - lx) * ay / ax
-                            first, second = -1.0 / ax, uy * (by / bx - ay / ax)
-                        slope = (by * (px + two[0] - cx) - bx * (ty - cy)) * steep
-                        presses = 1.0 if bx > 0.0 and first > 0.0 and second > 0.0 else 0.0
+
+    rows: Array
+    discs: Array
+    parts: NDArray[np.int64]
+    hull: Array
+    runs: Array
+    pegs: Array
+    wall: Array
+
+
+@inner
+def heights(stood: Stood, piece: int) -> tuple[float, float, float]:
+    """While a piece of the hull is on the wall: where its centre is square to it, how far the locator's line is from there,
+    and how much higher the tip is: than the centre, or than the locator where the wall is upright."""
+    ux, uy = stood.wall[0], stood.wall[1]
+    center = (ux + uy) * (stood.wall[2] + stood.hull[piece, 2])
+    if ux != 0.0:
+        return (center, stood.pegs[LOCATOR, 0] - center, stood.pegs[TIP, 1] - stood.pegs[LOCATOR, 1])
+    return (center, stood.pegs[LOCATOR, 1] - center, stood.pegs[TIP, 1] - center)
+
+
+@inner
+def both(
+    locator: Array,
+    tip: Array,
+    high: tuple[float, float, float],
+    upright: bool,
+    turn: Interval,
+    way: float,
+    within: bool,
+) -> tuple[Contact, Contact]:
+    """The contacts of locator and tip over a range of orientations; ``way`` as the locator's ``facing``, see ``contact``."""
+    level = (high[1], high[1])
+    if not upright:
+        one = contact(locator, turn, level, NOTHING, NOTHING, way, within)
+        return (one, contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
+    one = contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
+    # The part is as much higher as the locator's contact is lower; a quarter turn makes x of that what was -y.
+    two = contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
+    return (one, two if one[0] else one)
+
+
+@inner
+def rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
+    """How S changes, where wall, locator and tip may all press.
+
+    With b = (1, tan) of the tip, unit forces along x: the locator's is what that leaves along the wall, and the wall's the
+    rest.
+    """
+    if not (one[0] and two[0]):
+        return NOWHERE
+    smooth = one[1] and two[1]
+    if wall[0] == 0.0:
+        pressing = iscale(wall[1], isub(two[5], one[5]))
+        return (pressing[1] >= 0.0, smooth, isub(two[3], one[3]), isub(two[4], one[4]))
+    pressing = iscale(wall[0], ishift(1.0, imul(one[5], two[5])))
+    return (pressing[1] >= 0.0 and iscale(way, two[5])[1] >= 0.0, smooth, two[3], two[4])
+
+
+@inner
+def balances(
+    stood: Stood,
+    m: int,
+    i: int,
+    j: int,
+    way: float,
+    cell: Interval,
+    shapes: Array,
+    stack: Array,
+    out: Array,
+    count: int,
+) -> int:
+    """Write the balances of a run with locator and tip on two pieces in a cell; the new count, or -1."""
+    upright, high = stood.wall[0] != 0.0, heights(stood, int(stood.runs[m, 0]))
+    depth, looked = 1, 0
+    stack[0, 0], stack[0, 1] = cell
+    while depth > 0:
+        depth -= 1
+        looked += 1
+        turn = (stack[depth, 0], stack[depth, 1])
+        one, two = both(shapes[i], shapes[j], high, upright, turn, way, True)
+        told = rate(one, two, stood.wall, way)
+        if not told[0] or has_none(told[2]):
+            continue
+        verdict, middle = HALVES, (turn[0] + turn[1]) / 2.0
+        one, two = both(shapes[i], shapes[j], high, upright, turn, way, False)
+        told = rate(one, two, stood.wall, way)
+        if told[1]:
+            one, two = both(shapes[i], shapes[j], high, upright, (middle, middle), way, False)
+            verdict, turn = judged(turn, middle, rate(one, two, stood.wall, way)[2], told[3])
+            if verdict == NONE:
+                continue
+        more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
+        if more < 0:
+            count = write_balance(stood, m, i, j, way, middle, verdict != ROOT, shapes, out, count)
+            if count < 0:
+                return -1
+        depth = max(depth, more)
+    return count
+
+
+@inner
+def write_balance(
+    stood: Stood, m: int, i: int, j: int, way: float, theta: float, doubt: bool, shapes: Array, out: Array, count: int
+) -> int:
+    """Write the candidate of three contacts at an orientation, if they lie on their pieces; the new count, or -1 where it
+    does not fit."""
+    piece, upright = int(stood.runs[m, 0]), stood.wall[0] != 0.0
+    high = heights(stood, piece)
+    one, two = both(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
+    if not (one[0] and two[0]):
+        return count
+    if count >= out.shape[0]:
+        return -1
+    c, s = cos(theta), sin(theta)
+    hx, hy = c * stood.hull[piece, 0] - s * stood.hull[piece, 1], s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
+    place, speed = (one[2][0] + one[2][1]) / 2.0, (one[3][0] + one[3][1]) / 2.0
+    # The centre of the piece, and how it moves as the part turns.
+    if upright:
+        x, y, vx, vy = high[0], stood.pegs[LOCATOR, 1] + place, 0.0, speed
+    else:
+        x, y, vx, vy = stood.pegs[LOCATOR, 0] - place, high[0], -speed, 0.0
+    told, row = rate(one, two, stood.wall, way), out[count]
+    write_pose(row, theta, x - hx, y - hy, 3)
+    row[SEPARATION] = x + (two[2][0] + two[2][1]) / 2.0 - stood.pegs[TIP, 0]
+    row[SECOND], row[DOUBT] = (told[3][0] + told[3][1]) / 2.0, 1.0 if doubt else 0.0
+    row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, vx + hy, vy - hx
+    row[PEG], row[PEG + 1], row[PEG + 2] = LOCATOR, TIP, ON_WALL
+    row[PIECE], row[PIECE + 1], row[PIECE + 2] = i, j, stood.rows.shape[0] + piece
+    return count + 1
+
+
+@compiled
+def stationary(stood: Stood, shapes: Array, stack: Array, out: Array) -> int:
+    """Write the candidates (N, 24) of all balances of wall, locator and tip, one piece of the hull being on the wall; their
+    number, or -1 where they do not fit.
+
+    Parameters
+    ----------
+    shapes, stack : (N, 11) and (DEPTH, 2) work space.
+    """
+    count, upright = 0, stood.wall[0] != 0.0
+    for m in range(stood.runs.shape[0]):
+        piece, low, width = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2] - stood.runs[m, 1]
+        for k in range(stood.rows.shape[0]):
+            write_shape(stood.rows[k], stood.discs[k], stood.hull[piece, 0], stood.hull[piece, 1], shapes[k])
+        cells = int(ceil(width / CELL))
+        for cell in range(cells):
+            turn = (low + cell * width / cells, low + (cell + 1) * width / cells)
+            count = balances_of_cell(stood, m, turn, upright, shapes, stack, out, count)
+            if count < 0:
+                return -1
+    return count
+
+
+@inner
+def balances_of_cell(
+    stood: Stood, m: int, turn: Interval, upright: bool, shapes: Array, stack: Array, out: Array, count: int
+) -> int:
+    """Write the balances of a run in a cell with all pieces; the new count, or -1 where they do not fit."""
+    high = heights(stood, int(stood.runs[m, 0]))
+    for i in range(stood.parts[0, 0], stood.parts[0, 1]):
+        # Along the wall the locator is pressed from the tip's side, upright from above or from below.
+        for ways in range(1 + upright):
+            way = 2.0 * ways - 1.0
+            seen = contact(
+                shapes[i], ishift(pi / 2.0, turn) if upright else turn, (high[1], high[1]), NOTHING, NOTHING, way, True
+            )
+            if not seen[0]:
+                continue
+            for j in range(stood.parts[1, 0], stood.parts[1, 1]):
+                # Of a round part S does not depend on the orientation.
                 if (
-                    abs(slope) < inf
-                    and abs(at[0]) < inf
-                    and (presses != 0.0 or at[1] != 0.0)
-                    # Of a round part the separation does not depend on the orientation.
-                    and max(abs(slope), abs(at[0])) > FLAT
-                    and slope * at[0] <= 0.0
+                    shapes[i, CURVATURE] != 0.0
+                    and shapes[j, CURVATURE] != 0.0
+                    and max(shapes[i, AWAY], shapes[j, AWAY]) <= SAME_CENTER
                 ):
-                    if count >= out.shape[0]:
-                        return -1
-                    out[count, OF_LOCATOR], out[count, OF_TIP], out[count, BEFORE] = i, j, n - 1
-                    count += 1
-                at[0], at[1] = slope, presses
+                    continue
+                count = balances(stood, m, i, j, way, turn, shapes, stack, out, count)
+                if count < 0:
+                    return -1
     return count

@@ -1,0 +1,135 @@
+"""A part that turns, and a peg whose centre stays on a level line and on a piece, over a range of orientations.
+
+The part turns about a point, the origin here; the line is k above it, and k may depend on the orientation theta. With the
+outward normal n at the angle nu, t a quarter turn further, and the peg's centre at N n + tau t, it is
+
+    B = N cos nu - tau sin nu        along the line, while        k = N sin nu + tau cos nu.
+
+Where curvature is kappa (0 on a line, above 0 on a convex arc), differentiating by theta gives with q = (k' - B) / cos nu
+
+    B' = -(tau + k' sin nu) / cos nu,        nu' = 1 + kappa q,        tau' = (1 - kappa N) q,
+    B'' = -(tau' + k'' sin nu + (tau sin nu + k') nu' / cos nu) / cos nu.
+
+On a line N is its distance from the origin, on an arc nu follows from the height of its centre, and all else from nu. An
+upright line is a level one of a part that is turned by a quarter more.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan2, floor, hypot, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.interval import (
+    TURN,
+    Interval,
+    iadd,
+    icos,
+    idivide,
+    imul,
+    ineg,
+    iscale,
+    ishift,
+    isin,
+    isub,
+    outward,
+)
+from workhold.kernels.seating.isolating import meet
+
+__all__ = ["AWAY", "SHAPE_LENGTH", "Contact", "contact", "write_shape"]
+
+Array = NDArray[np.float64]
+# Columns of a shape, a piece seen from the point about which the part turns: curvature in 1 / mm; the arc's centre by its
+# distance and direction; what N is besides the centre's part, the distance of a line; direction of the normal at the middle,
+# and how far normals turn to either side of it; middle and half extent along a line; and a disc around it.
+CURVATURE, AWAY, AWAY_ANGLE, OFF, NORMAL, SPREAD, FOOT, HALF, DISC, DISC_ANGLE, DISC_RADIUS = range(11)
+SHAPE_LENGTH = 11
+# mm. How far past its end a contact may lie: rounding. No unit: normals nearer than this to square to the line press
+# with a million times the force along it, and are none.
+END, SQUARE = 1e-9, 1e-6
+NOTHING = (0.0, 0.0)
+# Whether there may be a contact; whether the whole line or circle has one throughout; B, B', B'' and tan nu.
+Contact = tuple[bool, bool, Interval, Interval, Interval, Interval]
+NOWHERE = (False, False, NOTHING, NOTHING, NOTHING, NOTHING)
+
+
+@inner
+def write_shape(row: Array, disc: Array, x: float, y: float, shape: Array) -> None:
+    """Write a piece (10,), in a disc (3,), as seen from a point of the part."""
+    dx, dy = row[X] - x, row[Y] - y
+    shape[DISC], shape[DISC_RADIUS] = hypot(disc[0] - x, disc[1] - y), disc[2] + END
+    shape[DISC_ANGLE] = atan2(disc[1] - y, disc[0] - x)
+    if row[IS_ARC] == 0.0:
+        shape[CURVATURE], shape[AWAY], shape[AWAY_ANGLE], shape[SPREAD] = 0.0, 0.0, 0.0, 0.0
+        shape[OFF], shape[NORMAL] = row[AXIS_Y] * dx - row[AXIS_X] * dy, atan2(-row[AXIS_X], row[AXIS_Y])
+        shape[FOOT], shape[HALF] = row[AXIS_X] * dx + row[AXIS_Y] * dy, row[HALF_EXTENT] + END
+    else:
+        shape[CURVATURE], shape[OFF] = row[SIGN] / row[RADIUS], row[SIGN] * row[RADIUS]
+        shape[AWAY], shape[AWAY_ANGLE] = hypot(dx, dy), atan2(dy, dx)
+        shape[NORMAL] = atan2(row[SIGN] * row[AXIS_Y], row[SIGN] * row[AXIS_X])
+        shape[SPREAD], shape[FOOT], shape[HALF] = row[HALF_EXTENT] + END / row[RADIUS], 0.0, 0.0
+
+
+@inner
+def contact(
+    shape: Array, turn: Interval, level: Interval, rise: Interval, bend: Interval, facing: float, within: bool
+) -> Contact:
+    """The contact over a range of orientations.
+
+    Parameters
+    ----------
+    level, rise, bend : k, k' and k''.
+    facing : 1 where the normal's part along the line is above 0, -1 where it is below.
+    within : whether the piece ends where it ends, or goes on as a whole line or circle.
+    """
+    if within:
+        middle = iscale(shape[DISC], isin(ishift(shape[DISC_ANGLE], turn)))
+        if level[0] > middle[1] + shape[DISC_RADIUS] or level[1] < middle[0] - shape[DISC_RADIUS]:
+            return NOWHERE
+    is_arc, smooth = shape[CURVATURE] != 0.0, True
+    psi = (shape[NORMAL] - shape[SPREAD], shape[NORMAL] + shape[SPREAD])
+    nu = ishift(shape[NORMAL], turn)
+    if is_arc:
+        # sin nu is the height over the centre, in radii.
+        sine = iscale(shape[CURVATURE], isub(level, iscale(shape[AWAY], isin(ishift(shape[AWAY_ANGLE], turn)))))
+        if sine[0] > 1.0 or sine[1] < -1.0:
+            return NOWHERE
+        smooth = sine[0] > -1.0 and sine[1] < 1.0
+        found = outward(asin(max(sine[0], -1.0)), asin(min(sine[1], 1.0)))
+        if facing < 0.0:
+            found = isub((pi, pi), found)
+        turns = floor((nu[0] + nu[1] - found[0] - found[1]) / (2.0 * TURN) + 0.5)
+        found = ishift(TURN * turns, found)
+        on_part = isub(found, turn)
+        # Where both ranges are so wide that they meet all around, the piece's ends tell nothing.
+        if within and 2.0 * shape[SPREAD] + (turn[1] - turn[0]) + (found[1] - found[0]) < TURN:
+            psi = meet(psi, on_part)
+            if psi[0] > psi[1]:
+                return NOWHERE
+            nu = meet(found, iadd(turn, psi))
+        else:
+            psi, nu = on_part, found
+    cosine = iscale(facing, icos(nu))
+    if cosine[1] < SQUARE:
+        return NOWHERE
+    smooth = smooth and cosine[0] >= SQUARE
+    cosine, sine = iscale(facing, (max(cosine[0], SQUARE), cosine[1])), isin(nu)
+    from_center = ishift(shape[AWAY_ANGLE], ineg(psi))
+    off = ishift(shape[OFF], iscale(shape[AWAY], icos(from_center)))
+    along = idivide(isub(level, imul(off, sine)), cosine)
+    if is_arc:
+        along = meet(along, iscale(shape[AWAY], isin(from_center)))
+    elif within:
+        along = meet(along, (shape[FOOT] - shape[HALF], shape[FOOT] + shape[HALF]))
+    if along[0] > along[1]:
+        return NOWHERE
+    place = isub(imul(off, cosine), imul(along, sine))
+    speed = ineg(idivide(iadd(along, imul(rise, sine)), cosine))
+    q = idivide(isub(rise, place), cosine)
+    slide = imul(ishift(1.0, iscale(-shape[CURVATURE], off)), q)
+    tilt = imul(idivide(iadd(imul(along, sine), rise), cosine), ishift(1.0, iscale(shape[CURVATURE], q)))
+    change = ineg(idivide(iadd(iadd(slide, tilt), imul(bend, sine)), cosine))
+    return (True, smooth, place, speed, change, idivide(sine, cosine))
