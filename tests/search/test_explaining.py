@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import isfinite
 from threading import Event
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Plate, Query, Vise, Workpiece, answer, design, load
+from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.model.explanation import Explanation
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.model.units import MILLIMETRE
@@ -127,6 +128,15 @@ def test_why_two_clamps_hold_nothing() -> None:
     assert explanation.last_rule is not None and explanation.last_rule.startswith("a second clamp")
     counts = {item.change: item.fixtures for item in explanation.helps}
     assert counts["with a clamp of any stroke"] == len(design(RECTANGLE, evolve(plate, travel=None))) > 0
+
+
+def test_what_comes_nearest_on_a_fence_has_forces() -> None:
+    """Also where locator and clamp press along the fence alone, against no end of it."""
+    corners = [(0, 0), (100, 0), (100, 60), (70, 60), (70, 30), (30, 30), (30, 60), (0, 60)]
+    part = Workpiece.from_loops("block", [[[x, y, 0] for x, y in corners]])
+    nearest = explain(Query(part, Fence(pitch=20, peg_radius=3, wall_offset=10))).nearest
+    assert nearest is not None and "would not press" in nearest.words
+    assert nearest.fixture.pegs[-1].force == pytest.approx(1.0) and all(isfinite(p.force) for p in nearest.fixture.pegs)
 
 
 def test_another_number_of_clamps_helps() -> None:

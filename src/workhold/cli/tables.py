@@ -333,7 +333,7 @@ def fixture_tables(
         stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
         where = unit.number(peg.x), unit.number(peg.y)
         looks = ["" if peg.flat_deg is None else f"{rounded(peg.flat_deg, 2)}°"] * flats
-        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:.3f}")
+        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:z.3f}")
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",

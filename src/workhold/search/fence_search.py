@@ -231,9 +231,13 @@ class FenceSearch:
         if self.problem.pairing:
             return self.sharpened(found, edge, laid, clamps, good, one)
         if self.verified == 0:
-            share = null.min(axis=1) / np.maximum(np.abs(null).sum(axis=1), 1e-300)
+            size = np.abs(null).sum(axis=1)
+            share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
+            # Forces are told per clamp force, which there has to be.
+            least = np.minimum(np.abs(null.sum(axis=1)), np.abs(null[:, 3] * push))
+            share[least < LEAST_CLAMPING * size] = -inf
             best = int(share.argmax())
-            if self.nearest is None or share[best] > self.nearest[0]:
+            if share[best] > (-inf if self.nearest is None else self.nearest[0]):
                 self.nearest = float(share[best]), pairs(np.array([best]))
         return found
 

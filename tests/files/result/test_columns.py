@@ -18,6 +18,7 @@ from workhold.files.result import columns as in_columns
 from workhold.files.result.columns import significant, write_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
+from workhold.listing.alike import entries
 from workhold.model.columns import COLUMNS, HEAD
 from workhold.model.result import FixtureTable, Result
 from workhold.verification.listing import read_listing
@@ -33,6 +34,12 @@ def test_the_same_bytes_come_back_from_the_other_form(tmp_path: Path, count: int
     workhold.save(workhold.open(tmp_path / "a.json"), tmp_path / "b.npz")
     for form in ("json", "npz"):
         assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
+
+
+def test_a_file_without_fixtures_lists_none(tmp_path: Path) -> None:
+    workhold.save(fake_result(0), tmp_path / "a.npz")
+    read = workhold.open(tmp_path / "a.npz")
+    assert len(read.table.take(np.zeros(0, np.int64))) == 0 and len(entries(read).index) == 0
 
 
 def test_both_forms_give_the_same_result(tmp_path: Path) -> None:

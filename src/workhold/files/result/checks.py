@@ -47,6 +47,8 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
     InputError
         Naming the first of them.
     """
+    if len(table) == 0:
+        return
     toolkit = query.toolkit
 
     def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
