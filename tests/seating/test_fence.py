@@ -26,6 +26,8 @@ PART = Workpiece.from_loops(
 NOTCHED = Workpiece.from_loops(
     "notched", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [48, 45, 0], [42, 28, 0], [30, 30, 0], [26, 52, 0.2], [0, 40, 0]]]
 )
+# Of random parts on fences with a clamp of each direction.
+SEEDS = (0, 1, 6, 11, 27)
 
 
 def crossings(row, side, theta, level):
@@ -142,16 +144,18 @@ def random_part(seed):
 def random_fence(seed):
     """A random part on a fence, clamped along it or onto it."""
     random = np.random.default_rng(1000 + seed)
-    way = ("+x", "-x", "-y")[seed % 3]
+    way = ("+x", "-x", "+y", "-y")[seed % 4]
     toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10, directions=[way], clamp_radius=float(random.uniform(2, 6)))
     locator, tip = random.uniform((-20.0, 10.0), (20.0, 50.0), (2, 2))
+    # A clamp that lifts the part off the wall lifts it against a locator above it.
+    locator[1] += 30.0 * (way == "+y")
     return placed(random_part(seed), toolkit, locator, tip)[0]
 
 
 def test_no_balance_that_sampling_finds_is_missed():
     """A few random parts in steps of 5e-3 radians; many more in small steps below."""
-    told = [missing(random_fence(seed), 5e-3) for seed in (3, 4, 6)]
-    assert [out for out, _ in told] == [[]] * 3 and sum(count for _, count in told) >= 10
+    told = [missing(random_fence(seed), 5e-3) for seed in SEEDS]
+    assert [out for out, _ in told] == [[]] * len(SEEDS) and min(count for _, count in told) > 1
 
 
 @pytest.mark.prove
@@ -201,7 +205,7 @@ def test_two_balances_less_than_a_twentieth_of_a_degree_apart_are_both_found():
     assert (near[:, RESIDUAL] < 1e-7).all() and near[:, FORCE : FORCE + 3].min() > 0.0
 
 
-@pytest.mark.parametrize("seed", [0, 1, 10])
+@pytest.mark.parametrize("seed", SEEDS)
 def test_candidates_of_three_contacts_are_stationary(seed):
     """S does not change, to first order, along the motion that is told, and changes by its second derivative."""
     fence = random_fence(seed)
