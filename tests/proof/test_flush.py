@@ -9,7 +9,7 @@ from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.listing.on_fence import Pressed
 from workhold.proof.flush import Candidate, pressing
-from workhold.search import fence_places, fence_search
+from workhold.search import fence_closure, fence_places
 from workhold.search.fence_search import FenceSearch
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
@@ -38,7 +38,7 @@ def test_balls_and_bounds_agree_on_every_pair(
     """With rounding taken for as large as lengths are, everything is left to the balls."""
     search, found = searched(loop, direction, margin)
     with monkeypatch.context() as patched:
-        patched.setattr(fence_search, "ROUNDING", 1e3)
+        patched.setattr(fence_closure, "ROUNDING", 1e3)
         in_balls, also = searched(loop, direction, margin)
         # So are places, and contacts far beyond the ends of their faces are looked at, too.
         patched.setattr(fence_places, "ROUNDING", 1e-4)

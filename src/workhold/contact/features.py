@@ -21,6 +21,9 @@ from workhold.model.flat import Flat
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
+# Pairs of ends looked at together.
+TOGETHER = 1 << 20
+
 __all__ = [
     "ContactFeature",
     "allowed_features",
@@ -141,11 +144,13 @@ def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:
         [[f.segment.normal(-f.segment.half_extent), f.segment.normal(f.segment.half_extent)] for f in features]
     )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
-    owner = np.repeat(np.arange(len(features)), 2)
     slack = np.full(len(points), -END_SLACK)
-    for k in range(len(points)):
-        near = np.abs(points - points[k]).max(axis=1) <= JOINT
-        smooth = np.abs(directions - directions[k]).max(axis=1) <= TANGENT
-        if (near & smooth & (owner != owner[k])).any():
-            slack[k] = END_SLACK
+    together = max(TOGETHER // max(len(points), 1), 1)
+    for start in range(0, len(points), together):
+        x, y = points[start : start + together].T
+        beside = (np.abs(points[:, 0] - x[:, None]) <= JOINT) & (np.abs(points[:, 1] - y[:, None]) <= JOINT)
+        one, other = np.nonzero(beside)
+        one += start
+        smooth = (np.abs(directions[one] - directions[other]) <= TANGENT).all(axis=1)
+        slack[one[smooth & (one // 2 != other // 2)]] = END_SLACK
     return slack.reshape(-1, 2)

@@ -100,9 +100,9 @@ def table_and_listing() -> Calls:
     yield jacobians, (records, checked, setting)
     yield contacts_of, (records, checked, setting, pairs, np.zeros(0), fours, fours, *work)
     yield to_canonical_form, (none, np.zeros(0), whole, whole, whole, 2, 0.0)
-    pose, two, matrices = np.zeros((0, 3)), np.zeros(2), np.zeros((0, 4, 4))
+    pose, points, two, matrices = np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(2), np.zeros((0, 4, 4))
     contacts = pairs, pairs, fours, fours, matrices
-    yield contact_matrices_of, (pairs, pose, fours, two, whole, checked, none, two, 1.0, *contacts, np.zeros((4, 4)))
+    yield contact_matrices_of, (pairs, pose, fours, points, whole, checked, none, two, 1.0, *contacts, np.zeros((4, 4)))
     rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 8, 3))
     yield figures, (*contacts, whole, 1.0, two, *rows)
     clamps = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))

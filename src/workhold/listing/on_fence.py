@@ -160,8 +160,8 @@ def listed_on_fence(pressed: Pressed, problem: Problem) -> tuple[FixtureTable, P
 
 
 def listing_order(table: FixtureTable) -> IntArray:
-    """The order (N,) in which fixtures are listed that are equally good: of holes, orientations and faces."""
-    words = [*table.column.T, *table.row.T, table.theta, *table.face.T]
+    """The order (N,) in which fixtures are listed that are equally good: of directions, holes, orientations and faces."""
+    words = [table.arrangement, *table.column.T, *table.row.T, table.theta, *table.face.T]
     return np.lexsort(words[::-1]).astype(np.int64)
 
 

@@ -84,7 +84,7 @@ def clear_holes(c: Candidates, problem: Problem, every: bool) -> tuple[Array, In
     tip = last * pitch + c.gap
     waiting = np.flatnonzero((c.row.max(axis=1, initial=0) <= most_rows) & (last <= most_columns))
     if travel.most is None:
-        waiting = waiting[is_clear(c.take(waiting), tip[waiting], tip[waiting], problem)]
+        waiting = waiting[is_clear(c, waiting, tip[waiting], tip[waiting], problem)]
         return tip, waiting, np.zeros(len(waiting), np.int64)
     least, most = -travel.most, -travel.least
     first = np.ceil((tip + least - GAP_SLACK) / pitch).astype(np.int64)
@@ -94,7 +94,7 @@ def clear_holes(c: Candidates, problem: Problem, every: bool) -> tuple[Array, In
         on_plate = np.maximum(hole, last[waiting]) - np.minimum(hole, 0) <= most_columns
         near = np.flatnonzero(on_plate & (hole * pitch - tip[waiting] <= most + GAP_SLACK))
         chosen = waiting[near]
-        good = is_clear(c.take(chosen), tip[chosen], hole[near] * pitch, problem)
+        good = is_clear(c, chosen, tip[chosen], hole[near] * pitch, problem)
         found.append(np.stack([chosen[good], hole[near][good]]))
         waiting = waiting if every else np.setdiff1d(waiting, chosen[good], assume_unique=True)
     index, column = np.concatenate(found, axis=1)
@@ -102,18 +102,19 @@ def clear_holes(c: Candidates, problem: Problem, every: bool) -> tuple[Array, In
     return tip, index[order], column[order]
 
 
-def is_clear(c: Candidates, tip: Array, hole: Array, problem: Problem) -> BoolArray:
-    """Which clamps (N,), from tip to hole along x in mm (N,) in the frame, clear the locators and the part."""
+def is_clear(c: Candidates, index: IntArray, tip: Array, hole: Array, problem: Problem) -> BoolArray:
+    """Which clamps of the fixtures of an index (N,), from tip to hole along x in mm (N,) in the frame, clear the locators
+    and the part."""
     frame = problem.frame
     pitch, radius = frame.lattice[:2], frame.moving.peg_radius
-    x = c.column[:, LOCATORS] * pitch[0]
+    x, row = c.column[index, LOCATORS] * pitch[0], c.row[index]
     beyond = x - np.clip(x, tip[:, None], hole[:, None])
-    apart = np.hypot(beyond, (c.row[:, LOCATORS] - c.row[:, TIP:]) * pitch[1])
+    apart = np.hypot(beyond, (row[:, LOCATORS] - row[:, TIP:]) * pitch[1])
     clear = np.asarray((apart >= frame.standing.peg_radius + radius - GAP_SLACK).all(axis=1))
     chosen = np.flatnonzero(clear & (hole > tip))
     if len(chosen):
-        starts, length = c.point[chosen, TIP], (hole - tip)[chosen]
-        ends = starts + np.stack(rotated(length, np.zeros(len(length)), -c.theta[chosen]), axis=1)
+        starts, length = c.point[index[chosen], TIP], (hole - tip)[chosen]
+        ends = starts + np.stack(rotated(length, np.zeros(len(length)), -c.theta[index[chosen]]), axis=1)
         distances = np.empty(len(chosen))
         piece_distances(starts, ends, problem.outline, distances)
         clear[chosen] = distances >= radius - BODY_SLACK

@@ -68,6 +68,8 @@ class Run:
     @classmethod
     def joined(cls, runs: Sequence[Run]) -> Run:
         """Several runs as one."""
+        if len(runs) == 1:
+            return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
         return cls.of(np.concatenate([run.keys for run in runs]), tuple(map(np.concatenate, columns)))
 

@@ -7,10 +7,11 @@ Computational Geometry (1995).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from math import isfinite
 from typing import ClassVar
 
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long
@@ -122,11 +123,10 @@ class Fence(Plate):
             yield Change("with the clamp in any of the four directions", {"directions": tuple(DIRECTIONS)})
         yield from self.finer()
 
-    @property
+    @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, the wall, and for each direction the clamp."""
         size = self.pitch, self.columns, self.rows
         wall = Carrier(WALL, *size, 0.0, 0.0, noun="fence", peg="end", is_wall=True)
-        offset = 0.0, self.wall_offset
-        plate, *clamps = (evolve(one, offset=offset) for one in super().carriers)
+        plate, *clamps = self.plate_and_clamps((0.0, self.wall_offset))
         return plate, wall, *clamps

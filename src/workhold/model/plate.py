@@ -7,6 +7,7 @@ the forces of both clamps together press it against them, those of neither alone
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from itertools import combinations_with_replacement, product
 from math import inf, isfinite, isnan, pi
 from typing import Any, ClassVar
@@ -215,14 +216,18 @@ class Plate(Toolkit):
             for pair in self.distinct_pairs
         )
 
-    @property
+    @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, and for each direction the clamp, whose travel grows as it opens."""
+        return self.plate_and_clamps((0.0, 0.0))
+
+    def plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
+        """The same with the first hole at a place in mm."""
         size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
-        plate = Carrier("plate", *size, noun="plate", peg="locator", flat=self.flat)
+        plate = Carrier("plate", *size, offset, noun="plate", peg="locator", flat=self.flat)
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
         size = self.pitch, self.columns, self.rows, self.clamp_radius, self.clamp_radius
-        clamp = Carrier("clamp", *size, noun="clamp", peg="clamp", on="plate")
+        clamp = Carrier("clamp", *size, offset, noun="clamp", peg="clamp", on="plate")
         return (
             plate,
             *(

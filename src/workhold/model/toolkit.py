@@ -461,11 +461,13 @@ class Toolkit:
         """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement (N,), and travelled (N,),
         or (N, M) of each of the last M pegs."""
         carrier = self.peg_carriers(arrangement)
-        x, y = np.zeros(column.shape), np.zeros(column.shape)
         moved = np.broadcast_to(travelled[:, None], column.shape) if travelled.ndim == 1 else np.zeros(column.shape)
         if travelled.ndim > 1:
             moved[:, -travelled.shape[1] :] = travelled
-        for number, one in enumerate(self.carriers):
-            across, along = one.place(column, row, moved)
-            x, y = np.where(carrier == number, across, x), np.where(carrier == number, along, y)
+        offset, pitch = (np.array([getattr(one, name) for one in self.carriers]) for name in ("offset", "pitch"))
+        unit = np.array([(0.0, 0.0) if one.travel is None else one.travel.unit for one in self.carriers])
+        x, y = (
+            offset[:, k][carrier] + holes * pitch[:, k][carrier] + moved * unit[:, k][carrier]
+            for k, holes in enumerate((column, row))
+        )
         return x, y

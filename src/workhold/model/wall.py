@@ -104,8 +104,11 @@ class Flush:
         """Which hull edge (N,) lies nearest to the wall in orientations (N,); -1 where the workpiece has none."""
         if len(self.theta) == 0:
             return np.full(len(theta), -1, np.int64)
-        off = np.abs((theta[:, None] - self.theta + np.pi) % tau - np.pi)
-        return np.asarray(off.argmin(axis=1))
+        order = np.argsort(self.theta)
+        around = np.append(self.theta[order], self.theta[order[0]] + tau)
+        # Behind the middle between the last and the first, a turn on, comes the first.
+        after = np.searchsorted((around[:-1] + around[1:]) / 2.0, in_one_turn(theta))
+        return np.append(order, order[0])[after]
 
     def x(self, theta: Array, position: Array) -> Array:
         """x (N, 2) of the ends of the contact in mm, of poses of orientations (N,) and positions (N, 2)."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from itertools import combinations
 from math import inf, isfinite
+from operator import le
 from threading import Event, Lock
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -250,17 +251,19 @@ def merged(records: Array, problem: Problem) -> Array:
     same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
     reach = box_reach(records, problem.wrench_length)
     middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
-    lows, highs = middle - reach, middle + reach
-    bounded = np.asarray(np.isfinite(reach).all(axis=1))
-    kept = np.ones(len(records), np.bool_)
-    last, low, high = 0, lows[0], highs[0]
-    for k in range(1, len(records)):
-        if same[k - 1] and bounded[k] and (lows[k] <= high).all() and (low <= highs[k]).all():
-            low, high = np.minimum(low, lows[k]), np.maximum(high, highs[k])
-            records[last] = around(records[last], low, high, problem.wrench_length)
-            kept[k] = False
+    may = [False, *(same & np.isfinite(reach[1:]).all(axis=1)).tolist()]
+    kept, corners, alone = list[int](), list[tuple[list[float], list[float]]](), list[bool]()
+    for k, box in enumerate(zip((middle - reach).tolist(), (middle + reach).tolist(), strict=True)):
+        if may[k] and all(map(le, box[0], corners[-1][1])) and all(map(le, corners[-1][0], box[1])):
+            corners[-1] = list(map(min, corners[-1][0], box[0])), list(map(max, corners[-1][1], box[1]))
+            alone[-1] = False
         else:
-            last, low, high = k, lows[k], highs[k]
+            kept.append(k)
+            corners.append(box)
+            alone.append(True)
+    for k, (low, high), as_is in zip(kept, corners, alone, strict=True):
+        if not as_is:
+            records[k] = around(records[k], np.array(low), np.array(high), problem.wrench_length)
     return np.asarray(records[kept])
 
 

@@ -68,7 +68,7 @@ def left_by_rules(query: Query) -> Iterator[tuple[str, int]]:
 def searched(query: Query) -> FenceSearch | None:
     """The search of a query, done; None where nothing is left to touch."""
     try:
-        search = FenceSearch(Problem.of(query))
+        search = FenceSearch(Problem.of(query), explains=True)
     except InputError:
         return None
     for edge in search.edges:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from threading import Event
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.geometry.symmetry import rotations_onto_itself
+from workhold.geometry.symmetry import Rotation, rotations_onto_itself
 from workhold.listing.listed import Work, proof_of
 from workhold.listing.on_fence import Pressed, listed_on_fence, listing_order
 from workhold.listing.ranking import measured, rank
@@ -32,29 +33,28 @@ WAITING = 1 << 14
 def answer_on_fence(query: Query, progress: Progress | None, cancel: Event | None) -> Result:
     """The answer on a fence with one clamp, see ``search.design.answer``: one hull edge after the other lies on the wall."""
     searches = searches_of(query, query.toolkit.ways)
-    kept = {search: Kept(search.problem) for search in searches}
+    kept = Kept.of(searches, query)
     edges, done = searches[0].edges, 0
     for edge in edges:
         if cancel is not None and cancel.is_set():
             break
         for search, part in pressed_by(searches, edge):
-            kept[search].waiting.append(part)
+            kept.waiting[search].append(part)
             if cancel is not None and cancel.is_set():
                 break
         else:
             done += 1
-        for one in kept.values():
-            one.list_many()
+        if kept.waiting_count > WAITING:
+            kept.list_waiting()
         if progress is not None:
-            progress(done / len(edges), sum(one.count for one in kept.values()))
-    results = [result_of(search, kept[search], done, len(edges)) for search in searches]
-    return results[0] if len(results) == 1 else joined_ways(results, query)
-
-
-def result_of(search: FenceSearch, kept: Kept, done: int, edges: int) -> Result:
-    """The result of one direction of the clamp, once so many of the hull edges are done."""
+            progress(done / len(edges), sum(one.found for one in kept.sets.values()) + kept.waiting_count)
     kept.list_waiting()
-    query, found = search.problem.query, kept.sets.found
+    result = joined_ways([result_of(search, kept.sets[search], done, len(edges)) for search in searches], query)
+    return evolve(result, table=kept.table)
+
+
+def result_of(search: FenceSearch, sets: Sets, done: int, edges: int) -> Result:
+    """The result of one direction of the clamp without its fixtures, once so many of the hull edges are done."""
     undecided = tuple(entry(candidate, search.problem) for candidate in search.undecided)
     account = Account(search.examined, search.verified, search.escalated, 0, undecided)
     statistics = {
@@ -64,14 +64,14 @@ def result_of(search: FenceSearch, kept: Kept, done: int, edges: int) -> Result:
         "contacts_examined": search.examined,
     }
     work = Work(done == edges, statistics, cells=done)
-    name = query.toolkit.arrangements[0].name
+    name = search.problem.toolkit.arrangements[0].name
     return Result(
-        query=query,
-        table=kept.table,
-        found={name: found},
-        distinct={name: kept.sets.count},
+        query=search.problem.query,
+        table=FixtureTable.empty(),
+        found={name: sets.found},
+        distinct={name: sets.count},
         complete=work.complete,
-        notes=tuple(notes_of(search, found, edges)) if work.complete else (),
+        notes=tuple(notes_of(search, sets.found, edges)) if work.complete else (),
         statistics=statistics,
         proof=proof_of(account, work),
     )
@@ -79,42 +79,48 @@ def result_of(search: FenceSearch, kept: Kept, done: int, edges: int) -> Result:
 
 @define(eq=False)
 class Kept:
-    """The fixtures of one direction of the clamp, no more of them than are asked for.
+    """The fixtures of all directions of the clamp, no more of them than are asked for.
 
     Parameters
     ----------
-    problem : what is searched.
-    sets : the fixtures listed so far, as sets of those that a rotation of the part carries into each other.
+    problem : that of all directions.
+    sets : of each direction those listed so far, as sets of what a rotation of the part carries into each other.
+    waiting : of each direction pairs that are not listed yet, those of one hull edge after those of the other.
     table : the fixtures listed so far, best first.
-    waiting : pairs that are not listed yet, those of one hull edge after those of the other.
     """
 
     problem: Problem
-    sets: Sets = field(init=False)
+    sets: dict[FenceSearch, Sets]
+    waiting: dict[FenceSearch, list[Pressed]]
     table: FixtureTable = field(factory=FixtureTable.empty, init=False)
-    waiting: list[Pressed] = field(factory=list, init=False)
 
-    def __attrs_post_init__(self) -> None:
-        self.sets = Sets(self.problem)
+    @classmethod
+    def of(cls, searches: Sequence[FenceSearch], query: Query) -> Kept:
+        """None yet, of the searches of a query's directions."""
+        problem = searches[0].problem
+        (plate, clamp), rotations = problem.loci, rotations_onto_itself([f.segment for f in query.workpiece.faces])
+        return cls(
+            evolve(problem, query=query, loci=(plate, *(clamp for _ in searches))),
+            {search: Sets(search.problem, rotations) for search in searches},
+            {search: [] for search in searches},
+        )
 
     @property
-    def count(self) -> int:
-        """How many there are, with those that wait."""
-        return self.sets.found + sum(map(len, self.waiting))
-
-    def list_many(self) -> None:
-        """List what waits once it is much, and all of a hull edge."""
-        if sum(map(len, self.waiting)) > WAITING:
-            self.list_waiting()
+    def waiting_count(self) -> int:
+        """How many pairs wait."""
+        return sum(len(part) for parts in self.waiting.values() for part in parts)
 
     def list_waiting(self) -> None:
-        """List what waits."""
-        if not self.waiting:
-            return
-        fresh, pressed = listed_on_fence(Pressed.joined(self.waiting), self.problem)
-        self.waiting = []
-        self.sets.add(pressed)
-        query, table = self.problem.query, FixtureTable.joined([self.table, measured(fresh, self.problem)])
+        """List and measure what waits, all of a hull edge."""
+        tables = [FixtureTable.empty()]
+        for number, (search, parts) in enumerate(self.waiting.items()):
+            if parts:
+                table, pressed = listed_on_fence(Pressed.joined(parts), search.problem)
+                tables.append(evolve(table, arrangement=table.arrangement + np.int8(number)))
+                self.sets[search].add(pressed)
+                parts.clear()
+        fresh = measured(FixtureTable.joined(tables), self.problem)
+        query, table = self.problem.query, FixtureTable.joined([self.table, fresh])
         order = listing_order(table)
         order = order[rank(table.quality[order], query.ranking, query.tolerance)]
         self.table = table.take(order[: query.best])
@@ -123,14 +129,12 @@ class Kept:
 class Sets:
     """How many sets fixtures form when those count once that a rotation of the part carries into each other."""
 
-    def __init__(self, problem: Problem) -> None:
-        part = problem.workpiece
-        self.problem, self.found = problem, 0
-        self.rotations = rotations_onto_itself([face.segment for face in part.faces])
+    def __init__(self, problem: Problem, rotations: Sequence[Rotation]) -> None:
+        self.problem, self.found, self.rotations = problem, 0, rotations
         self.keys: list[NDArray[np.int64]] = []
         self.places: list[NDArray[np.float64]] = []
         if len(self.rotations) > 1:
-            self.images = [images_of(part.flush, rotation.angle) for rotation in self.rotations]
+            self.images = [images_of(problem.workpiece.flush, rotation.angle) for rotation in self.rotations]
 
     def add(self, pressed: Pressed) -> None:
         """Take the fixtures of some hull edges."""

@@ -131,7 +131,7 @@ def places_on(laid: Laid, chosen: tuple[int, int], levels: Array, upright: bool,
         some = levels[start : start + together]
         for part in (on_lines(laid, rows, some, along, across), on_arcs(laid, rows, some, along, across)):
             inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
-            kept = part.take(inside)
+            kept = part if inside.all() else part.take(inside)
             parts.append(Places(kept.line + start, kept.feature + first, *tail(kept)))
     return Places.joined(parts)
 
@@ -145,15 +145,19 @@ def on_lines(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acr
     """Contacts with straight features; those parallel to the lines have none."""
     straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
     some = rows[straight]
-    rises = some[:, across[1]]
-    s = (levels[:, None] - some[:, along[1]]) / rises
-    near = 4.0 * (laid.off + laid.turn * np.abs(s)) / np.abs(rises) + LOOSE
-    line, which = np.nonzero(np.abs(s) <= some[:, HALF_EXTENT] + near)
-    s, some = s[line, which], some[which]
-    point = np.stack([some[:, X] + s * some[:, AXIS_X], some[:, Y] + s * some[:, AXIS_Y]], axis=1)
-    slack = np.minimum(some[:, HALF_EXTENT] - s + some[:, HIGH_SLACK], some[:, HALF_EXTENT] + s + some[:, LOW_SLACK])
-    reach = 4.0 * (laid.off + laid.turn * np.abs(s)) / np.abs(some[:, across[1]])
-    normal = np.stack([some[:, AXIS_Y], -some[:, AXIS_X]], axis=1)
+    rises = np.abs(some[:, across[1]])
+    # Most pairs of a line and a feature are far from each other: the bound below solved for s, generously.
+    farthest = 1.01 * (some[:, HALF_EXTENT] + 4.0 * laid.off / rises + LOOSE)
+    farthest[4.0 * laid.turn > 0.009 * rises] = np.inf
+    line, which = np.nonzero(np.abs(levels[:, None] - some[:, along[1]]) <= farthest * rises)
+    s = (levels[line] - some[which, along[1]]) / some[which, across[1]]
+    reach = 4.0 * (laid.off + laid.turn * np.abs(s)) / rises[which]
+    near = np.abs(s) <= some[which, HALF_EXTENT] + (reach + LOOSE)
+    line, which, s, reach = line[near], which[near], s[near], reach[near]
+    part = some.T[:, which]
+    point = np.stack([part[X] + s * part[AXIS_X], part[Y] + s * part[AXIS_Y]], axis=1)
+    slack = np.minimum(part[HALF_EXTENT] - s + part[HIGH_SLACK], part[HALF_EXTENT] + s + part[LOW_SLACK])
+    normal = np.stack([part[AXIS_Y], -part[AXIS_X]], axis=1)
     turned = np.full(len(s), 2.0 * laid.turn)
     return Places(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
 
@@ -162,43 +166,59 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     """Contacts with arcs."""
     round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     some = rows[round_]
-    up = levels[:, None] - some[:, along[1]]
-    line, which = np.nonzero(np.abs(up) <= some[:, RADIUS] + 2.0 * laid.off)
-    line, which = np.repeat(line, 2), np.repeat(which, 2)
-    branch = np.tile([-1.0, 1.0], len(line) // 2)
-    up, some = up[line, which], some[which]
-    half = np.sqrt(np.maximum((some[:, RADIUS] - up) * (some[:, RADIUS] + up), 0.0))
+    radius, place = some[:, RADIUS], some[:, along[1]]
+    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than both roots.
+    # Its normal is across the line to within its swing, so no contact there is told to press, but by balls.
+    least = 16.0 * laid.off * radius
+    low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
+    line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
+    up = levels[line] - place[which]
+    met = np.abs(up) <= radius[which] + 2.0 * laid.off
+    line, which, up = line[met], which[met], up[met]
+    part = some.T[:, which]
+    half = np.sqrt(np.maximum((part[RADIUS] - up) * (part[RADIUS] + up), 0.0))
+    grazing = ~(half * half > least[which])
+    one, other = part[across[0]] * half, part[across[1]] * up
+    ahead = np.stack([other - one, other + one], axis=1)
+    chosen, side = np.nonzero(grazing[:, None] | (ahead >= least_ahead(some)[which][:, None]))
+    line, which = line[chosen], which[chosen]
+    up, half, grazing = up[chosen], half[chosen], grazing[chosen]
+    part, branch = part[:, chosen], np.array([-1.0, 1.0])[side]
     with np.errstate(divide="ignore", invalid="ignore"):
-        reach = 4.0 * laid.off * some[:, RADIUS] / half
-    # Beside a grazing line the square root is of what rounding leaves: the place is off by no more than both roots. Its
-    # normal is across the line to within its swing, so no contact there is told to press, but by balls.
-    least = 16.0 * laid.off * some[:, RADIUS]
-    grazing = ~(half * half > least)
-    reach[grazing] = (half + np.sqrt(2.0 * least))[grazing]
-    ahead = some[:, across[0]] * branch * half + some[:, across[1]] * up
-    near = grazing | (ahead >= least_ahead(rows[round_])[which])
-    line, which, branch, up, half, reach, some = (
-        values[near] for values in (line, which, branch, up, half, reach, some)
-    )
+        reach = 4.0 * laid.off * part[RADIUS] / half
+    reach[grazing] = half[grazing] + np.sqrt(2.0 * least[which[grazing]])
     ray = np.empty((len(up), 2))
     upright = along[0] == Y
     ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
     angle = np.arctan2(
-        some[:, AXIS_X] * ray[:, 1] - some[:, AXIS_Y] * ray[:, 0],
-        some[:, AXIS_X] * ray[:, 0] + some[:, AXIS_Y] * ray[:, 1],
+        part[AXIS_X] * ray[:, 1] - part[AXIS_Y] * ray[:, 0], part[AXIS_X] * ray[:, 0] + part[AXIS_Y] * ray[:, 1]
     )
     slack = np.minimum(
-        (some[:, HALF_EXTENT] - angle) * some[:, RADIUS] + some[:, HIGH_SLACK],
-        (some[:, HALF_EXTENT] + angle) * some[:, RADIUS] + some[:, LOW_SLACK],
+        (part[HALF_EXTENT] - angle) * part[RADIUS] + part[HIGH_SLACK],
+        (part[HALF_EXTENT] + angle) * part[RADIUS] + part[LOW_SLACK],
     )
-    slack[some[:, HALF_EXTENT] >= np.pi] = np.inf
-    normal = some[:, [SIGN]] * ray / some[:, [RADIUS]]
-    swing = 2.0 * (laid.turn + (reach + laid.off) / some[:, RADIUS])
-    return Places(line, round_[which], some[:, [X, Y]] + ray, normal, slack, reach, swing, branch)
+    slack[part[HALF_EXTENT] >= np.pi] = np.inf
+    normal = part[SIGN][:, None] * ray / part[RADIUS][:, None]
+    swing = 2.0 * (laid.turn + (reach + laid.off) / part[RADIUS])
+    point = np.stack([part[X] + ray[:, 0], part[Y] + ray[:, 1]], axis=1)
+    return Places(line, round_[which], point, normal, slack, reach, swing, branch)
+
+
+def half_angles(rows: Array) -> Array:
+    """Half angles (F,) in radians of arcs (F, 12), and of what lies not far past their ends."""
+    past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
+    return np.asarray(np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi))
 
 
 def least_ahead(rows: Array) -> Array:
     """By how many mm (F,) contacts lie along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
-    past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
-    angle = np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi)
+    angle = half_angles(rows)
     return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
+
+
+def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
+    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not far past the
+    ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the coordinate and along it."""
+    turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
+    low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
+    return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare

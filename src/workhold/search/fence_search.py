@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from math import ceil, floor, inf
 
 import numpy as np
-from attrs import define, evolve, field, frozen
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
@@ -21,9 +21,6 @@ from workhold.conventions import (
     CLEARANCE,
     GAP_SLACK,
     LEAST_CLAMPING,
-    LEAST_CLOSURE,
-    LEAST_PUSH,
-    LEAST_SEAT,
     LEAST_SPAN,
     PARALLEL,
     SAME_PLACE,
@@ -31,12 +28,12 @@ from workhold.conventions import (
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
-from workhold.kernels.contact.closure import ROUNDING
 from workhold.listing.on_fence import Pressed
 from workhold.model.fixture import Pose
 from workhold.model.query import Query
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
+from workhold.search.fence_closure import Clamps, closure, may_oppose, reaction_doubts, seating
 from workhold.search.fence_places import Laid, Places, laid_on, places_on
 
 __all__ = ["FenceSearch", "pressed_by", "searches_of"]
@@ -51,27 +48,6 @@ DOUBTFUL = 1e-10
 TOGETHER = 1 << 17
 
 
-@frozen(eq=False)
-class Clamps:
-    """Contacts of a clamp, each with a contact of the locator.
-
-    Parameters
-    ----------
-    places : M contacts of the tip; their lines are rows, or columns counted from the locator's.
-    locator : (M,) index of the locator's contact.
-    """
-
-    places: Places
-    locator: IntArray
-
-    def __len__(self) -> int:
-        return len(self.locator)
-
-    def take(self, order: IntArray | BoolArray) -> Clamps:
-        """The contacts of an index array or mask, in its order."""
-        return Clamps(self.places.take(order), self.locator[order])
-
-
 @define(eq=False)
 class FenceSearch:
     """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp.
@@ -79,17 +55,19 @@ class FenceSearch:
     Parameters
     ----------
     problem : what is searched.
+    explains : whether it is to tell what comes nearest.
     plate, clamp : in whose holes the locator stands, and the clamp.
     push : unit vector along which the clamp moves as it clamps.
     locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many pairs were
         proven to press the part, and how many needed balls.
     undecided : the pairs that not even they decide, with the number of their hull edge.
     is_square : whether every face that was offered is parallel or square to the wall.
-    nearest : as long as none is proven, the smallest share of the four contacts in the pair in which it is the largest, and
-        that pair.
+    nearest : where it is asked for, and as long as none is proven, the smallest share of the four contacts in the pair in
+        which it is the largest, and that pair.
     """
 
     problem: Problem
+    explains: bool = False
     plate: Carrier = field(init=False)
     clamp: Carrier = field(init=False)
     push: tuple[float, float] = field(init=False)
@@ -162,12 +140,11 @@ class FenceSearch:
 
     def of_rows(self, places: Places, locators: Places) -> Iterator[Clamps]:
         """Contacts of the clamp on rows, each with every locator, some at a time."""
-        places = places.take(self.may_press(places))
-        together = max(TOGETHER // max(len(places), 1), 1)
+        chosen = np.flatnonzero(self.may_press(places))
+        together = max(TOGETHER // max(len(chosen), 1), 1)
         for start in range(0, len(locators), together):
             numbers = np.arange(start, min(start + together, len(locators)))
-            which = np.tile(np.arange(len(places)), len(numbers))
-            yield Clamps(places.take(which), np.repeat(numbers, len(places)))
+            yield Clamps(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
 
     def on_columns(self, laid: Laid, locators: Places) -> Iterator[Clamps]:
         """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted from."""
@@ -188,7 +165,7 @@ class FenceSearch:
             locator += start
             # The column is as uncertain as the locator it is counted from.
             grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + laid.off) / laid.off)
-            yield Clamps(evolve(places, line=steps[step], reach=grown), locator)
+            yield Clamps(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
 
     def may_press(self, places: Places) -> BoolArray:
         """Which contacts (M,) of the tip are clear of the wall, and push the part."""
@@ -197,15 +174,17 @@ class FenceSearch:
         above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
         return np.asarray(above & (push > -2.0 * places.swing))
 
-    def closing(self, edge: int, laid: Laid, locators: Places, clamps: Clamps) -> Pressed:
+    def closing(self, edge: int, laid: Laid, one: Places, clamps: Clamps) -> Pressed:
         """The pairs of locators and clamps that press the part against the wall."""
         self.examined += len(clamps)
-        one, two = locators, clamps.places
-        told = seating if self.problem.pairing else closure
-        null, push, held, doubtful = told(laid, one, two, clamps.locator, self.push, self.problem)
+        pairing = self.problem.pairing
+        if not (pairing or self.explains):
+            clamps = clamps.take(may_oppose(laid, one, clamps, self.problem))
+        two, locator = clamps.places.take(clamps.which), clamps.locator
+        null, push, held, doubtful = (seating if pairing else closure)(laid, one, two, locator, self.push, self.problem)
         open_ = np.flatnonzero(doubtful)
         for k in open_.tolist():
-            candidate = self.candidate(edge, one, two, clamps, k)
+            candidate = self.candidate(edge, one, two, locator, k)
             verdict = pressing(candidate, self.problem, self.plate, self.push)
             held[k] = verdict is True
             if verdict is None:
@@ -213,24 +192,22 @@ class FenceSearch:
         self.escalated += len(open_)
 
         def pairs(chosen: IntArray) -> Pressed:
-            locator = clamps.locator[chosen]
+            behind = locator[chosen]
             return Pressed(
                 edge=np.full(len(chosen), edge),
-                row=one.line[locator],
+                row=one.line[behind],
                 line=two.line[chosen],
-                locator=one.point[locator],
+                locator=one.point[behind],
                 tip=two.point[chosen],
-                feature=np.stack([one.feature[locator], two.feature[chosen]], axis=1),
+                feature=np.stack([one.feature[behind], two.feature[chosen]], axis=1),
                 null=null[chosen],
                 push=push[chosen],
             )
 
         good = np.flatnonzero(held)
         self.verified += len(good)
-        found = self.placed(pairs(good), edge, clamps, good, one)
-        if self.problem.pairing:
-            return self.sharpened(found, edge, laid, clamps, good, one)
-        if self.verified == 0:
+        found = self.sharpened(pairs(good), edge, laid, one, two.take(good), locator[good])
+        if self.explains and self.verified == 0:
             size = np.abs(null).sum(axis=1)
             share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
             # Forces are told per clamp force, which there has to be.
@@ -241,42 +218,42 @@ class FenceSearch:
                 self.nearest = float(share[best]), pairs(np.array([best]))
         return found
 
-    def placed(self, pressed: Pressed, edge: int, clamps: Clamps, good: IntArray, locators: Places) -> Pressed:
-        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
-        column that grazes an arc."""
-        reach = np.maximum(locators.reach[clamps.locator[good]], clamps.places.reach[good])
-        far = np.flatnonzero(reach > SAME_PLACE / 2)
-        locator, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
-        for k in far.tolist():
-            candidate = self.candidate(edge, locators, clamps.places, clamps, int(good[k]))
-            sharp = sharp_contacts(candidate, self.problem, self.plate)
-            if sharp is not None:
-                locator[k], tip[k] = sharp.locator, sharp.tip
-                null[k] = null[k] if self.problem.pairing else sharp.null
-        return evolve(pressed, locator=locator, tip=tip, null=null) if len(far) else pressed
-
     def sharpened(
-        self, pressed: Pressed, edge: int, laid: Laid, clamps: Clamps, good: IntArray, locators: Places
+        self, pressed: Pressed, edge: int, laid: Laid, one: Places, two: Places, locator: IntArray
     ) -> Pressed:
-        """Contacts with how far their forces may be off; those that doubles do not tell well enough are told by balls."""
-        null, doubt = pressed.null.copy(), reaction_doubts(pressed, laid, clamps.take(good), locators, self.problem)
+        """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may be off, too."""
+        places = self.placed(pressed, edge, one, two, locator)
+        if not self.problem.pairing:
+            return places
+        null, doubt = places.null.copy(), reaction_doubts(places, laid, one, two, locator, self.problem)
         for k in np.flatnonzero(doubt > DOUBTFUL).tolist():
-            candidate = self.candidate(edge, locators, clamps.places, clamps, int(good[k]))
-            sharp = reactions_on_fence(candidate, self.problem, self.plate)
+            sharp = reactions_on_fence(self.candidate(edge, one, two, locator, k), self.problem, self.plate)
             if sharp is not None:
                 null[k, :3], doubt[k] = sharp.taken, sharp.doubt
-        return evolve(pressed, null=null, doubt=doubt)
+        return evolve(places, null=null, doubt=doubt)
 
-    def candidate(self, edge: int, one: Places, two: Places, clamps: Clamps, k: int) -> Candidate:
+    def placed(self, pressed: Pressed, edge: int, one: Places, two: Places, locator: IntArray) -> Pressed:
+        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
+        column that grazes an arc."""
+        far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
+        places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
+        for k in far.tolist():
+            sharp = sharp_contacts(self.candidate(edge, one, two, locator, k), self.problem, self.plate)
+            if sharp is not None:
+                places[k], tip[k] = sharp.locator, sharp.tip
+                null[k] = null[k] if self.problem.pairing else sharp.null
+        return evolve(pressed, locator=places, tip=tip, null=null) if len(far) else pressed
+
+    def candidate(self, edge: int, one: Places, two: Places, locator: IntArray, k: int) -> Candidate:
         """A pair as balls decide it."""
-        locator = int(clamps.locator[k])
+        behind = int(locator[k])
         return Candidate(
             edge=edge,
-            row=int(one.line[locator]),
+            row=int(one.line[behind]),
             line=int(two.line[k]),
             is_upright=not self.clamp.is_along_x,
-            features=(int(one.feature[locator]), int(two.feature[k])),
-            branches=(float(one.branch[locator]), float(two.branch[k])),
+            features=(int(one.feature[behind]), int(two.feature[k])),
+            branches=(float(one.branch[behind]), float(two.branch[k])),
         )
 
 
@@ -325,79 +302,3 @@ def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
     place = rows[:, 2 if upward else 1]
     extent = np.where(rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X]))
     return float((place - extent).min()), float((place + extent).max())
-
-
-def seating(
-    laid: Laid, one: Places, two: Places, locator: IntArray, push: tuple[float, float], problem: Problem
-) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """As :func:`closure` of one of two clamps: wall and locator must fix the part, and the clamp must push.
-
-    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the clamp's face. With
-    the notation there the locator's is -b_u / a_u, and the determinant of the three wrenches is |a_u| l.
-    """
-    length = problem.wrench_length
-    a, b = one.normal[locator], two.normal
-    p, q = one.point[locator] / length, two.point / length
-    wall = laid.length / length
-    with np.errstate(divide="ignore", invalid="ignore"):
-        force = -b[:, 0] / a[:, 0]
-        last = (force * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0]) / wall
-        null = np.stack([force * a[:, 1] + b[:, 1] - last, last, force, np.ones(len(force))], axis=1)
-        reach = np.maximum(one.reach[locator], two.reach)
-        swing = np.maximum(one.swing[locator], two.swing)
-        pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
-        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
-        fixed = np.abs(a[:, 0]) * wall - LEAST_SEAT
-        band = 2.0 * swing + ROUNDING
-        worst = np.minimum(
-            slack / (1.2 * reach + 1e-12), np.minimum((pushes - LEAST_PUSH) / band, fixed / (wall * band))
-        )
-    held = worst > 1.0
-    return null, pushes, held, ~held & ~(worst < -1.0)
-
-
-def reaction_doubts(pressed: Pressed, laid: Laid, clamps: Clamps, locators: Places, problem: Problem) -> Array:
-    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
-    reach = np.maximum(locators.reach[clamps.locator], clamps.places.reach)
-    swing = np.maximum(locators.swing[clamps.locator], clamps.places.swing)
-    across = np.abs(locators.normal[clamps.locator, 0])
-    size = 1.0 + np.abs(pressed.null).sum(axis=1)
-    wall = laid.length / problem.wrench_length
-    with np.errstate(invalid="ignore"):
-        doubt = 4.0 * size * (20.0 * swing + 4.0 * (reach + laid.off) / problem.wrench_length + ROUNDING)
-        return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
-
-
-def closure(
-    laid: Laid, one: Places, two: Places, locator: IntArray, push: tuple[float, float], problem: Problem
-) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force the clamp passes
-    on in its direction; which pairs (M,) press the part, and of which that is open.
-
-    With normals a, b and moments m, M of locator and clamp about the start of the hull edge of length l, lengths in parts of
-    L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
-    """
-    length = problem.wrench_length
-    a, b = one.normal[locator], two.normal
-    p = one.point[locator] / length
-    q = two.point / length
-    across, ahead = np.abs(a[:, 0]), -b[:, 0] * np.copysign(1.0, a[:, 0])
-    wall = laid.length / length
-    last = ahead * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + across * (q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0])
-    both = wall * (ahead * a[:, 1] + across * b[:, 1])
-    forces = both - last, last, ahead * wall, across * wall
-    null = np.stack(forces, axis=1)
-    reach = np.maximum(one.reach[locator], two.reach)
-    swing = np.maximum(one.swing[locator], two.swing)
-    pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
-    with np.errstate(invalid="ignore"):
-        band = 20.0 * swing + 4.0 * (reach + laid.off) / length + ROUNDING
-        size = sum(map(np.abs, forces))
-        smallest = np.minimum(np.minimum(*forces[:2]), np.minimum(*forces[2:]))
-        least = np.minimum(smallest - LEAST_CLOSURE * size, size - LEAST_SPAN)
-        force = null[:, 3] * pushes - LEAST_CLAMPING * size
-        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
-        worst = np.minimum(least / band, force / (3.0 * band + size * swing))
-        worst = np.minimum(worst, slack / np.maximum(1.2 * reach, 1e-300))
-    held = worst > 1.1
-    return null, pushes, held, ~held & ~(worst < -1.1)

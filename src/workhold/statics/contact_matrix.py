@@ -154,34 +154,31 @@ class Touched:
         on_wall = on == self.wall
         edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
         touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
+        moves = self.moving[on]
         # Each fixture has an axis of its own where a toolkit has several carriers that move.
-        mover = (on * (self.moving[on] > 0.0)).max(axis=1, initial=0)
-        for number in np.unique(mover).tolist():
-            rows = np.flatnonzero(mover == number)
-            p, n, e, d = (np.empty((len(rows), *values.shape[1:])) for values in (points, normals, ends, edges))
-            inverse = np.zeros((len(rows), 4, each))
-            # Copies, because a kernel is compiled anew for arrays that are read-only or laid out otherwise.
-            contact_matrices_of(
-                np.array(pegs[rows], np.float64, order="C"),
-                np.array(pose[rows], np.float64, order="C"),
-                np.array(self.moving[on[rows]], np.float64, order="C"),
-                -self.directions[number],
-                np.array(touched[rows], order="C"),
-                self.features,
-                self.starts,
-                self.center,
-                self.length,
-                p,
-                n,
-                e,
-                d,
-                inverse,
-                np.empty((each, 4)),
-            )
-            points[rows], normals[rows], ends[rows], edges[rows], inverses[rows] = p, n, e, d, inverse
-        # What lies flush on a wall ends nowhere that matters.
-        for distances in (ends, edges):
-            distances[on_wall & ~np.isnan(distances)] = np.inf
+        mover = (on * (moves > 0.0)).max(axis=1, initial=0)
+        # A kernel is compiled anew for arrays that are read-only or laid out otherwise.
+        contact_matrices_of(
+            np.require(pegs, np.float64, ["C", "W"]),
+            np.require(pose, np.float64, ["C", "W"]),
+            moves,
+            -self.directions[mover],
+            touched,
+            self.features,
+            self.starts,
+            self.center,
+            self.length,
+            points,
+            normals,
+            ends,
+            edges,
+            inverses,
+            np.empty((each, 4)),
+        )
+        if self.wall >= 0:
+            # What lies flush on a wall ends nowhere that matters.
+            for distances in (ends, edges):
+                distances[on_wall & ~np.isnan(distances)] = np.inf
         if each == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
         reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)

@@ -47,7 +47,7 @@ def contact_matrices_of(
     pegs: Array,
     pose: Array,
     moves: Array,
-    axis: Array,
+    axes: Array,
     faces: IntArray,
     features: Array,
     starts: IntArray,
@@ -67,7 +67,7 @@ def contact_matrices_of(
     pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
     pose : (N, 3) orientation in radians and translation in mm.
     moves : (N, P) 1 for a peg on the moving carrier, 0 for others.
-    axis : (2,) the unit vector x in the toolkit's frame.
+    axes : (N, 2) the unit vector x of each in the toolkit's frame.
     faces : (N, P) number of the face each peg touches.
     features : (F, 12) rows of contact features about c with the slacks of their ends, ordered by face.
     starts : where the features of each face number begin, one more than there are numbers.
@@ -104,7 +104,9 @@ def contact_matrices_of(
             normals[k, i, 0], normals[k, i, 1] = nx, ny
             ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter_on(row, x, y))
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
-            matrix[i, 3] = moves[k, i] * ((nx * cosine - ny * sine) * axis[0] + (nx * sine + ny * cosine) * axis[1])
+            matrix[i, 3] = moves[k, i] * (
+                (nx * cosine - ny * sine) * axes[k, 0] + (nx * sine + ny * cosine) * axes[k, 1]
+            )
         if not known or (count == 4 and not eliminate(matrix, inverses[k]) > 0.0):
             for i in range(count):
                 ends[k, i] = edges[k, i] = nan
