@@ -11,6 +11,8 @@ from hypothesis import given, settings
 
 from exact_chords import exactly
 from strategies import outlines, vises
+from workhold import load
+from workhold.contact import features
 from workhold.contact.features import contact_features, end_slacks, feature_rows
 from workhold.contact.problem import Problem
 from workhold.geometry.segment import Arc, segment_rows
@@ -105,6 +107,16 @@ def test_tangent_joints_forgive_rounding_and_corners_do_not():
         ends = [feature.segment.at(-feature.segment.half_extent), feature.segment.at(feature.segment.half_extent)]
         for (x, y), value in zip(ends, (low, high), strict=True):
             assert (value > 0) == (min(hypot(x - 32, y - 10), hypot(x + 2, y - 10)) < 1e-9)
+
+
+def test_ends_are_compared_alike_however_many_at_a_time(monkeypatch):
+    """All at once, one by one, or five by five."""
+    locus = contact_features(load("widget"), 3.0)
+    slack = end_slacks(locus)
+    assert (slack > 0).any() and (slack < 0).any()
+    for together in (1, 10 * len(locus)):
+        monkeypatch.setattr(features, "TOGETHER", together)
+        assert (end_slacks(locus) == slack).all()
 
 
 def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():

@@ -50,6 +50,23 @@ def test_balls_and_bounds_agree_on_every_pair(
     assert search.escalated < search.examined / 3 and search.undecided == in_balls.undecided == []
 
 
+@pytest.mark.parametrize("loop", [KITE, ARCH, SLOT], ids=["kite", "arch", "slot"])
+@pytest.mark.parametrize("direction", ["+x", "-y"])
+def test_pairs_that_cannot_oppose_each_other_need_no_look(loop: list[list[float]], direction: str) -> None:
+    """A search that explains looks at all pairs: it finds the same, with the same pairs left to balls."""
+    problem = Problem.of(
+        Query(Workpiece.from_loops("part", [loop]), Fence(2, 0.5, wall_offset=4, directions=[direction]))
+    )
+    quick, whole = FenceSearch(problem), FenceSearch(problem, explains=True)
+    for edge in quick.edges:
+        one, other = (Pressed.joined(list(search.pressed(edge))) for search in (quick, whole))
+        for name in ("row", "line", "locator", "tip", "feature", "null", "push"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    for name in ("examined", "verified", "escalated", "undecided"):
+        assert getattr(quick, name) == getattr(whole, name)
+    assert quick.verified > 20
+
+
 def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
     """A row at the very top of the arch, 40 high with the peg: a contact whose normal is upright presses nothing."""
     part = Workpiece.from_loops("arch", [ARCH])

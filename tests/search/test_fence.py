@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from math import cos, sin, sqrt
+from math import cos, pi, sin, sqrt
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -17,6 +17,8 @@ from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
 from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.search import fence as searching
+from workhold.search import fence_search
 from workhold.verification import verify
 
 TESTS = Path(__file__).parent.parent
@@ -255,6 +257,23 @@ def test_the_best_are_the_first_of_all_and_everything_is_counted() -> None:
         best = design(part(KITE), fence, rank_by=ranking, best=7)
         assert best.table == everything.table.take(slice(0, 7))
         assert best.found == everything.found and len(best) == 7
+
+
+def test_listing_a_few_at_a_time_lists_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After every hull edge, of all directions, also of a part that looks alike from three sides, and the best of them."""
+    corners = [
+        (30 * cos(angle), 30 * sin(angle), bulge)
+        for angle, bulge in zip(np.arange(6) * pi / 3, [0.2, 0] * 3, strict=True)
+    ]
+    for best in (None, 9):
+        query = Query(part(corners), Fence(pitch=7, peg_radius=2, wall_offset=4), best=best)
+        whole = answer(query)
+        with monkeypatch.context() as patched:
+            patched.setattr(fence_search, "TOGETHER", 60)
+            patched.setattr(searching, "WAITING", 0)
+            again = answer(query)
+        assert again == whole and len(whole) > 8
+        assert again.distinct["edge"] == whole.distinct["edge"] == whole.found["edge"] / 3
 
 
 def test_a_search_that_is_stopped_is_incomplete_and_progress_comes_to_its_end() -> None:

@@ -156,7 +156,9 @@ class ToolkitWords:
         from workhold.model.plate import Plate
 
         has_a_clamp = issubclass(kind, Plate)
-        what = f"of vises: a {kind.noun} has no jaws" if has_a_clamp else "of plates: a vise has no clamp beside its jaws"
+        what = (
+            f"of vises: a {kind.noun} has no jaws" if has_a_clamp else "of plates: a vise has no clamp beside its jaws"
+        )
         others: tuple[str, ...] = OF_VISES if has_a_clamp else OF_PLATES
         for name in others:
             if getattr(self, name):

@@ -105,10 +105,11 @@ class Flush:
         if len(self.theta) == 0:
             return np.full(len(theta), -1, np.int64)
         order = np.argsort(self.theta)
-        around = np.append(self.theta[order], self.theta[order[0]] + tau)
-        # Behind the middle between the last and the first, a turn on, comes the first.
-        after = np.searchsorted((around[:-1] + around[1:]) / 2.0, in_one_turn(theta))
-        return np.append(order, order[0])[after]
+        # The last stands before the first, too, and the first behind the last.
+        order = np.concatenate([order[-1:], order, order[:1]])
+        around = self.theta[order]
+        around[0], around[-1] = around[0] - tau, around[-1] + tau
+        return order[np.searchsorted((around[:-1] + around[1:]) / 2.0, in_one_turn(theta))]
 
     def x(self, theta: Array, position: Array) -> Array:
         """x (N, 2) of the ends of the contact in mm, of poses of orientations (N,) and positions (N, 2)."""
