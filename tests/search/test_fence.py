@@ -16,6 +16,7 @@ import workhold
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
+from workhold.listing.ranking import ranking_keys
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.search import fence as searching
 from workhold.search import fence_search
@@ -257,6 +258,16 @@ def test_the_best_are_the_first_of_all_and_everything_is_counted() -> None:
         best = design(part(KITE), fence, rank_by=ranking, best=7)
         assert best.table == everything.table.take(slice(0, 7))
         assert best.found == everything.found and len(best) == 7
+
+
+def test_those_equally_good_stand_in_the_order_of_directions() -> None:
+    """As those of a part that is its own mirror image do, which the clamp presses from either side."""
+    triangle = part([(0, 0, 0), (60, 0, 0), (30, 30 * sqrt(3), 0)])
+    result = design(triangle, Fence(pitch=10, peg_radius=0, wall_offset=5, directions=["+x", "-x"]))
+    keys = np.array(ranking_keys(result.table.quality, result.query.ranking, result.query.tolerance))
+    tied = (np.diff(keys, axis=1) == 0.0).all(axis=0)
+    steps = np.diff(result.table.arrangement.astype(int))[tied]
+    assert (steps >= 0).all() and (steps > 0).any()
 
 
 def test_listing_a_few_at_a_time_lists_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
