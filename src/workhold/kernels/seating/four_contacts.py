@@ -8,7 +8,7 @@ double root, which cannot be told from two or none, nothing clamps.)
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, sin
+from math import cos, inf, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.holdings import END, height, held
+from workhold.kernels.seating.pieces import length
 from workhold.kernels.seating.roots import APART, GAP, is_level, root_between
 from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
 
@@ -48,9 +49,9 @@ def told_of_two(p: Array, q: Array, low: float, high: float, given: Given) -> in
     cosine, sine = cos(psi), sin(psi)
     f = height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
     gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
-    apart = hypot(gx, gy)
+    apart = length(gx, gy)
     # Two pegs in one place, and holdings that turn about one centre: the first cannot be, the second are loose throughout.
-    if (hypot(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
+    if (length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
         return NOTHING
     slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
     if abs(f) > reach * (slope + bend * reach / 2.0 * 1.001) + ROUNDING:
@@ -66,7 +67,7 @@ def told_of_third(cell: Array, ox: float, oy: float, piece: Array, low: float, h
     cosine, sine = cos(psi), sin(psi)
     x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
     gx, gy = x - s[6], y - s[7]
-    speed = (hypot(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
+    speed = (length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
     bend = speed + cell[SPEED]
     dx, dy = x - piece[X], y - piece[Y]
     if piece[IS_ARC] == 0.0:
@@ -74,9 +75,9 @@ def told_of_third(cell: Array, ox: float, oy: float, piece: Array, low: float, h
             return NOTHING
         f, nx, ny = dx * piece[AXIS_Y] - dy * piece[AXIS_X], piece[AXIS_Y], -piece[AXIS_X]
     else:
-        size = max(hypot(dx, dy), 1e-300)
+        size = max(length(dx, dy), 1e-150)
         f, nx, ny = piece[SIGN] * (size - piece[RADIUS]), piece[SIGN] * dx / size, piece[SIGN] * dy / size
-        if cell[SPEED] == 0.0 and hypot(s[6] - piece[X], s[7] - piece[Y]) < SAME:
+        if cell[SPEED] == 0.0 and length(s[6] - piece[X], s[7] - piece[Y]) < SAME:
             return NOTHING
         least = size - speed * reach
         bend += speed * speed / least if least > 0.0 else inf
@@ -191,9 +192,10 @@ def third_of_jaw(cells: Array, given: Given, discs: Array, stack: Array, out: Ar
                 continue
             ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
             x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
-            play = (hypot(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach + END + ROUNDING
+            play = (length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach + END + ROUNDING
             for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
-                if cell[VAGUE] == 0.0 and hypot(x - discs[piece, 0], y - discs[piece, 1]) > discs[piece, 2] + play:
+                dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
+                if cell[VAGUE] == 0.0 and dx * dx + dy * dy > far * far:
                     continue
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:

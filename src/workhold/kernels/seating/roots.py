@@ -8,7 +8,7 @@ GAP : distance of another peg of the same jaw from a piece. Zero where it touche
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Given
 from workhold.kernels.seating.holdings import height, held
-from workhold.kernels.seating.pieces import foot
+from workhold.kernels.seating.pieces import foot, length
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def value(
     dx, dy = s[0] + cosine * first - sine * second - piece[X], s[1] + sine * first + cosine * second - piece[Y]
     if piece[IS_ARC] == 0.0:
         return dx * piece[AXIS_Y] - dy * piece[AXIS_X]
-    return piece[SIGN] * (hypot(dx, dy) - piece[RADIUS])
+    return piece[SIGN] * (length(dx, dy) - piece[RADIUS])
 
 
 @inner

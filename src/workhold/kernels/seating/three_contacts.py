@@ -10,7 +10,7 @@ nothing, in which three values hardly differ.
 
 from __future__ import annotations
 
-from math import asin, cos, hypot, inf, pi, sin
+from math import asin, cos, inf, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.holdings import END, Held, held
-from workhold.kernels.seating.pieces import Foot, foot, share_normals
+from workhold.kernels.seating.pieces import Foot, foot, length, share_normals
 from workhold.kernels.seating.roots import MISS, is_level, root_between
 
 Array = NDArray[np.float64]
@@ -58,9 +58,12 @@ def may_balance(
     Normals of arcs turn with the contacts, which move about P; the third turns by ``turn`` at most.
     """
     reach = (high - low) / 2.0 * (1.0 + (high - low))
-    vx, vy = s[0] + d * cos(alpha), s[1] + d * sin(alpha)
-    turn_a = 0.0 if a[IS_ARC] == 0.0 else (hypot(s[0] - s[6], s[1] - s[7]) + move) * reach / a[RADIUS]
-    turn_b = 0.0 if b[IS_ARC] == 0.0 else (hypot(vx - s[6], vy - s[7]) + move) * reach / b[RADIUS]
+    turn_a = turn_b = 0.0
+    if a[IS_ARC] != 0.0:
+        turn_a = (length(s[0] - s[6], s[1] - s[7]) + move) * reach / a[RADIUS]
+    if b[IS_ARC] != 0.0:
+        vx, vy = s[0] + d * cos(alpha), s[1] + d * sin(alpha)
+        turn_b = (length(vx - s[6], vy - s[7]) + move) * reach / b[RADIUS]
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
     first, second = sign * (f[3] * s[4] - f[2] * s[5]), sign * (s[3] * f[2] - s[2] * f[3])
     return first >= -(turn + turn_b) - 1e-9 and second >= -(turn + turn_a) - 1e-9
@@ -115,7 +118,7 @@ def excluded(
     if push * (f[2] * cosine + f[3] * sine) < -(turn + reach):
         return NOTHING
     way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f[4] - move)
-    if abs(missed) > (hypot(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
+    if abs(missed) > (length(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
         return NOTHING
     return MAYBE
 
@@ -136,10 +139,10 @@ def is_steady(
     qx, qy = motion
     if not (qx[1] - qx[0] < inf and qy[1] - qy[0] < inf):
         return False
-    mx, my, spread = (qx[0] + qx[1]) / 2.0, (qy[0] + qy[1]) / 2.0, hypot(qx[1] - qx[0], qy[1] - qy[0]) / 2.0
-    move, size = speed * reach, min(hypot(mx, my) + spread, speed)
+    mx, my, spread = (qx[0] + qx[1]) / 2.0, (qy[0] + qy[1]) / 2.0, length(qx[1] - qx[0], qy[1] - qy[0]) / 2.0
+    move, size = speed * reach, min(length(mx, my) + spread, speed)
     gx, gy = s[6] - f[0], s[7] - f[1]
-    far = hypot(gx, gy) + move
+    far = length(gx, gy) + move
     slope = cosine * gx + sine * gy
     if piece[IS_ARC] == 0.0:
         tx, ty = -f[3], f[2]
