@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
 from workhold.kernels.chord.center_speeds import center_motion
 from workhold.kernels.curves.columns import HEAD, LENGTH, TAIL
@@ -50,13 +50,11 @@ NOTHING, HALVES, MAYBE = 0, 1, 2
 
 
 @inner
-def may_balance(
-    a: Array, b: Array, d: float, alpha: float, s: Held, f: Foot, low: float, high: float, move: float, turn: float
-) -> bool:
-    """Whether the force of the third contact may lie between the other two somewhere in a range.
-
-    Normals of arcs turn with the contacts, which move about P; the third turns by ``turn`` at most.
-    """
+def turns_of(
+    a: Array, b: Array, d: float, alpha: float, s: Held, low: float, high: float, move: float
+) -> tuple[float, float]:
+    """How far the normals of both contacts turn to either side over a range: those of arcs with the contacts, which move
+    about P."""
     reach = (high - low) / 2.0 * (1.0 + (high - low))
     turn_a = turn_b = 0.0
     if a[IS_ARC] != 0.0:
@@ -64,9 +62,16 @@ def may_balance(
     if b[IS_ARC] != 0.0:
         vx, vy = s[0] + d * cos(alpha), s[1] + d * sin(alpha)
         turn_b = (length(vx - s[6], vy - s[7]) + move) * reach / b[RADIUS]
+    return (turn_a, turn_b)
+
+
+@inner
+def may_balance(s: Held, nx: float, ny: float, turns: tuple[float, float], turn: float) -> bool:
+    """Whether the force of the third contact may lie between the other two somewhere in a range; its normal n turns by
+    ``turn`` at most, and theirs by ``turns``."""
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-    first, second = sign * (f[3] * s[4] - f[2] * s[5]), sign * (s[3] * f[2] - s[2] * f[3])
-    return first >= -(turn + turn_b) - 1e-9 and second >= -(turn + turn_a) - 1e-9
+    first, second = sign * (ny * s[4] - nx * s[5]), sign * (s[3] * nx - s[2] * ny)
+    return first >= -(turn + turns[1]) - 1e-9 and second >= -(turn + turns[0]) - 1e-9
 
 
 @inner
@@ -203,7 +208,7 @@ def roots_of_cell(
         if told == MAYBE:
             alpha, move = psi + holding[ANGLE], speed * reach
             turn = 0.0 if piece[IS_ARC] == 0.0 else asin(move / f[4])
-            if not may_balance(a, b, d, alpha, s, f, low, high, move, turn):
+            if not may_balance(s, f[2], f[3], turns_of(a, b, d, alpha, s, low, high, move), turn):
                 continue
             sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
             motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
@@ -261,6 +266,8 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
         middle = held(holding, given, psi)
         cosine, sine = cos(psi), sin(psi)
+        alpha, d = psi + holding[ANGLE], given.reals[k, LENGTH]
+        turns = turns_of(a, b, d, alpha, middle, cell[LOW], cell[HIGH], cell[SPEED] * reach)
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
                 continue
@@ -268,9 +275,12 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
             above = given.pegs[third, 1] - given.pegs[tail, 1]
             beyond = given.pegs[third, 0] - given.pegs[tail, 0] + push * stop
             for piece in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
+                c = given.rows[piece]
+                # The normal of a line is one, wherever it is touched.
+                if c[IS_ARC] == 0.0 and not may_balance(middle, c[AXIS_Y], -c[AXIS_X], turns, 0.0):
+                    continue
                 if is_out_of_reach(discs[piece], middle, cosine, sine, cell[SPEED], reach, above, beyond, push):
                     continue
-                c = given.rows[piece]
                 # Where its normal is that of another contact throughout, the one that is left has no force.
                 if share_normals(a, c) or share_normals(b, c):
                     continue
