@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations, product
-from math import asin, atan2, cos, hypot, sin, sqrt, tau
+from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
 
 import numpy as np
 from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import PARALLEL
+from workhold.conventions import END_SLACK, PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -41,7 +41,7 @@ from workhold.kernels.seating.parallel import (
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_ONE, SLIDE_SECOND, SLIDE_TWO
 from workhold.seating.filled import filled
 from workhold.seating.groups import Group
-from workhold.seating.locus import Locus, contains
+from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
 __all__ = ["Family", "Finder", "Way"]
@@ -205,9 +205,10 @@ class Finder:
         for numbers in runs(good, closed):
             # The middle of where the most pegs touch.
             touches = np.abs(clear[numbers]) < TOUCHES
-            most = np.flatnonzero(touches.sum(axis=1) == touches.sum(axis=1).max())
-            middle = numbers[most[len(most) // 2]]
-            touching = np.flatnonzero(np.abs(clear[middle]) < TOUCHES).tolist()
+            counts = touches.sum(axis=1)
+            most = np.flatnonzero(counts == counts.max())
+            chosen = most[len(most) // 2]
+            middle, touching = numbers[chosen], np.flatnonzero(touches[chosen]).tolist()
             known = dict(way.contacts)
             told = [(peg, known[peg] if peg in known else self.nearest(peg, configs[middle])) for peg in touching]
             row = np.zeros(CANDIDATE_LENGTH)
@@ -383,10 +384,11 @@ def nearest(locus: Locus, side: int, x: float, y: float) -> int:
     """Number of the piece that a peg that stands still (0), or moves (1), touches at a point of its boundary."""
     first, end = locus.parts[side].tolist()
     rows = locus.rows[first:end]
-    away = np.where(
-        rows[:, IS_ARC] == 0.0,
-        np.abs((x - rows[:, X]) * rows[:, AXIS_Y] - (y - rows[:, Y]) * rows[:, AXIS_X]),
-        np.abs(np.hypot(x - rows[:, X], y - rows[:, Y]) - rows[:, RADIUS]),
-    )
-    on = np.array([contains(row, x, y) for row in rows])
+    is_arc, dx, dy = rows[:, IS_ARC] != 0.0, x - rows[:, X], y - rows[:, Y]
+    forth, beside = dx * rows[:, AXIS_X] + dy * rows[:, AXIS_Y], dx * rows[:, AXIS_Y] - dy * rows[:, AXIS_X]
+    away = np.abs(np.where(is_arc, np.hypot(dx, dy) - rows[:, RADIUS], beside))
+    # As of ``contains``, of all at once.
+    along = np.abs(np.where(is_arc, np.arctan2(-beside, forth), forth))
+    on = along <= rows[:, HALF_EXTENT] + END_SLACK / np.where(is_arc, rows[:, RADIUS], 1.0)
+    on |= is_arc & (rows[:, HALF_EXTENT] >= pi)
     return int(first + np.argmin(np.where(on, away, np.inf)))

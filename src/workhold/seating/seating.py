@@ -37,7 +37,6 @@ from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
 from workhold.seating.settled import is_equilibrium
 from workhold.seating.sticking import sticking_friction
-from workhold.seating.touch import Touch
 from workhold.seating.tree import CONFIG, Join, Tree, distances
 
 __all__ = ["Solver", "seatings"]
@@ -251,18 +250,18 @@ class Reading:
         return [Pose(*one) for one in zip(*(values.tolist() for values in told), strict=True)]
 
     @cached_property
-    def touched(self) -> tuple[list[int], tuple[Touch, ...]]:
-        """The fixture's pegs by their numbers in candidates, and what is touched by its."""
+    def every_contact(self) -> list[list[Contact]]:
+        """All that the fixture's pegs may touch, by the numbers of pegs and pieces in candidates."""
         locus = self.solver.closing(self.known, False).locus
         # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
         pegs = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
-        return pegs, locus.touches + locus.hull.touches
+        touches = locus.touches + locus.hull.touches
+        return [[Contact(peg, touch.face, touch.corner) for touch in touches] for peg in pegs]
 
     def contacts(self, row: list[float]) -> tuple[Contact, ...]:
         """What touches in a candidate."""
-        pegs, touches = self.touched
-        told = [(pegs[int(row[PEG + k])], touches[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
-        return tuple(Contact(peg, touch.face, touch.corner) for peg, touch in told)
+        every = self.every_contact
+        return tuple(every[int(row[PEG + k])][int(row[PIECE + k])] for k in range(int(row[CONTACTS])))
 
     def kind(self, kind: str, contacts: tuple[Contact, ...]) -> str:
         """What a seat is called, four contacts of which are a fixture's or what they touch."""
