@@ -48,3 +48,13 @@ def test_friction_is_the_least_at_which_three_contacts_balance(seed):
         assert least < np.inf
         assert not balances(points, normals, right, 0.9999 * least)
         assert balances(points, normals, right, 1.0001 * least)
+
+
+@pytest.mark.parametrize("one, two", [(0.5, 0.2), (0.2, 0.5)])
+def test_two_contacts_balance_where_their_line_lies_in_both_cones(one, two):
+    """Pegs that press at one point of a face count as one: mu* is the larger of both tangents."""
+    points = np.array([[-10.0, 3.0], [-10.0, 3.0], [10.0, 3.0], [-10.0, 3.0]])
+    left = [-np.cos(one), np.sin(one)]
+    normals = np.array([left, left, [np.cos(two), np.sin(two)], left])
+    least = sticking_friction(points, normals, np.array([0, 0, 1, 0]))
+    assert least == pytest.approx(max(np.tan(one), np.tan(two)), abs=1e-9)
