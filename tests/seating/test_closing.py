@@ -43,6 +43,18 @@ def ways():
     return out
 
 
+def test_two_pegs_on_one_face_against_a_third_on_an_arc_make_a_seat(ways):
+    """Both jaws' pegs on the long side, the left jaw's other one at the notch, 20 across: forces are parallel, and with the
+    left pegs 30 apart sin(theta) is 2/3. Ways down end there, and none anywhere that is not known."""
+    seats = ways[0][2].seats
+    theta = np.pi - np.arcsin(2.0 / 3.0)
+    [seat] = seats[np.abs(seats[:, 0] - theta) < 1e-9]
+    # The right jaw's peg is 20 higher; at separation 0 it is above the left one.
+    assert seat[3] == pytest.approx(-20.0 * np.tan(theta), abs=1e-9)
+    assert seat[4] == 3.0 and seat[SECOND] > 0.0
+    assert [len(tree.doubtful) for _, _, tree in ways] == [0, 0]
+
+
 def least_clearance(closing, configs):
     """Least distance in mm of pegs from the boundary in configurations (N, 4), below 0 in the part."""
     (first, end), out = closing.locus.parts[0].tolist(), np.empty(4 * len(configs))

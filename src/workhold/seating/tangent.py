@@ -1,4 +1,5 @@
-"""Three parallel forces: two pegs of one jaw on a line and an arc, with parallel normals, and a third on a parallel line.
+"""Three parallel forces: two pegs of one jaw on a line and an arc, with parallel normals, and a third on a parallel line or
+the same.
 
 There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation alone, because
 two of the three lie on parallel lines, and the orientation has an extremum along the chord's curve: so S has one too.

@@ -45,23 +45,14 @@ def are_parallel(one: Array, two: Array) -> bool:
     return abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X]) <= PARALLEL
 
 
-@inner
-def has_parallel(rows: Array, number: int) -> bool:
-    """Whether another line is parallel to one."""
-    count = 0
-    for k in range(rows.shape[0]):
-        count += are_parallel(rows[number], rows[k])
-    return count > 1
-
-
 @compiled
 def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> int:
-    """Write the tangencies (C, 5) of chords of length d from lines that have a parallel to arcs, both of pieces ``first`` to
-    ``end``: the arc's normal at the head is the line's. Return their number, or -1 where they do not fit."""
+    """Write the tangencies (C, 5) of chords of length d from lines to arcs, both of pieces ``first`` to ``end``: the arc's
+    normal at the head is the line's. Return their number, or -1 where they do not fit."""
     count = 0
     for a in range(first, end):
         line = rows[a]
-        if line[IS_ARC] != 0.0 or not has_parallel(rows, a):
+        if line[IS_ARC] != 0.0:
             continue
         nx, ny = line[AXIS_Y], -line[AXIS_X]
         for number in range(2 * first, 2 * end):
@@ -102,7 +93,7 @@ def separation_on(theta: float, line: Array, other: Array, first: int, third: in
 @compiled
 def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: float, given: Given, out: Array) -> int:
     """Write the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg of the other jaw on
-    a line parallel to the first's; return their number, or -1 where they do not fit."""
+    a line parallel to the first's, or on the same; return their number, or -1 where they do not fit."""
     count = 0
     dx, dy = given.pegs[second, 0] - given.pegs[first, 0], given.pegs[second, 1] - given.pegs[first, 1]
     d = hypot(dx, dy)
@@ -116,7 +107,7 @@ def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: f
                 continue
             for number in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
                 other = given.rows[number]
-                if number == int(chord[ON_LINE]) or not are_parallel(line, other):
+                if not are_parallel(line, other):
                     continue
                 told, s = separation_on(theta, line, other, first, third, given)
                 if not told or not (stop < s < widest):
