@@ -21,9 +21,6 @@ from workhold.model.flat import Flat
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
-# Pairs of ends looked at together.
-TOGETHER = 1 << 20
-
 __all__ = [
     "ContactFeature",
     "allowed_features",
@@ -33,6 +30,9 @@ __all__ = [
     "face_of_segment",
     "feature_rows",
 ]
+
+# Pairs of ends looked at together.
+TOGETHER = 1 << 20
 
 
 @frozen

@@ -160,7 +160,7 @@ def seats_and_passes() -> Calls:
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
     yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))
-    yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 5)))
+    yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
     yield leave, (ways, obstacles, 1, points, np.zeros(0, np.int8))

@@ -32,4 +32,4 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     """
     size = max(float(np.ptp(points, axis=0).max()), SMALLEST)
     told = (points - points.mean(axis=0)) / size, np.ascontiguousarray(normals), np.asarray(right, dtype=np.int64)
-    return float(least_friction(*told, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 5))))
+    return float(least_friction(*told, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4))))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.elimination import eliminate
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -187,34 +188,17 @@ def two_balance(points: Array, normals: Array, right: IntArray, least: float) ->
 
 
 @inner
-def all_push(matrix: Array) -> bool:
-    """Whether four forces with which a system (4, 5) is solved are all above 0; the system is changed."""
-    size = 1.0
-    for i in range(4):
-        best = i
-        for j in range(i + 1, 4):
-            if abs(matrix[j, i]) > abs(matrix[best, i]):
-                best = j
-        if matrix[best, i] == 0.0:
-            return False
-        for e in range(5):
-            matrix[i, e], matrix[best, e] = matrix[best, e], matrix[i, e]
-        size *= matrix[i, i]
-        for j in range(4):
-            if j != i:
-                factor = matrix[j, i] / matrix[i, i]
-                for e in range(i, 5):
-                    matrix[j, e] -= factor * matrix[i, e]
-    if abs(size) <= SINGULAR:
+def all_push(matrix: Array, inverse: Array) -> bool:
+    """Whether four forces whose wrenches add up to none, with 1 that closes the jaw, are all at least 0; the system (4, 4)
+    is used up."""
+    if not eliminate(matrix, inverse) > SINGULAR:
         return False
-    least = inf
-    for i in range(4):
-        least = min(least, matrix[i, 4] / matrix[i, i])
-    return least >= 0.0
+    # The right-hand side is (0, 0, 0, -1).
+    return max(inverse[0, 3], inverse[1, 3], inverse[2, 3], inverse[3, 3]) <= 0.0
 
 
 @inner
-def balances(straight: Array, across: Array, right: IntArray, friction: float, matrix: Array) -> bool:
+def balances(straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array) -> bool:
     """Whether three of four contacts balance the jaw inside cones of a friction: some four of their six edges do, then."""
     # Edges no longer than about 1, whatever the friction: their determinant tells whether they are independent.
     along = 1.0 / max(1.0, friction)
@@ -232,16 +216,14 @@ def balances(straight: Array, across: Array, right: IntArray, friction: float, m
                         matrix[e, count] = along * straight[contact, e] + beside * across[contact, e]
                     matrix[3, count] = matrix[0, count] * right[contact]
                     count += 1
-                for e in range(4):
-                    matrix[e, 4] = -1.0 if e == 3 else 0.0
-                if all_push(matrix):
+                if all_push(matrix, inverse):
                     return True
     return False
 
 
 @compiled
 def least_friction(
-    points: Array, normals: Array, right: IntArray, straight: Array, across: Array, matrix: Array
+    points: Array, normals: Array, right: IntArray, straight: Array, across: Array, matrix: Array, inverse: Array
 ) -> float:
     """The least friction at which three of four contacts, or two, balance a jaw, or infinity.
 
@@ -250,7 +232,7 @@ def least_friction(
     points : (4, 2) contacts, in parts of how far they are apart, about their middle.
     normals : (4, 2) outward unit normals.
     right : (4,) 1 for contacts of what moves.
-    straight, across, matrix : (4, 3), (4, 3) and (4, 5) work space.
+    straight, across, matrix, inverse : (4, 3), (4, 3), (4, 4) and (4, 4) work space.
     """
     for i in range(4):
         (x, y), (nx, ny) = (points[i, 0], points[i, 1]), (normals[i, 0], normals[i, 1])
@@ -260,12 +242,12 @@ def least_friction(
     for left_out in range(4):
         least = three_balance(straight, across, right, left_out, least)
     high = two_balance(points, normals, right, least)
-    if high == inf or not balances(straight, across, right, high * (1.0 - LESS), matrix):
+    if high == inf or not balances(straight, across, right, high * (1.0 - LESS), matrix, inverse):
         return high
     low = 0.0
     for _ in range(HALVINGS):
         middle = (low + high) / 2.0
-        if balances(straight, across, right, middle, matrix):
+        if balances(straight, across, right, middle, matrix, inverse):
             high = middle
         else:
             low = middle
