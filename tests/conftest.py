@@ -27,9 +27,9 @@ settings.register_profile(
 settings.load_profile("workhold")
 
 
-PREPARE = "import sys; from workhold.kernels.preparing import prepared; [list(prepared(part)) for part in sys.argv[1:]]"
+PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
 # Parts of the kernels that take about as long to compile.
-SHARES = (("crossings", "seating"), ("others", "distances"))
+SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "holdings"))
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -16,6 +16,8 @@ from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION
 from workhold.kernels.crossing.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
 from workhold.kernels.curves.columns import COLUMN_STEP, LENGTH, ROW_STEP
+from workhold.kernels.curves.edges import kept_edges
+from workhold.kernels.curves.piece_columns import PIECE_LENGTH
 from workhold.kernels.curves.pieces import cell_pieces
 
 Array = NDArray[np.float64]
@@ -69,7 +71,10 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     """All pieces of a table's curves in a cell."""
     members = np.arange(len(table))
     pitch = pitch_of(table) if len(table) else 1.0
-    return cell_pieces(low, high, members, features, table.curves, pitch, 0.0, mode)
+    kept = kept_edges(len(members))
+    room = np.empty((1, PIECE_LENGTH))
+    pieces, count = cell_pieces(low, high, members, features, table.curves, pitch, 0.0, mode, kept, np.inf, room)
+    return pieces[:count]
 
 
 def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=crossings) -> Array:

@@ -52,6 +52,22 @@ def test_numpy_and_zip_open_what_is_written(tmp_path: Path, rows: int) -> None:
         assert mapped[name].dtype == values.dtype and mapped[name].flags.aligned
 
 
+@pytest.mark.parametrize(("rows", "room"), [(0, 1), (7, 1000), (1000, 12_345_678)])
+def test_fewer_rows_than_there_is_room_for(tmp_path: Path, rows: int, room: int) -> None:
+    """The checksums are those of what is there."""
+    with (tmp_path / "a.npz").open("wb") as stream:
+        writer = ArchiveWriter(stream, COLUMNS, room)
+        writer.add(columns_of(rows))
+        writer.close("head.json", TEXT, "mark")
+    assert zipfile.ZipFile(tmp_path / "a.npz").testzip() is None
+    loaded = np.load(tmp_path / "a.npz", allow_pickle=False)
+    text, mapped = mapped_archive(tmp_path / "a.npz", COLUMNS, "head.json", whole=True)
+    assert text == TEXT
+    for name, values in zip(COLUMNS, columns_of(rows), strict=True):
+        np.testing.assert_array_equal(loaded[name], values)
+        np.testing.assert_array_equal(mapped[name], values)
+
+
 def test_the_bytes_do_not_depend_on_the_blocks(tmp_path: Path) -> None:
     assert written(tmp_path / "a", 1000, 7).read_bytes() == written(tmp_path / "b", 1000, 1000).read_bytes()
 

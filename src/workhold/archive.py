@@ -43,6 +43,8 @@ END_64, LOCATOR, END = struct.Struct("<4sQ2H2L4Q"), struct.Struct("<4sLQL"), str
 # An extra field of large sizes, and one that only takes up room.
 SIZES, ROOM = 0x0001, 0xD935
 IN_EXTRA = 0xFFFFFFFF
+# The polynomial of the checksum: bits from x^0, which is the highest, to x^31.
+POLYNOMIAL, TOP = 0xEDB88320, 31
 # Bytes of a directory, of an array's header, and of the text of an archive to be read.
 MOST_DIRECTORY, MOST_HEADER, MOST_TEXT = 1 << 20, 1 << 12, 200_000_000
 
@@ -108,13 +110,13 @@ class Member:
 
 @define(eq=False)
 class ArchiveWriter:
-    """Writes an archive whose number of rows is known, block by block.
+    """Writes an archive block by block.
 
     Parameters
     ----------
     stream : an empty file, in which the writer goes forth and back.
     columns : what each holds, by name.
-    rows : how many there will be.
+    rows : how many there will be at most; where there are fewer, the room of the others stays empty.
     """
 
     stream: BinaryIO
@@ -146,12 +148,23 @@ class ArchiveWriter:
             member.checksum = crc32(content, member.checksum)
         self.done += len(block[0])
 
+    def shorten(self) -> None:
+        """Have the headers say how many rows there are; they are as long as before, for any number of rows."""
+        for member, column in zip(self.members, self.columns.values(), strict=True):
+            said, header = column.header(self.rows), column.header(self.done)
+            size = self.done * column.row_bytes
+            self.put(member.content, header)
+            member.size = len(header) + size
+            member.checksum ^= followed_by(crc32(said) ^ crc32(header), size)
+        self.rows = self.done
+
     def close(self, name: str, text: str, mark: str) -> None:
-        """Write the text under its name, the directory and the mark; all rows must be there."""
-        assert self.done == self.rows
+        """Write the text under its name, the directory and the mark."""
         content = text.encode()
         last = self.members[-1]
         member = Member(name.encode(), last.content + last.size, len(content), crc32(content))
+        if self.done < self.rows:
+            self.shorten()
         self.put(member.content, content)
         self.members.append(member)
         for one in self.members:
@@ -164,6 +177,31 @@ class ArchiveWriter:
             b"PK\x05\x06", 0, 0, count, count, len(directory), min(place, IN_EXTRA), len(mark.encode())
         )
         self.put(place, directory + end + locator + last_words + mark.encode())
+
+
+def followed_by(difference: int, size: int) -> int:
+    """By what the checksums of two contents differ that have so many bytes in common at their end, from the difference of
+    the checksums of what is before: it is multiplied by x to the power of the bits, modulo the polynomial.
+
+    Reference: M. Adler, zlib, ``crc32_combine``.
+    """
+    power = 1 << TOP - 8
+    while size:
+        if size & 1:
+            difference = multiplied(difference, power)
+        power = multiplied(power, power)
+        size >>= 1
+    return difference
+
+
+def multiplied(a: int, b: int) -> int:
+    """The product of two polynomials with bits for coefficients, modulo that of the checksum."""
+    product = 0
+    for place in range(TOP, -1, -1):
+        if a >> place & 1:
+            product ^= b
+        b = b >> 1 ^ (POLYNOMIAL if b & 1 else 0)
+    return product
 
 
 def is_archive(path: Path) -> bool:

@@ -214,7 +214,7 @@ def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, proc
     loaded = set(re.findall(room, outcome.stdout))
     rooms = {
         "kernels.base." + name
-        for name in ("built", "compiling", "distance", "feature", "shallow", "sources", "storing")
+        for name in ("built", "compiling", "distance", "feature", "lean", "shallow", "sources", "storing")
     }
     assert loaded <= {"kernels", "kernels.base", *rooms}
     assert process("verify", "r.json").returncode == 0

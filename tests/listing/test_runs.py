@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from workhold.listing import runs
-from workhold.listing.runs import Run, Runs, in_order, key_of
+from workhold.listing.runs import Run, Runs, in_order, key_of, order_of
 
 
 @pytest.fixture
@@ -30,6 +30,23 @@ def test_keys_are_in_the_order_of_the_numbers() -> None:
     expected = np.lexsort([floats[1], whole, floats[0]])
     np.testing.assert_array_equal(np.argsort(key, kind="stable"), expected)
     assert len(key_of(np.zeros(0), np.zeros(0, np.int64))) == 0
+
+
+@pytest.mark.parametrize("most", [runs.MOST, 10**9, 10**6, 500])
+def test_the_order_of_keys_is_that_of_their_bytes(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """Equal ones as they stand, also where their words are too many for one number."""
+    monkeypatch.setattr(runs, "MOST", most)
+    random = np.random.default_rng(4)
+    for count in (0, 1, 2, 30, 200):
+        for kinds in range(1, 5):
+            some = (
+                random.integers(0, 3, count),
+                random.integers(0, 1 << 62, count),
+                np.round(random.normal(size=count), 1),
+                np.where(random.random(count) < 0.3, np.nan, random.normal(size=count)),
+            )
+            keys = key_of(*(some[k] for k in random.permutation(4)[:kinds]))
+            np.testing.assert_array_equal(order_of(keys), np.argsort(keys, kind="stable"))
 
 
 @pytest.mark.parametrize("rows", [0, 1, 59, 1000])

@@ -20,7 +20,9 @@ QUERIES = {
         workhold.load("small4Handle"), Vise(pitch=10, columns=3, peg_radius=3), ranking="closure-margin"
     ),
     "none": Query(workhold.load("small4Handle"), Vise(pitch=70, columns=1, peg_radius=3)),
-    "several ways": Query(workhold.load("widget"), workhold.Plate(pitch=20, peg_radius=3, columns=6, rows=6)),
+    "several ways": Query(
+        workhold.load("widget"), workhold.Plate(pitch=25, peg_radius=3, columns=4, rows=4, directions=("-x", "-y"))
+    ),
     "best": Query(workhold.load("widget"), Vise(pitch=8, columns=1, peg_radius=3), best=7),
 }
 
@@ -102,6 +104,7 @@ def test_a_cancel_while_fixtures_are_measured_keeps_the_first_of_them(
         return measured(self, numbered)
 
     monkeypatch.setattr(Gathering, "measured_part", stopping)
+    monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.0)
     result = workhold.answer_to_file(QUERIES["symmetric"], tmp_path / "a.npz", cancel=cancel, threads=1)
     assert not result.complete
     assert 0 < len(result) == sum(result.found.values()) < len(workhold.answer(QUERIES["symmetric"]))

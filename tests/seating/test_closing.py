@@ -18,7 +18,8 @@ from workhold.seating.door import Door
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG, OUTSIDE, STOP, Tree, steps_off
+from workhold.seating.tree import CONFIG, OUTSIDE, STOP, Tree
+from workhold.seating.ways_down import steps_off
 
 NOTCH = Workpiece.from_loops(
     "notch", [[[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]], [[30, 12, -1], [14, 12, -1]]]
@@ -41,6 +42,13 @@ def ways():
         starts = np.concatenate([found.passes[:, CONFIG] + sign * steps for sign in (1.0, -1.0)])
         out.append((closing, starts, Tree.of(found, closing)))
     return out
+
+
+def test_a_fifth_normal_is_none():
+    """There are four unknowns; a fifth that rounding leaves something of would be written past the basis."""
+    work, adds = WorkSpace.for_pieces(1), changed(add_normal)
+    work.near[0, :4], work.basis[:] = (0.0, 1.0, 0.0, 0.0), 0.0
+    assert [adds(0, 1, place, work) for place in (3, 4)] == [True, False]
 
 
 def test_two_pegs_on_one_face_against_a_third_on_an_arc_make_a_seat(ways):
@@ -165,3 +173,19 @@ def test_a_door_leads_back():
             config = np.array([0.3, 4.0, -5.0, 6.0])
             assert door.leave(door.enter(config)) == pytest.approx(config, abs=1e-12)
             assert np.array_equal(door.leave(config[None])[0], door.leave(config))
+
+
+def test_pegs_that_a_part_does_not_fit_between_get_nowhere():
+    """Two of a jaw, 20 mm apart inside, over and under a bar a little thicker: there is no way out of it. A bar a little
+    thinner goes to where the other jaw's peg stops it."""
+    pegs = tuple(
+        Peg(jaw, 0, 0, x, y, 0, 0.3)
+        for jaw, x, y in (("left", 0, 0), ("left", 0, 26), ("right", 109, 13), ("right", 109, 113))
+    )
+    for thick, expected in ((20.02, True), (19.98, False)):
+        bar = Workpiece.from_loops("bar", [[[-90, 0, 0], [60, 0, 0], [60, thick, 0], [-90, thick, 0]]])
+        closing = Solver(bar, VISE).closing(Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 100.0, {}), VISE), False)
+        # The place is that of its middle.
+        start = np.array([[0.0, -15.0, 13.0, 80.0]])
+        [how] = closing.run(start, 0.005)[1]
+        assert (how == GAVE_UP) == expected

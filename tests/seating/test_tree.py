@@ -27,6 +27,8 @@ def test_a_way_that_ends_just_below_its_flat_comes_to_an_end():
     configs[:, 1] = np.arange(5.0)
     flat = Family(np.zeros(CANDIDATE_LENGTH), configs, False, None)
     none = np.zeros((0, CANDIDATE_LENGTH))
-    builder = Builder(Jaws(), none, [], [(flat, configs[0])], [], np.ones(0, np.bool_))
+    builder = Builder(
+        Jaws(), none, [], [(flat, configs[0], configs[0] - [0.0, 0.0, 0.0, 5e-4], AT_REST)], [], np.ones(0, np.bool_)
+    )
     assert builder.places(configs[:1], configs[2:3], np.array([AT_REST], np.int8)) == [0]
     assert builder.doubtful[0][3] == -5e-4

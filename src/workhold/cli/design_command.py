@@ -18,7 +18,7 @@ from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, refuse_output, refuse_output_folder
 from workhold.cli.pictures import picture_names
 from workhold.cli.progress import search_progress
-from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_form, write_output
+from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_form, write_found
 from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords, with_fit_of
 from workhold.cli.seating_options import SeatingWords
@@ -112,16 +112,18 @@ def design(
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
 
+    first_run, second = is_first_run(), None
+    if first_run and engine == "curves":
+        from workhold.cli.warming import begin_compiling, compile_kernels
+
+        second = begin_compiling()
     workpiece = reading.load(part).workpiece
     query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked)
-    first_run = is_first_run()
     start = perf_counter()
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
         if first_run and engine == "curves":
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(cancel)
+            compile_kernels(cancel, second)
         if query.seating is not None:
             from workhold.cli.warming import compile_seating
 
@@ -131,7 +133,7 @@ def design(
             told = foretelling(progress, query, out, form)
             result = answered(query, engine, streamed, threads=workers, progress=told, cancel=cancel)
     if out is not None and streamed is None:
-        write_output(result, out, form)
+        result = write_found(result, out, form)
     if json_:
         further = further_data(result, engine, workers, folder, shown)
         print_json(**report_data(result, listed, unfit, out), **further)

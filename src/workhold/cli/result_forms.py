@@ -6,13 +6,14 @@ import sys
 from typing import TYPE_CHECKING
 
 from workhold.cli.commands import option
+from workhold.cli.ending import Interrupted, keep_what_is_found
 from workhold.cli.values import choice
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
 
-__all__ = ["FORMAT", "OUTPUT", "STANDARD_OUTPUT", "output_form", "write_output"]
+__all__ = ["FORMAT", "OUTPUT", "STANDARD_OUTPUT", "output_form", "write_found", "write_output"]
 
 OUTPUT = "Results"
 STANDARD_OUTPUT = "-"
@@ -63,3 +64,24 @@ def write_output(result: Result, out: str, form: str) -> None:
         from workhold.files.result.writer import write_result_to as write_to
     write_to(result, sys.stdout)
     sys.stdout.flush()
+
+
+def write_found(result: Result, out: str, form: str) -> Result:
+    """Write what a search found, or after a Ctrl-C the best of millions, which takes a moment only; what was written.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    try:
+        write_output(result, out, form)
+    except Interrupted:
+        from workhold.listing.gathering import LISTED_LATE
+
+        if out == STANDARD_OUTPUT or len(result) <= LISTED_LATE:
+            raise
+        keep_what_is_found()
+        result = result.part(slice(LISTED_LATE)).cut_short(LISTED_LATE)
+        write_output(result, out, form)
+    return result

@@ -1,7 +1,7 @@
 """Compiling on a first run, shared with a second process, where the package was not built with its kernels.
 
-The second process compiles the kernels of the search while this one compiles those that come before and after it; the cache
-folder hands the code over, and a bar tells how many are done. It changes nothing but the wait.
+The second process compiles one half of the kernels while this one compiles the other; the cache folder hands the code over,
+and a bar tells how many are done. It changes nothing but the wait: what a process that was ended has left is compiled here.
 """
 
 from __future__ import annotations
@@ -15,68 +15,88 @@ from threading import Event, Lock, Thread
 from time import sleep
 
 from workhold.cli.progress import progress_bar
-from workhold.kernels.base.compiling import LIBRARY, cache_folder
+from workhold.kernels.base.compiling import are_stored, cache_folder
 
-__all__ = ["compile_kernels", "compile_seating", "is_seating_compiled"]
+__all__ = ["SecondProcess", "begin_compiling", "compile_kernels", "compile_seating", "is_seating_compiled"]
 
 WORDS = "Compiling the kernels, on the first run only"
 SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
-# The last of them to be compiled, as its file is called.
-LAST_OF_SEATING = "leaving.leave"
-# The part for the second process; the first compiles all others.
-LONGEST = "crossings"
+# The last of seating to be compiled, of each process, as their files are called.
+LAST_OF_SEATING = ("leaving.leave", "sticking.least_friction")
 # Writes a line for each kernel that is done, and ends with this process, however that ends.
-SECOND_PROCESS = f"""
+PROGRAM = """
+import sys
 from workhold.files.apart import end_with_starter
-from workhold.kernels.preparing import prepared
 end_with_starter()
-for _ in prepared({LONGEST!r}): print(flush=True)
+from workhold.kernels import preparing
+for _ in preparing.prepared(*getattr(preparing, sys.argv[1])[1]): print(flush=True)
 """
+# Of the second process alone: numba would colour messages of errors that it never shows.
+PLAIN = {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
 # Seconds between looks at the second process.
 NAP = 0.05
 
 
-def compile_kernels(cancel: Event) -> None:
-    """Compile the kernels of a search, with the help of another process if there is a processor for it.
+class SecondProcess:
+    """A process that compiles kernels, and ends when this one does, or when nothing refers to it any more.
+
+    Parameters
+    ----------
+    shares : the name of two shares in ``workhold.kernels.preparing``; the process compiles the second.
+    """
+
+    def __init__(self, shares: str) -> None:
+        path = os.pathsep.join(entry for entry in sys.path if entry)
+        self.done = 0
+        self.process = subprocess.Popen(
+            [sys.executable, "-P", "-c", PROGRAM, shares],
+            env={**os.environ, **PLAIN, "PYTHONPATH": path},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def listen(self, one_more: Callable[[], None]) -> Thread:
+        """Start a thread that calls ``one_more`` for each kernel that is done."""
+
+        def lines() -> None:
+            with suppress(ValueError):
+                for _ in self.process.stdout or ():
+                    self.done += 1
+                    one_more()
+
+        listener = Thread(target=lines, daemon=True)
+        listener.start()
+        return listener
+
+    def end(self) -> None:
+        """End the process, whatever it is doing."""
+        self.process.terminate()
+        self.process.wait()
+
+
+def begin_compiling() -> SecondProcess | None:
+    """Begin to compile a search's kernels in a second process, if there is a processor and a place for it.
+
+    What is done until :func:`compile_kernels`, such as reading a part, is done meanwhile.
+    """
+    return second_process("SEARCH")
+
+
+def compile_kernels(cancel: Event, second: SecondProcess | None = None) -> None:
+    """Compile the kernels of a search.
 
     Parameters
     ----------
     cancel : when set, the rest is left to the search.
+    second : the process that :func:`begin_compiling` began.
     """
-    from workhold.kernels.preparing import KERNEL_COUNT, LATER, PARTS, prepared
-
-    done, counting = 0, Lock()
-    with progress_bar(WORDS, f"of {KERNEL_COUNT} kernels", WORDS) as progress:
-
-        def one_more() -> None:
-            nonlocal done
-            with counting:
-                done += 1
-                progress(done / KERNEL_COUNT, done)
-
-        helped = (os.cpu_count() or 1) > 1 and cache_folder() is not None and bool(sys.executable)
-        process, listener = second_process(one_more) if helped else (None, None)
-        try:
-            for part in PARTS:
-                for _ in () if part in LATER or (helped and part == LONGEST) else prepared(part):
-                    one_more()
-                    if cancel.is_set():
-                        return
-            while process is not None and process.poll() is None and not cancel.is_set():
-                sleep(NAP)
-        finally:
-            if process is not None and listener is not None:
-                process.terminate()
-                process.wait()
-                listener.join()
+    share("SEARCH", WORDS, cancel, second)
 
 
 def is_seating_compiled() -> bool:
-    """Whether the kernels of seating need not be compiled any more, a matter of half a minute or so."""
-    if LIBRARY is not None:
-        return True
-    folder = cache_folder()
-    return folder is not None and next(folder.rglob(f"{LAST_OF_SEATING}-*.nbi"), None) is not None
+    """Whether the kernels of seating need not be compiled any more, a matter of ten seconds or so."""
+    return are_stored(LAST_OF_SEATING)
 
 
 def compile_seating(cancel: Event) -> None:
@@ -88,32 +108,49 @@ def compile_seating(cancel: Event) -> None:
     """
     if is_seating_compiled():
         return
-    from workhold.kernels.preparing import LATER, PARTS, prepared
-
-    count = sum(1 for part in LATER for _ in PARTS[part]())
-    with progress_bar(SEATING_WORDS, f"of {count} kernels", SEATING_WORDS) as progress:
-        for done, _ in enumerate((kernel for part in LATER for kernel in prepared(part)), 1):
-            progress(done / count, done)
-            if cancel.is_set():
-                return
+    share("SEATING", SEATING_WORDS, cancel)
 
 
-def second_process(one_more: Callable[[], None]) -> tuple[subprocess.Popen[bytes], Thread]:
-    """Start the second process, and a thread that calls ``one_more`` for each kernel that it has compiled."""
-    path = os.pathsep.join(entry for entry in sys.path if entry)
-    process = subprocess.Popen(
-        [sys.executable, "-P", "-c", SECOND_PROCESS],
-        env={**os.environ, "PYTHONPATH": path},
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
+def share(shares: str, words: str, cancel: Event, second: SecondProcess | None = None) -> None:
+    """Compile the kernels of two shares, the second in another process where that can be, with a bar."""
+    second = second or second_process(shares)
+    from workhold.kernels import preparing
 
-    def listen() -> None:
-        with suppress(ValueError):
-            for _ in process.stdout or ():
+    done, counting = 0, Lock()
+    mine, others = getattr(preparing, shares)
+    apart = preparing.kernel_count(others)
+    count = preparing.kernel_count(mine) + apart
+    with progress_bar(words, f"of {count} kernels", words) as progress:
+
+        def one_more() -> None:
+            nonlocal done
+            with counting:
+                done += 1
+                progress(done / count, done)
+
+        listener = None if second is None else second.listen(one_more)
+        try:
+            for _ in preparing.prepared(*mine):
                 one_more()
+                if cancel.is_set():
+                    return
+            while second is not None and second.process.poll() is None and not cancel.is_set():
+                sleep(NAP)
+        finally:
+            if second is not None and listener is not None:
+                second.end()
+                listener.join()
+        ready = 0 if second is None else second.done
+        # Where there was no second process, or it was ended by others; what it had done is read.
+        if ready < apart and not cancel.is_set():
+            for number, _ in enumerate(preparing.prepared(*others)):
+                if number >= ready:
+                    one_more()
+                if cancel.is_set():
+                    return
 
-    listener = Thread(target=listen, daemon=True)
-    listener.start()
-    return process, listener
+
+def second_process(shares: str) -> SecondProcess | None:
+    """A process that compiles the second of two shares, if there is a processor for it and a folder to hand it over."""
+    helped = (os.cpu_count() or 1) > 1 and cache_folder() is not None and bool(sys.executable)
+    return SecondProcess(shares) if helped else None

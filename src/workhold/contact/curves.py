@@ -72,6 +72,12 @@ class CurveTable:
         first = (reals[:, FROM] - reals[:, SHIFT]) % tau
         return first, first + (reals[:, TO] - reals[:, FROM])
 
+    @cached_property
+    def sorted_spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The beginnings (N,) and the ends (N,) of :attr:`spans`, each ascending."""
+        first, last = self.spans
+        return np.sort(first), np.sort(last)
+
 
 def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Feature rows (F, 10) with their ends moved out by a hair; whole circles have none."""

@@ -1,14 +1,16 @@
 """Every kernel that Python calls, called once with arrays of nothing: which compiles it for the types it is called with.
 
-Numba compiles one kernel at a time in a process, so there are parts of about the same length, for as many processes. On a
-first run they share the work through the cache folder; when a wheel is built, their code goes into one library.
+Numba compiles one kernel at a time in a process, so there are parts for several processes: kernels that call the same ones
+are in one, since each process compiles those anew. On a first run two processes share the work through the cache folder;
+when a wheel is built, the code of all parts goes into one library.
 """
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -48,9 +50,11 @@ from workhold.kernels.seating.columns import (
     Obstacles,
     WorkSpace,
 )
+from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.fibres import free_poses
+from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.freedom import first_of_each, free_ones, last_free, lies_along
+from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lies_along
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
@@ -68,7 +72,7 @@ from workhold.kernels.statics.reactions import LOAD_LENGTH
 # Numbers of a configuration.
 CONFIGURATION = 4
 
-__all__ = ["KERNEL_COUNT", "LATER", "PARTS", "prepared"]
+__all__ = ["PARTS", "SEARCH", "SEATING", "kernel_count", "prepared"]
 
 LATTICE, LIMITS = Lattice(1.0, 1.0, 0.0), Limits(1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0)
 # A kernel and what it is called with.
@@ -88,27 +92,47 @@ def crossings_and_pairs() -> Calls:
         yield meet, (none, sliding_pairs, none, *given)
 
 
-def table_and_listing() -> Calls:
-    """The kernels that come before and after the search."""
+def matrices_and_figures() -> Calls:
+    """Kernels after the search that share hardly any with others."""
+    none, whole, fours, pairs = np.zeros(0, np.int64), np.zeros((0, 4), np.int64), np.zeros((0, 4)), np.zeros((0, 4, 2))
+    yield to_canonical_form, (none, np.zeros(0), whole, whole, whole, 2, 0.0)
+    given = (
+        pairs,
+        np.zeros((0, 3)),
+        fours,
+        np.zeros((0, 2)),
+        whole,
+        np.zeros((0, FEATURE_LENGTH)),
+        none,
+        np.zeros(2),
+        1.0,
+    )
+    contacts = pairs, pairs, fours, fours, np.zeros((0, 4, 4))
+    yield contact_matrices_of, (*given, *contacts, np.zeros((4, 4)))
+    rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 8, 3))
+    yield figures, (*contacts, whole, 1.0, np.zeros(2), *rows)
+
+
+def table_and_proof() -> Calls:
+    """Most of the kernels that come before and after the search."""
     none, features = np.zeros(0, np.int64), np.zeros((1, SEGMENT_LENGTH))
     records, checked, outline = (np.zeros((0, width)) for width in (RECORD_LENGTH, FEATURE_LENGTH, SEGMENT_LENGTH))
     outline.setflags(write=False)
-    setting, whole = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0), np.zeros((0, 4), np.int64)
+    setting = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0)
     yield tail_curves, (0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0))
     work, fours, pairs = (np.zeros((WORK_LENGTH, 4)), np.zeros((2, 4, 2))), np.zeros((0, 4)), np.zeros((0, 4, 2))
     yield certified, (records, checked, outline, fours, setting, fours, np.zeros(0, np.int8), *work)
     yield interval_newton, (records, checked, setting, np.zeros((0, 2, 4, 4)))
     yield jacobians, (records, checked, setting)
     yield contacts_of, (records, checked, setting, pairs, np.zeros(0), fours, fours, *work)
-    yield to_canonical_form, (none, np.zeros(0), whole, whole, whole, 2, 0.0)
-    pose, points, two, matrices = np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(2), np.zeros((0, 4, 4))
-    contacts = pairs, pairs, fours, fours, matrices
-    yield contact_matrices_of, (pairs, pose, fours, points, whole, checked, none, two, 1.0, *contacts, np.zeros((4, 4)))
-    rows = (np.zeros((0, width)) for width in (2, 6, LOAD_LENGTH, 8, 3))
-    yield figures, (*contacts, whole, 1.0, two, *rows)
-    clamps = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))
+
+
+def clamps() -> Calls:
+    """The kernels of searches for two clamps."""
+    none, whole = np.zeros(0, np.int64), np.zeros((0, 4), np.int64)
+    given = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))
     hardware = Hardware(np.full((4, 4), -1), 0.0, 0.0, 0.0, False)
-    yield pairs_of, (np.zeros((0, 2), np.int64), none, clamps, hardware, False)
+    yield pairs_of, (np.zeros((0, 2), np.int64), none, given, hardware, False)
     yield closures_of, (np.zeros((0, 2, CLAMP_LENGTH)), np.zeros((0, 2)))
 
 
@@ -148,10 +172,25 @@ def seats_and_passes() -> Calls:
     yield slides_held, (slides, cells, cells, given, pockets, many)
     yield at_tangencies, (0, 0, np.zeros((0, ALPHA + 1)), 0.0, 0.0, given, many)
     yield tangent_chords, (rows, 0, 0, 1.0, np.zeros((0, ALPHA + 1)))
+    yield about_one_center, (given, 0.0, 0.0, many)
     yield on_three_faces, (slides, given, 0.0, 0.0, np.zeros((0, THREE_FACES)))
     touched, seen, clear = np.zeros(4, np.int64), np.zeros((4, 3)), np.zeros((0, 4))
-    yield free_ones, (np.zeros((0, 4)), touched, 0, obstacles, seen, clear, np.zeros(0, np.int8))
-    yield last_free, (np.zeros((2, 4)), touched, obstacles, one, seen, np.zeros(5))
+    yield free_ones, (np.zeros((0, 4)), touched, obstacles, seen, clear, np.zeros(0, np.int8))
+    whole, fours, known = np.zeros((0, 4), np.int64), np.zeros((0, 4)), np.zeros(0, np.int8)
+    runs = (
+        fours,
+        np.zeros(1, np.int64),
+        known,
+        whole,
+        whole,
+        fours,
+        obstacles,
+        fours,
+        seen,
+        pegs,
+        np.zeros((0, RUN_LENGTH)),
+    )
+    yield free_runs, runs
     yield lies_along, (0.0, 0.0, 0.0, np.zeros((0, 4)), 1.0)
     yield first_of_each, (many, 1.0, 1.0, none)
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
@@ -159,22 +198,56 @@ def seats_and_passes() -> Calls:
     yield tip_in_pocket, (stood, points, pockets, stack, points, many)
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
-    yield close_jaws, (ways, 1.0, 1.0, obstacles, ways, work, np.zeros(0, np.int8))
+    begins, nodes = np.zeros(1, np.int64), np.zeros((0, 6))
+    yield close_jaws, (ways, points, 1.0, obstacles, ways, work, np.zeros(0, np.int8), begins, nodes)
+    yield free_until, (none, nodes, begins, one, none, 1.0, obstacles, one, pegs, seen, none)
     yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
     yield leave, (ways, obstacles, 1, points, np.zeros(0, np.int8))
 
 
-# Two parts of about the same length, a short one, and one that no search needs; and how many kernels a search has in all.
-PARTS = {
+# Kernels of seating of which many call the same ones: half of the work.
+HOLDINGS = (
+    make_cells,
+    three_contacts,
+    two_holdings,
+    third_of_jaw,
+    complete_three,
+    at_tangencies,
+    tangent_chords,
+    about_one_center,
+    lies_along,
+    stationary,
+    least_friction,
+)
+
+
+def half_of_seating(first: bool) -> Calls:
+    """The kernels of seating that are among the holdings, or the others."""
+    for kernel, arguments in seats_and_passes():
+        if (kernel in HOLDINGS) == first:
+            yield kernel, arguments
+
+
+PARTS: dict[str, Callable[[], Calls]] = {
     "crossings": crossings_and_pairs,
-    "others": table_and_listing,
+    "matrices": matrices_and_figures,
+    "others": table_and_proof,
     "distances": distances,
-    "seating": seats_and_passes,
+    "clamps": clamps,
+    "holdings": partial(half_of_seating, True),
+    "seats": partial(half_of_seating, False),
 }
-LATER = ("seating",)
-KERNEL_COUNT = sum(1 for part, calls in PARTS.items() if part not in LATER for _ in calls())
+# The parts that all searches need, and those of seating, in two shares of about the same length, for two processes. What a
+# search for two clamps needs besides is compiled when it is called, in a second.
+SEARCH = ("distances", "others"), ("crossings", "matrices")
+SEATING = ("seats",), ("holdings",)
+
+
+def kernel_count(parts: Sequence[str]) -> int:
+    """How many kernels parts have in all."""
+    return sum(1 for part in parts for _ in PARTS[part]())
 
 
 @contextmanager
@@ -189,9 +262,10 @@ def without_collector() -> Iterator[None]:
             gc.enable()
 
 
-def prepared(part: str) -> Iterator[Callable[..., Any]]:
-    """The kernels of a part, each once it has been compiled."""
-    for kernel, arguments in PARTS[part]():
-        with without_collector():
-            kernel(*arguments)
-        yield kernel
+def prepared(*parts: str) -> Iterator[Callable[..., Any]]:
+    """The kernels of parts, each once it has been compiled."""
+    for part in parts:
+        for kernel, arguments in PARTS[part]():
+            with without_collector():
+                kernel(*arguments)
+            yield kernel

@@ -13,6 +13,7 @@ from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.kernels.contact import record
 from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
 from workhold.kernels.contact.equations import WORK_LENGTH
+from workhold.listing.runs import key_of, order_of
 from workhold.proof.deciding import peg_integers
 
 __all__ = [
@@ -61,7 +62,8 @@ class Candidates:
 
     def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Candidates:
         """The candidates of an index array or mask, in its order."""
-        return Candidates(*(getattr(self, name)[order] for name in CANDIDATE_FIELDS))
+        indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
+        return Candidates(*(getattr(self, name).take(indices, axis=0) for name in CANDIDATE_FIELDS))
 
 
 CANDIDATE_FIELDS = tuple(a.name for a in fields(Candidates))
@@ -89,8 +91,8 @@ def canonical_form(c: Candidates, swapped: int) -> Candidates:
     order = np.empty((len(c.standing), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
     place = 4 * np.arange(len(order))[:, None] + order
-    point = c.point.reshape(-1, 2)[place]
-    feature, null, force = (np.ravel(values)[place] for values in (c.feature, c.null, c.force))
+    point = c.point.reshape(-1, 2).take(place, axis=0)
+    feature, null, force = c.feature.take(place), c.null.take(place), c.force.take(place)
     return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
 
 
@@ -140,7 +142,7 @@ def changes(words: list[IntArray]) -> NDArray[np.bool_]:
 def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
     """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in all these."""
     words = packed_holes(c)
-    order = np.lexsort([c.theta, *reversed(words)])
+    order = order_of(key_of(*words, c.theta))
     fresh = changes([word[order] for word in words])
     fresh[1:] |= np.diff(c.theta[order]) > SAME_POSE
     return order, np.cumsum(fresh)
@@ -155,7 +157,19 @@ def listed_once(c: Candidates) -> Candidates:
     if len(c.standing) == 0:
         return c
     first, group = same_holes_first(c)
-    place = (c.point[:, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.gap)[first]
+    fresh = changes([group])
+    alone = fresh & np.append(fresh[1:], True)
+    if alone.all():
+        return c.take(first)
+    shared = np.flatnonzero(~alone)
+    kept = np.concatenate([np.flatnonzero(alone), shared[different_places(c, first[shared], group[shared])]])
+    return c.take(first[kept[np.argsort(group[kept], kind="stable")]])
+
+
+def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
+    """Which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no repetitions, in the
+    order of group, faces and place; see :func:`listed_once`."""
+    place = c.point[first, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.gap[first]
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
@@ -165,5 +179,5 @@ def listed_once(c: Candidates) -> Candidates:
     features = (c.feature[first], c.feature.max())
     order = np.lexsort([*reversed(packed((run[:, None], len(run)), features))])
     once = order[np.concatenate([[True], np.diff(run[order]) > 0])]
-    words = [place, *reversed(packed((group[:, None], len(group)), features))]
-    return c.take(first[once[np.lexsort([word[once] for word in words])]])
+    words = [place, *reversed(packed((group[:, None], int(group[-1])), features))]
+    return np.asarray(once[np.lexsort([word[once] for word in words])])

@@ -32,7 +32,7 @@ def keys_and_pose(
     theta, column, row = c.theta - angle, c.column.copy(), c.row.copy()
     order = np.empty((len(face), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
-    face = np.ravel(face)[4 * np.arange(len(face))[:, None] + order]
+    face = face.take(4 * np.arange(len(face))[:, None] + order)
     # Same faces, holes and orientation still leave a choice of places; the gap tells those apart.
     holes = zip((column, row), most_holes(problem), strict=True)
     largest = max(f.number for f in problem.workpiece.faces)

@@ -34,6 +34,8 @@ __all__ = ["Gathering"]
 PLACE_BITS = 40
 # Seconds between looks at how far the threads have come.
 NAP = 0.1
+# After somebody asked to stop: fixtures that are listed, unless more are already.
+LISTED_LATE = 50_000
 
 
 @define(eq=False)
@@ -45,8 +47,8 @@ class Gathering:
     problem : what was searched.
     pool : of threads that share the work.
     ahead : how many pieces of work may be under way.
-    cancel : when set, records that cannot be decided quickly are left; when set while fixtures are measured, the rest of
-        them is left.
+    cancel : when set, records that cannot be decided quickly are left, fixtures that are not measured soon are, and of
+        those measured no more than the best ``LISTED_LATE`` are listed.
     folder : of what does not stay in memory; None for memory alone.
     course : how far the deciding has come.
     found, distinct : numbers of fixtures and of sets of each arrangement, once they are measured.
@@ -128,9 +130,9 @@ class Gathering:
         return Account.together(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List once, measure and count; whether nothing was left because of a cancel on the way."""
-        may_stop = self.cancel is not None and not self.cancel.is_set()
+        """List once, measure and count; whether nothing was left because somebody asked to stop."""
         parts, done = self.by_holes.parts(), 0
+        course = Course(len(parts), cancel=self.cancel)
         for table, turned in in_order(self.pool, self.ahead, self.measured_part, list(enumerate(parts))):
             done += 1
             self.by_rank.add(table)
@@ -139,7 +141,7 @@ class Gathering:
                 self.by_turn.add(turned)
             if progress is not None:
                 progress(done / len(parts), len(self.by_rank))
-            if may_stop and self.cancel is not None and self.cancel.is_set():
+            if course.is_late:
                 break
         self.by_holes.close()
         if self.turns.is_symmetric:
@@ -166,11 +168,21 @@ class Gathering:
         words, pose, kind = self.turns.smallest(candidates)
         return ranked, Run.of(key_of(*words), (*words, pose, kind))
 
+    @property
+    def listed(self) -> int:
+        """How many of the measured fixtures are listed, unless somebody asks to stop after this."""
+        found = int(self.found.sum())
+        return min(found, LISTED_LATE) if self.course.is_stopped else found
+
     def tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """The fixtures, best first, in tables one after the other."""
-        parts = self.by_rank.parts()
+        """The fixtures, best first, in tables one after the other; when somebody asks to stop, the first of them."""
+        parts, listed = self.by_rank.parts(), 0
         for number, part in enumerate(in_order(self.pool, self.ahead, taken, parts), 1):
-            yield FixtureTable(*part.columns)
+            rows = min(len(part), max(self.listed - listed, 0))
+            listed += rows
+            yield FixtureTable(*part.columns).take(slice(rows))
+            if rows < len(part):
+                break
             if progress is not None:
                 progress(number / len(parts), len(self.by_rank))
         self.by_rank.close()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 
@@ -76,7 +76,7 @@ def listed_result(
             for array in records:
                 gathering.take(array)
             result = gathered_result(gathering, work, stage(progress, 0.0, MEASURED))
-            result = with_table(result, gathering.tables(stage(progress, MEASURED, 1.0)))
+            result = with_table(result, gathering, stage(progress, MEASURED, 1.0))
     return evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
@@ -106,9 +106,14 @@ def gathered_result(gathering: Gathering, work: Work, progress: Progress | None 
     )
 
 
-def with_table(result: Result, tables: Iterable[FixtureTable]) -> Result:
-    """A result with its fixtures."""
-    return evolve(result, table=FixtureTable.joined(list(tables)))
+def with_table(result: Result, gathering: Gathering, progress: Progress | None = None) -> Result:
+    """The result of what a gathering was given, with its fixtures."""
+    tables, listed = list(gathering.tables(progress)), gathering.listed
+    # If somebody asked to stop since, millions are not put together any more.
+    enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
+    table = FixtureTable.joined(tables[:enough]).take(slice(listed))
+    result = evolve(result, table=table)
+    return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
 
 
 def best_result(kept: BestFixtures, work: Work) -> Result:
@@ -128,7 +133,7 @@ def result_of(problem: Problem, candidates: Candidates, account: Account, work: 
     with ThreadPoolExecutor(max_workers=1) as pool:
         gathering = Gathering(problem, pool, 1)
         gathering.add(candidates, account)
-        return with_table(gathered_result(gathering, work), gathering.tables())
+        return with_table(gathered_result(gathering, work), gathering)
 
 
 def proof_of(account: Account, work: Work) -> Proof:

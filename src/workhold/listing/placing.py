@@ -22,6 +22,7 @@ from workhold.listing.on_plate import bolted, placed_on_plate
 from workhold.listing.written_out import written_out
 from workhold.model.result import FixtureTable
 from workhold.proof.deciding import is_standing
+from workhold.rowwise import largest, smallest
 
 __all__ = ["Arranged", "arranged", "placeable", "placed"]
 
@@ -123,15 +124,17 @@ def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
     """How many columns (N,) are free beyond the pegs of each carrier."""
     standing = is_standing(c.standing)
     return (
-        frame.standing.column_count - 1 - np.where(standing, c.column, 0).max(axis=1, initial=0),
-        frame.moving.column_count - 1 - np.where(standing, 0, c.column).max(axis=1, initial=0),
+        frame.standing.column_count - 1 - largest(np.where(standing, c.column, 0)),
+        frame.moving.column_count - 1 - largest(np.where(standing, 0, c.column)),
     )
 
 
 def free_rows(c: Candidates, frame: Frame) -> IntArray:
     """How many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
+    if all(carrier.rows is None for carrier in frame.carriers):
+        return np.zeros(len(c.standing), np.int64)
     ends = np.where(is_standing(c.standing), *(np.inf if k.rows is None else k.rows - 1.0 for k in frame.carriers))
-    spare = (ends - c.row).min(axis=1, initial=np.inf)
+    spare = smallest(ends - c.row)
     return np.where(np.isinf(spare), 0, spare).astype(np.int64)
 
 

@@ -36,6 +36,8 @@ Other = TypeVar("Other")
 # Rows merged at a time, rows in memory that go to the disk together, and rows between two keys that are remembered.
 PART, ROOM, STRIDE = 1 << 15, 1 << 18, 1 << 9
 SIGN = np.uint64(1 << 63)
+# The largest number of 64 bits.
+MOST = (1 << 64) - 1
 
 
 def key_of(*numbers: NDArray[Any]) -> Keys:
@@ -52,6 +54,39 @@ def key_of(*numbers: NDArray[Any]) -> Keys:
     return words.view(f"S{8 * len(numbers)}")[:, 0]
 
 
+def order_of(keys: Keys) -> NDArray[np.intp]:
+    """The order (N,) of keys, equal ones as they stand.
+
+    Comparing bytes takes long. So the words that keys are made of become one number, each by its distance from the least of
+    its kind or, where that is too much for a number, by its rank; the number is sorted with the index behind it.
+    """
+    count = max(len(keys), 1)
+    number, size = np.zeros(len(keys), np.uint64), 1
+    for column in keys.view(">u8").reshape(len(keys), -1).T if len(keys) else ():
+        word, span = small(column.astype(np.uint64), MOST // (size * count))
+        if size * span * count > MOST:
+            number, size = ranked(number)
+        if size * span * count > MOST:
+            return np.argsort(keys, kind="stable")
+        number, size = number * np.uint64(span) + word, size * span
+    ordered = np.sort(number * np.uint64(count) + np.arange(len(keys), dtype=np.uint64))
+    return np.asarray(ordered % np.uint64(count)).astype(np.intp)
+
+
+def small(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
+    """Numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than ``most``, or as few as
+    there are different ones."""
+    least = int(word.min())
+    span = int(word.max()) - least + 1
+    return (word - np.uint64(least), span) if span <= most else ranked(word)
+
+
+def ranked(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
+    """The ranks (N,) of numbers, equal ones alike, and how many there are."""
+    values, ranks = np.unique(word, return_inverse=True)
+    return ranks.astype(np.uint64), len(values)
+
+
 @frozen(eq=False)
 class Run:
     """Rows in memory in the order of their keys."""
@@ -62,8 +97,8 @@ class Run:
     @classmethod
     def of(cls, keys: Keys, columns: Columns) -> Run:
         """A run of rows in any order."""
-        order = np.argsort(keys, kind="stable")
-        return cls(keys[order], tuple(column[order] for column in columns))
+        order = order_of(keys)
+        return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
     def joined(cls, runs: Sequence[Run]) -> Run:

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve
 
 from workhold.listing.ranking import rank
-from workhold.model.notes import no_fixture_notes, no_place_note, undecided_note
+from workhold.model.notes import cut_note, no_fixture_notes, no_place_note, undecided_note
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
@@ -20,9 +20,12 @@ __all__ = ["joined_ways", "summed"]
 def joined_ways(results: Sequence[Result], query: Query) -> Result:
     """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the query."""
     table = joined_tables([result.table for result in results])
-    ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[: query.best])
+    # Of a search that was stopped no more than the best of a way may be listed: of all then, too. (A fence's come without.)
+    cut = [] if query.best else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
+    most = min(cut, default=query.best)
+    ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
-    return Result(
+    joined = Result(
         query=query,
         table=ranked,
         found=summed(result.found for result in results),
@@ -32,6 +35,7 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
         statistics=summed(result.statistics for result in results),
         proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
     )
+    return joined.cut_short(len(ranked)) if cut else joined
 
 
 def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
@@ -42,6 +46,7 @@ def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
     reasons = no_fixture_notes(query.toolkit.wording)
     counted = {*reasons, *(no_place_note(proof.verified, query.toolkit.wording) for proof in proofs)}
     counted |= {undecided_note(len(proof.undecided)) for proof in proofs}
+    counted |= {cut_note(sum(result.found.values()), len(result)) for result in results}
     notes = dict.fromkeys(note for result in results for note in result.notes)
     yield from (note for note in notes if note not in counted)
     if undecided:

@@ -9,6 +9,7 @@ from workhold.contact.problem import Problem
 from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import Candidates
 from workhold.model.result import FixtureTable, unknown_quality
+from workhold.rowwise import smallest
 
 __all__ = ["written_out"]
 
@@ -27,10 +28,10 @@ def written_out(
         arrangement=frame.toolkit.arrangement_numbers(c.standing).astype(np.int8),
         column=column.astype(np.int32),
         row=row.astype(np.int32),
-        face=problem.faces[c.feature].astype(np.int32),
+        face=problem.faces.astype(np.int32).take(c.feature),
         theta=theta,
         position=np.stack(hole, axis=1) - anchor,
         jaw_separation=travel,
         force=c.force,
-        quality=unknown_quality(c.null.min(axis=1, initial=1.0)),
+        quality=unknown_quality(smallest(c.null)),
     )

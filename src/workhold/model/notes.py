@@ -9,6 +9,7 @@ from workhold.model.toolkit import Wording
 
 __all__ = [
     "best_note",
+    "cut_note",
     "fitted_note",
     "kept_note",
     "no_fixture_notes",
@@ -51,6 +52,11 @@ def no_pair_note(seats: int, contacts: int) -> str:
 def best_note(best: int) -> str:
     """Of a search for so many, the best, that left others out."""
     return f"Only the best {best} were sought, so how many fixtures there are in all was not counted."
+
+
+def cut_note(found: int, listed: int) -> str:
+    """Of a search that was stopped while its fixtures were put in order or written."""
+    return f"Stopped with {found:,} fixtures found: the best {listed:,} of them are listed; more would have taken long."
 
 
 def undecided_note(count: int) -> str:

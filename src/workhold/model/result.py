@@ -14,7 +14,7 @@ from workhold.geometry.segment import Line
 from workhold.model.beyond import beyond
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
-from workhold.model.notes import fitted_note
+from workhold.model.notes import cut_note, fitted_note
 from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
@@ -155,7 +155,7 @@ class Result:
     query : what was asked.
     table : the fixtures listed, ranked.
     found : how many fixtures of each arrangement were found, by its name; more than are listed when an engine found all
-        and only the best were kept.
+        and only the best were kept, or the search was stopped while they were put in order or written.
     distinct : how many sets they form when fixtures that a rotation of the part onto itself carries into each other
         count once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
@@ -236,6 +236,11 @@ class Result:
     def part(self, rows: slice) -> Result:
         """The same with fewer fixtures, those of a slice."""
         return evolve(self, table=self.table.take(rows), seating=self.seating[rows])
+
+    def cut_short(self, listed: int) -> Result:
+        """The same of a search that was stopped while its fixtures were put in order or written, so that only so many, the
+        best, are listed; incomplete for that."""
+        return evolve(self, complete=False, notes=(cut_note(sum(self.found.values()), listed), *self.reasons))
 
     def listed(self, index: int) -> Listed:
         """Where the fixture of an index stands."""

@@ -435,7 +435,7 @@ class Toolkit:
 
     def peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
         """The carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
-        return np.asarray(np.array([one.carriers for one in self.arrangements], np.int8)[arrangement])
+        return np.array([one.carriers for one in self.arrangements], np.int8).take(arrangement, axis=0)
 
     def carrier(self, name: str) -> Carrier:
         """The carrier of a name."""
@@ -460,14 +460,19 @@ class Toolkit:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement (N,), and travelled (N,),
         or (N, M) of each of the last M pegs."""
-        carrier = self.peg_carriers(arrangement)
         moved = np.broadcast_to(travelled[:, None], column.shape) if travelled.ndim == 1 else np.zeros(column.shape)
         if travelled.ndim > 1:
             moved[:, -travelled.shape[1] :] = travelled
         offset, pitch = (np.array([getattr(one, name) for one in self.carriers]) for name in ("offset", "pitch"))
         unit = np.array([(0.0, 0.0) if one.travel is None else one.travel.unit for one in self.carriers])
+        carriers = np.array([one.carriers for one in self.arrangements])
+
+        def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            """Numbers (C,) of carriers for each peg (N, K)."""
+            return np.asarray(values[carriers].take(arrangement, axis=0))
+
         x, y = (
-            offset[:, k][carrier] + holes * pitch[:, k][carrier] + moved * unit[:, k][carrier]
+            of_pegs(offset[:, k]) + holes * of_pegs(pitch[:, k]) + moved * of_pegs(unit[:, k])
             for k, holes in enumerate((column, row))
         )
         return x, y

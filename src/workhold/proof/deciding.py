@@ -183,9 +183,9 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
     discs = discs_around(problem.outline, max(setting.standing_radius, setting.moving_radius))
     verdicts, work = np.empty(len(records), np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))
     certified(records, problem.rows, problem.outline, discs, setting, solutions, verdicts, *work)
-    is_proven = verdicts == PROVEN
-    proven = records[is_proven]
-    proven[:, record.PSI : record.REACH] = solutions[is_proven]
+    is_proven = np.flatnonzero(verdicts == PROVEN)
+    proven = records.take(is_proven, axis=0)
+    proven[:, record.PSI : record.REACH] = solutions.take(is_proven, axis=0)
     return proven, records[verdicts == OPEN]
 
 

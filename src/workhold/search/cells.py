@@ -57,14 +57,16 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
     first, last = table.spans
-    behind = (low - SLACK) % tau - first
-    behind[behind < 0.0] += tau
-    return np.flatnonzero((behind <= last - first) | (behind + (high - low) + 2 * SLACK >= tau))
+    begin = (low - SLACK) % tau
+    end = begin + (high - low) + 2 * SLACK
+    # Where the cell runs over a whole turn, or a curve does, the other may be met a turn later.
+    there = (first <= end) & (last >= begin)
+    return np.flatnonzero(there | (first <= end - tau) | (last >= begin + tau))
 
 
 def member_counts(table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.int64]:
     """How many curves exist somewhere in each of some cells (K,), but for a hair at their ends."""
-    first, last = (np.sort(ends) for ends in table.spans)
+    first, last = table.sorted_spans
     turns = [-tau, 0.0, tau]
     begun = sum(np.searchsorted(first, high + turn, "right") for turn in turns)
     return np.asarray(begun - sum(np.searchsorted(last, low + turn, "left") for turn in turns))

@@ -34,12 +34,14 @@ from workhold.model.toolkit import Toolkit
 from workhold.proof.deciding import Account, Course, decided
 from workhold.search.cells import Block, run_blocks
 from workhold.search.preview import Preview
-from workhold.search.toolkit_search import ToolkitSearch
+from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["answer_of_pairs"]
 
 # Blocks of one direction's search that are worked on before seats are made of what they found, and most such ranges.
 BLOCKS_TOGETHER, MOST_RANGES = 48, 256
+# Of a range few cells are searched, which the threads are to share.
+BLOCKS_PER_HALF_TURN = 2 * LEAST_BLOCKS
 # Ranges after which what has been found so far is shown.
 MOST_PREVIEWS = 8
 # Radians beside a range that are searched as well, so that a seat on its edge is found whole from either side.
@@ -52,7 +54,7 @@ def answer_of_pairs(
     """The fixtures with two clamps that a query asks for, see ``search.design.answer``."""
     searches = [search_of(query, way, threads, cancel) for way in query.toolkit.ways]
     kept = PairedFixtures(query, searches[0].problem)
-    whole_turn = [search.blocks(search.problem.toolkit.types) for search in searches]
+    whole_turn = [search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN) for search in searches]
     ranges = min(max(max(map(len, whole_turn)) // BLOCKS_TOGETHER, 1), MOST_RANGES)
     edges = np.linspace(0.0, tau, ranges + 1) - SAME_POSE
     accounts, cells, complete = list[Account](), 0, True
@@ -91,7 +93,8 @@ def search_of(query: Query, way: Toolkit, threads: int, cancel: Event | None) ->
 
 def blocks_within(search: ToolkitSearch, low: float, high: float) -> list[Block]:
     """The blocks of the orientations of a range in radians, and of some near it."""
-    return search.blocks(search.problem.toolkit.types, within=(degrees(low - OVERLAP), degrees(high + OVERLAP)))
+    within = degrees(low - OVERLAP), degrees(high + OVERLAP)
+    return search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, within)
 
 
 def records_of(

@@ -193,7 +193,7 @@ def answer_of_a_way(
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
     # Smaller blocks learn earlier what margin is to be reached.
-    blocks = search.blocks(query.arrangements, LEAST_BLOCKS if query.best is None else 2 * LEAST_BLOCKS)
+    blocks = search.blocks(query.arrangements, LEAST_BLOCKS if query.best is None else 4 * LEAST_BLOCKS)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     receive = None if kept is None else kept.add
     look = None if preview is None else Previews(problem, preview).add
@@ -205,7 +205,10 @@ def answer_of_a_way(
                 _, done = run_blocks(blocks, threads, before, cancel, gathering.take, look, search.stop, pool)
                 result = gathered_result(gathering, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
                 result = with_reason(result, search, threads, cancel)
-                receiver.receive(result, sum(result.found.values()), gathering.tables(stage(rest, MEASURED, 1.0)))
+                listed = gathering.listed
+                if listed < sum(result.found.values()):
+                    result = result.cut_short(listed)
+                receiver.receive(result, listed, gathering.tables(stage(rest, MEASURED, 1.0)))
         return result
     records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
     work = work_of(search, blocks, done)

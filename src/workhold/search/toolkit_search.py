@@ -51,7 +51,7 @@ CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
 # Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
 PAIRS_PER_BLOCK = 2e6
-LEAST_BLOCKS = 16
+LEAST_BLOCKS = 8
 
 
 def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
@@ -247,11 +247,11 @@ class ToolkitSearch:
             counts = member_counts(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
             for (first, last), count in zip(ranges.tolist(), counts.tolist(), strict=True):
                 blocks.append(self.crossing_block(arrangement, edges[first : last + 1], count))
-            counts = member_counts(self.table, edges[:-1], edges[1:])
-            for cell, sliding_pairs in enumerate(self.sliding_pair_cells(half_turns, edges)):
-                if len(sliding_pairs) and wanted[cell]:
-                    low, high = float(edges[cell]), float(edges[cell + 1])
-                    blocks.append(self.sliding_pair_block(arrangement, low, high, sliding_pairs, int(counts[cell])))
+            sliding_pairs = self.sliding_pair_cells(half_turns, edges)
+            for first, last in ranges.tolist():
+                some = [cell for cell in range(first, last) if len(sliding_pairs[cell])]
+                if some:
+                    blocks.append(self.sliding_pair_block(arrangement, edges, some, sliding_pairs))
         return blocks
 
     def sliding_pair_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
@@ -273,12 +273,24 @@ class ToolkitSearch:
         return Block(work, 1.0 + weight * members**2, len(edges) - 1)
 
     def sliding_pair_block(
-        self, arrangement: Arrangement, low: float, high: float, chosen: NDArray[np.int64], members: int
+        self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
     ) -> Block:
-        """The sliding pairs of one cell, in which there are about so many curves."""
+        """The sliding pairs of some cells, given those of all."""
         _, kernel, _ = KERNELS[arrangement.pegs]
-        work = partial(self.run, partial(kernel, chosen, self.table.sliding_pairs), low, high, self.tally())
-        return Block(work, 1.0 + len(chosen) * members)
+        stats = self.tally()
+        parts = [
+            partial(
+                self.run,
+                partial(kernel, sliding_pairs[cell], self.table.sliding_pairs),
+                float(edges[cell]),
+                float(edges[cell + 1]),
+                stats,
+            )
+            for cell in cells
+        ]
+        members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
+        cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
+        return Block(lambda margin: np.concatenate([part(margin) for part in parts]), len(cells) + cost, len(cells))
 
     def tally(self) -> NDArray[np.int64]:
         """A new row of statistics for a kernel to add to."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
@@ -19,10 +17,12 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     Given,
 )
+from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.four_contacts import third_of_jaw
 from workhold.kernels.seating.slides import slides_squared, slides_stopped
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.common_normals import squeezed
+from workhold.seating.descents import Closing
 from workhold.seating.families import Finder, Way
 from workhold.seating.filled import filled
 from workhold.seating.groups import Group
@@ -30,15 +30,18 @@ from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.tangent import tangent
+from workhold.seating.ways_down import WaysDown
 
 __all__ = ["Alone", "alone", "balanced", "settled"]
 
 Array = NDArray[np.float64]
-# Groups of which something is kept; beyond, all are forgotten.
-MOST_KEPT = 1024
+# Groups of which something is kept, and nodes of their ways down, of 48 bytes; beyond, all are forgotten.
+MOST_KEPT, MOST_NODES = 1024, 1_000_000
 # No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
 NONE = np.zeros((0, CANDIDATE_LENGTH))
+# Of a group its candidates, what fixes the part and the ways, as of ``Alone``.
+Told = tuple[Array, Array, tuple[Way, ...]]
 
 
 @frozen(eq=False)
@@ -50,11 +53,13 @@ class Alone:
     candidates : (N, 24) those of two or three contacts in which forces balance.
     fixed : (N, 24) of pegs of one jaw: where they touch in three places, the part's place that at separation 0.
     ways : that the part can go between the pegs with one separation.
+    down : off the candidates, as far as they were followed.
     """
 
     candidates: Array
     fixed: Array
     ways: tuple[Way, ...]
+    down: WaysDown
 
 
 def alone(locus: Locus, group: Group, size: float) -> Alone:
@@ -62,22 +67,28 @@ def alone(locus: Locus, group: Group, size: float) -> Alone:
     kept, key = locus.alone, (size, *group.key)
     found = kept.get(key)
     if found is None:
-        kind: Callable[[Locus, Pattern, float], Alone] = two_alone if len(group.sides) == 2 else three_alone
-        found = jaw_alone(locus, group.pattern) if group.is_of_a_jaw else kind(locus, group.pattern, size)
-        if len(kept) >= MOST_KEPT:
+        kind = jaw_alone if group.is_of_a_jaw else two_alone if len(group.sides) == 2 else three_alone
+        candidates, fixed, ways = kind(locus, group.pattern, size)
+        found = Alone(candidates, fixed, ways, WaysDown(Closing(locus, group.pattern, size), candidates))
+        if len(kept) >= MOST_KEPT or nodes_kept(locus) > MOST_NODES:
             kept.clear()
         kept[key] = found
     return found
 
 
-def two_alone(locus: Locus, pattern: Pattern, size: float) -> Alone:
+def nodes_kept(locus: Locus) -> int:
+    """How many nodes of ways down are kept of groups on a part."""
+    return sum(len(one.down.known.nodes.rows) for one in list(locus.alone.values()))
+
+
+def two_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
     """Of a peg of each jaw: on common normals, and on parallel faces or arcs of one centre."""
     given, finder = Holdings.of(locus, pattern).given, Finder(locus, pattern)
     candidates = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
-    return Alone(in_balance(candidates, given, size), NONE, finder.free(finder.on_one_line()))
+    return in_balance(candidates, given, size), NONE, finder.free(finder.on_one_line())
 
 
-def three_alone(locus: Locus, pattern: Pattern, size: float) -> Alone:
+def three_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
     """Of two pegs of a jaw and one of the other."""
     holdings, finder, stack = Holdings.of(locus, pattern), Finder(locus, pattern), np.empty((DEPTH, 2))
     given, sought = holdings.given, holdings.sought
@@ -86,13 +97,14 @@ def three_alone(locus: Locus, pattern: Pattern, size: float) -> Alone:
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_squared, holdings.slides, given),
         *tangent(locus, pattern, given),
+        filled(CANDIDATE_LENGTH, 64, about_one_center, given, pattern.stop, pattern.widest),
     ]
     ways = [*finder.on_parallel_lines(holdings.slides, given), *finder.on_one_center()]
     every = np.concatenate(candidates)
-    return Alone(in_balance(every[pattern.reaches(every[:, SEPARATION])], given, size), NONE, finder.free(ways))
+    return in_balance(every[pattern.reaches(every[:, SEPARATION])], given, size), NONE, finder.free(ways)
 
 
-def jaw_alone(locus: Locus, pattern: Pattern) -> Alone:
+def jaw_alone(locus: Locus, pattern: Pattern, _: float) -> Told:
     """Of pegs of one jaw that touch in three places: three, or two of which one is in a pocket."""
     holdings, stack = Holdings.of(locus, pattern), np.empty((DEPTH, 2))
     roots = filled(ROOT_LENGTH, 1024, third_of_jaw, holdings.cells, holdings.sought, locus.discs, stack)
@@ -100,7 +112,7 @@ def jaw_alone(locus: Locus, pattern: Pattern) -> Alone:
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, holdings.given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_stopped, holdings.slides, holdings.given),
     ]
-    return Alone(NONE, np.concatenate(fixed), ())
+    return NONE, np.concatenate(fixed), ()
 
 
 def settled(candidates: Array, given: Given, size: float) -> Array:

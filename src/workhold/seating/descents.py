@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from attrs import define
+from attrs import define, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws
@@ -14,7 +14,7 @@ from workhold.kernels.seating.leaving import leave
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Closing"]
+__all__ = ["LONGEST_STEP", "Closing", "Nodes"]
 
 Array = NDArray[np.float64]
 # No step is longer than this part of the peg radius: no wall is thin enough to be passed.
@@ -22,6 +22,27 @@ LONGEST_STEP = 0.35
 # Directions in which a part may be taken away.
 DIRECTIONS = 48
 NO_SEATS = np.zeros((0, 4))
+# Nodes that a way down has as a rule.
+USUAL = 128
+
+
+@frozen(eq=False)
+class Nodes:
+    """Configurations on ways, one way after the other.
+
+    Parameters
+    ----------
+    rows : (M, 6) configurations, with how long the next steps are in mm.
+    begins : (N + 1,) where those of each way begin and, last, end.
+    """
+
+    rows: Array
+    begins: NDArray[np.int64]
+
+    def joined(self, others: Nodes) -> Nodes:
+        """These and, after them, others."""
+        begins = np.concatenate([self.begins, others.begins[1:] + len(self.rows)])
+        return Nodes(np.concatenate([self.rows, others.rows]), begins)
 
 
 @define(frozen=True, eq=False, slots=False)
@@ -44,25 +65,43 @@ class Closing:
         return self.locus.obstacles(self.pattern, self.size, self.pattern.end(2.0 * self.size))
 
     def run(
-        self, configs: Array, first: float, seats: Array = NO_SEATS, stop: float | None = None
+        self, configs: Array, first: float | Array, seats: Array = NO_SEATS, stop: float | None = None
     ) -> tuple[Array, NDArray[np.int8]]:
         """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
 
         Parameters
         ----------
-        first : how long the first steps are, in mm.
+        first : how long the first steps are, in mm, or (N, 2) of each way: of linear programs, and along both faces.
         seats : (M, 4) configurations at which closing is known to end.
         stop : S in mm at which the jaws are stopped; where the pattern ends if None.
         """
         obstacles = self.obstacles
         if stop is not None:
             obstacles = obstacles._replace(stop=max(stop, obstacles.stop))
-        out = np.array(configs, dtype=np.float64)
-        ends = np.zeros(len(out), np.int8)
+        out, lengths = np.array(configs, dtype=np.float64), np.empty((len(configs), 2))
+        lengths[:] = first
+        ends, _, _ = self.closed(out, lengths, obstacles, seats, 0)
+        return out, ends
+
+    def followed(self, configs: Array, first: Array, seats: Array) -> tuple[Nodes, NDArray[np.int8]]:
+        """The ways from configurations (N, 4), from first steps (N,) in mm on, and how they end; see ``run``."""
+        lengths, room = np.stack([first, first], axis=1), USUAL * len(configs)
+        while True:
+            ends, begins, nodes = self.closed(np.array(configs), lengths, self.obstacles, seats, room)
+            if begins[-1] <= room:
+                return Nodes(np.array(nodes[: begins[-1]]), begins), ends
+            room = int(begins[-1])
+
+    def closed(
+        self, configs: Array, lengths: Array, obstacles: Obstacles, seats: Array, room: int
+    ) -> tuple[NDArray[np.int8], NDArray[np.int64], Array]:
+        """How ways from configurations, which are moved to their ends, end, and their nodes, as far as there is room."""
+        ends, begins, nodes = np.zeros(len(configs), np.int8), np.empty(len(configs) + 1, np.int64), np.empty((room, 6))
         work = WorkSpace.for_pieces(len(obstacles.rows))
         known = seats[np.argsort(seats[:, 3], kind="stable")]
-        close_jaws(out, first, LONGEST_STEP * min(self.pattern.radii), obstacles, known, work, ends)
-        return out, ends
+        most = LONGEST_STEP * min(self.pattern.radii)
+        close_jaws(configs, lengths, most, obstacles, known, work, ends, begins, nodes)
+        return ends, begins, nodes
 
     def escape(self, configs: Array) -> NDArray[np.bool_]:
         """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of

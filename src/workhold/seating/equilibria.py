@@ -19,11 +19,12 @@ from workhold.seating.common_normals import squeezed
 from workhold.seating.families import Family, Finder
 from workhold.seating.fence import fence_candidates
 from workhold.seating.filled import filled
-from workhold.seating.groups import groups_of
+from workhold.seating.groups import Group, groups_of
 from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.wall_families import on_wall
+from workhold.seating.ways_down import WaysDown
 
 __all__ = ["Equilibria", "equilibria"]
 
@@ -47,12 +48,17 @@ class Equilibria:
     passes : (N, 24) those with one way down, to both sides of the direction of motion.
     loose : sets of equilibria with one separation.
     doubtful : (N, 24) those of which bounds did not decide that they exist, of near ones the one that presses hardest.
+    origins : (N, 2) for each pass the number of the group that makes it, and its number among those of the group; -1 where
+        none does.
+    groups : what is known of the ways down of groups.
     """
 
     seats: Array
     passes: Array
     loose: list[Family]
     doubtful: Array
+    origins: NDArray[np.int64]
+    groups: tuple[tuple[Group, WaysDown], ...] = ()
 
 
 def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
@@ -63,18 +69,23 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     given, jaws, pockets = holdings.given, (holdings.of_jaw(0), holdings.of_jaw(1)), locus.pocket_pieces
     roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, np.empty((DEPTH, 2)))
     candidates = [filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)]
-    ways = []
+    groups, ways, origins = list[tuple[Group, WaysDown]](), [], [nowhere(len(candidates[0]))]
     for group in groups_of(pattern):
         own = alone(locus, group, size)
         candidates.append(group.candidates(own.candidates))
+        rows = np.arange(len(own.candidates))
+        origins.append(np.stack([np.full(len(rows), len(groups)), rows], axis=1))
+        groups.append((group, own.down))
         if len(own.fixed):
             jaw, fixed = group.sides[0], group.candidates(own.fixed)
             candidates.append(filled(CANDIDATE_LENGTH, 4 * len(fixed) + 64, fourths, fixed, jaw, given))
+            origins.append(nowhere(len(candidates[-1])))
         ways += [way.moved(group) for way in own.ways]
     candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets))
-    every = np.concatenate(candidates)
-    every = settled(every[pattern.reaches(every[:, SEPARATION])], given, size)
-    return sorted_out(every, finder.families(finder.cut_all(ways)))
+    every, whose = np.concatenate(candidates), np.concatenate([*origins, nowhere(len(candidates[-1]))])
+    reached = pattern.reaches(every[:, SEPARATION])
+    every = settled(every[reached], given, size)
+    return sorted_out(every, finder.families(finder.cut_all(ways)), whose[reached], tuple(groups))
 
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
@@ -83,27 +94,41 @@ def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     candidates = np.concatenate([pressed, fence_candidates(locus, pattern)])
     settle_on_wall(candidates, locus, pattern, size)
     finder = Finder(locus, pattern)
-    return sorted_out(candidates, finder.families(finder.cut_all(finder.on_one_line()) + on_wall(finder)))
+    loose = finder.families(finder.cut_all(finder.on_one_line()) + on_wall(finder))
+    return sorted_out(candidates, loose, nowhere(len(candidates)))
 
 
-def sorted_out(candidates: Array, loose: list[Family]) -> Equilibria:
-    """Candidates whose forces are known as seats and passes, beside what is loose."""
+def nowhere(count: int) -> NDArray[np.int64]:
+    """The origins (N, 2) of so many candidates that are of no group."""
+    return np.full((count, 2), -1)
+
+
+def sorted_out(
+    candidates: Array, loose: list[Family], origins: NDArray[np.int64], groups: tuple[tuple[Group, WaysDown], ...] = ()
+) -> Equilibria:
+    """Candidates whose forces are known as seats and passes, beside what is loose; where they are from as of Equilibria."""
     sure, rest = balanced(candidates)
     sure &= candidates[:, CLEAR] > -CLEAR_SLACK
     rest &= candidates[:, CLEAR] > -CLEAR_IN_DOUBT
-    found = once(candidates[sure], SAME_POSE, SAME)
+    found = candidates[sure]
+    order = once(found, SAME_POSE, SAME)
+    found, whose = found[order], origins[sure][order]
     four = found[:, CONTACTS] == 4.0
-    hardest = np.argsort(-candidates[rest, FORCE : FORCE + 4].sum(axis=1), kind="stable")
+    is_pass = ~four & (found[:, SECOND] < 0.0)
+    doubtful = candidates[rest]
+    doubtful = doubtful[np.argsort(-doubtful[:, FORCE : FORCE + 4].sum(axis=1), kind="stable")]
     return Equilibria(
         found[four | (found[:, SECOND] > 0.0)],
-        found[~four & (found[:, SECOND] < 0.0)],
+        found[is_pass],
         loose,
-        once(candidates[rest][hardest], SAME_DOUBT, SAME_DOUBT),
+        doubtful[once(doubtful, SAME_DOUBT, SAME_DOUBT)],
+        whose[is_pass],
+        groups,
     )
 
 
-def once(rows: Array, turn: float, shift: float) -> Array:
-    """Candidates, each configuration once, the first of those that agree; ordered by separation."""
+def once(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:
+    """Numbers of candidates, each configuration once, the first of those that agree; ordered by separation."""
     kept = np.empty(len(rows), np.int64)
-    chosen = rows[kept[: first_of_each(rows, turn, shift, kept)]]
-    return np.asarray(chosen[np.argsort(chosen[:, SEPARATION], kind="stable")])
+    kept = kept[: first_of_each(rows, turn, shift, kept)]
+    return kept[np.argsort(rows[kept, SEPARATION], kind="stable")]

@@ -26,7 +26,19 @@ from workhold.kernels.seating.columns import (
     Given,
     Obstacles,
 )
-from workhold.kernels.seating.freedom import TOUCHES, free_ones, last_free, lies_along
+from workhold.kernels.seating.freedom import (
+    RUN_COUNT,
+    RUN_END,
+    RUN_FIRST,
+    RUN_LENGTH,
+    RUN_MIDDLE,
+    RUN_START,
+    RUN_TOUCHES,
+    RUN_WAY,
+    free_ones,
+    free_runs,
+    lies_along,
+)
 from workhold.kernels.seating.parallel import (
     AT_HIGH,
     AT_LOW,
@@ -100,7 +112,7 @@ class Way:
     contacts : pegs and the pieces that they touch all along.
     is_closed : whether the last one is beside the first.
     across : see ``Family``.
-    known, clear : pegs whose clearances (N, K) in mm are known, -inf where one of them hinders.
+    known, clear : pegs whose clearances are known, and these (N, 4) in mm, -inf first where one of them hinders.
     """
 
     configs: Array
@@ -161,13 +173,11 @@ class Finder:
         return out
 
     def freedom(self, way: Way) -> tuple[Array, NDArray[np.bool_]]:
-        """Clearances (N, K) in mm of pegs and last of a wall along a way, told where the part is free and touches what it
-        has to, and where it does."""
-        clear, good = np.empty((len(way.configs), self.obstacles)), np.ones(len(way.configs), np.int8)
-        if way.clear is not None:
-            clear[:, way.known], good[way.clear[:, 0] == -np.inf] = way.clear, 0
-        known, seen = sum(1 << k for k in way.known), np.empty((len(self.pattern.pegs), 3))
-        free_ones(way.configs, self.touched(way), known, self.around, seen, clear, good)
+        """Clearances (N, 4) in mm of pegs along a way, told where the part is free and touches what it has to, and where it
+        does."""
+        clear, good = np.empty((len(way.configs), 4)), np.empty(len(way.configs), np.int8)
+        seen = np.empty((len(self.pattern.pegs), 3))
+        free_ones(way.configs, self.touched(way), self.around, seen, clear, good)
         return clear, good != 0
 
     def free(self, ways: list[Way]) -> tuple[Way, ...]:
@@ -177,7 +187,7 @@ class Finder:
             clear, good = self.freedom(way)
             if good.any():
                 clear[~good] = -np.inf
-                out.append(evolve(way, known=tuple(range(clear.shape[1])), clear=clear))
+                out.append(evolve(way, known=tuple(range(self.obstacles)), clear=clear))
         return tuple(out)
 
     def nearest(self, peg: int, config: Array) -> int:
@@ -194,44 +204,44 @@ class Finder:
 
     def cut_all(self, ways: Sequence[Way]) -> list[Family]:
         """The free runs of ways at separations that are reached."""
-        return [family for way in ways if self.pattern.reaches(way.configs[0, 3], SAME) for family in self.cut(way)]
+        return self.cut([way for way in ways if self.pattern.reaches(way.configs[0, 3], SAME)])
 
-    def cut(self, way: Way) -> list[Family]:
-        """The free runs of a way."""
-        clear, good = self.freedom(way)
-        configs, closed, out = way.configs, way.is_closed, list[Family]()
-        if not good.any():
-            return out
-        for numbers in runs(good, closed):
-            # The middle of where the most pegs touch.
-            touches = np.abs(clear[numbers]) < TOUCHES
-            counts = touches.sum(axis=1)
-            most = np.flatnonzero(counts == counts.max())
-            chosen = most[len(most) // 2]
-            middle, touching = numbers[chosen], np.flatnonzero(touches[chosen]).tolist()
-            known = dict(way.contacts)
-            told = [(peg, known[peg] if peg in known else self.nearest(peg, configs[middle])) for peg in touching]
-            row = np.zeros(CANDIDATE_LENGTH)
-            row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
-            row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
-            for at, (peg, piece) in enumerate(told):
-                row[PEG + at], row[PIECE + at] = peg, piece
-            along = configs[numbers]
-            if not closed:
-                ends = [(numbers[0], numbers[0] - 1), (numbers[-1], numbers[-1] + 1)]
-                first, last = (
-                    self.edge(configs[[inner, outer]], way) if 0 <= outer < len(configs) else configs[inner]
-                    for inner, outer in ends
-                )
-                along = np.concatenate([[first], along, [last]])
-            out.append(Family(row, along, closed and len(numbers) == len(configs), way.across))
-        return out
+    def cut(self, ways: Sequence[Way]) -> list[Family]:
+        """The free runs of ways."""
+        if not ways:
+            return []
+        begins = np.cumsum([0, *(len(way.configs) for way in ways)])
+        configs = np.concatenate([way.configs for way in ways])
+        names, touched = np.full((len(ways), 4), -1), np.array([self.touched(way) for way in ways])
+        for name, way in zip(names, ways, strict=True):
+            name[: len(way.known)] = way.known
+        known = np.concatenate([np.zeros((len(way.configs), 4)) if way.clear is None else way.clear for way in ways])
+        closed, clear = np.array([way.is_closed for way in ways], np.int8), np.empty((len(configs), self.obstacles))
+        work = clear, np.empty((len(self.pattern.pegs), 3)), np.empty((4, max(4, self.obstacles)))
+        given = configs, begins, closed, touched, names, known, self.around
+        runs = filled(RUN_LENGTH, 2 * len(ways) + 64, free_runs, *given, *work)
+        return [self.family(ways[int(run[RUN_WAY])], run, configs, begins) for run in runs]
 
-    def edge(self, ends: Array, way: Way) -> Array:
-        """The last free configuration on the straight way between two (2, 4), from one that is free to one that is not."""
-        seen, clear = np.empty((len(self.pattern.pegs), 3)), np.empty(self.obstacles)
-        last_free(ends, self.touched(way), self.around, np.empty(4), seen, clear)
-        return np.asarray(ends[0])
+    def family(self, way: Way, run: Array, configs: Array, begins: NDArray[np.int64]) -> Family:
+        """A free run of a way."""
+        begin, count = int(begins[int(run[RUN_WAY])]), int(run[RUN_COUNT])
+        first, middle, bits = (int(run[k]) for k in (RUN_FIRST, RUN_MIDDLE, RUN_TOUCHES))
+        known = dict(way.contacts)
+        told = [
+            (peg, known[peg] if peg in known else self.nearest(peg, configs[middle]))
+            for peg in range(self.obstacles)
+            if bits >> peg & 1
+        ]
+        row = np.zeros(CANDIDATE_LENGTH)
+        row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
+        row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
+        for at, (peg, piece) in enumerate(told):
+            row[PEG + at], row[PIECE + at] = peg, piece
+        if way.is_closed:
+            along = way.configs[(first - begin + np.arange(count)) % len(way.configs)]
+            return Family(row, along, count == len(way.configs), way.across)
+        ends = run[RUN_START:RUN_END], run[RUN_END:RUN_LENGTH]
+        return Family(row, np.concatenate([ends[:1], configs[first : first + count], ends[1:]]), False, way.across)
 
     def sliding(
         self, theta: float, start: Array, line: Array, low: float, high: float, s: float, contacts: list[Contact]
@@ -355,17 +365,6 @@ class Finder:
             if not any(abs(level - other.candidate[SEPARATION]) < SAME and other.holds(middle, 1.0) for other in kept):
                 kept.append(one)
         return kept
-
-
-def runs(good: NDArray[np.bool_], closed: bool) -> list[NDArray[np.int64]]:
-    """Numbers of neighbours that are all good, run by run; of what is closed the last and the first are neighbours."""
-    count = len(good)
-    if good.all():
-        return [np.arange(count)]
-    shift = int(np.argmin(good)) if closed else 0
-    order = (np.arange(count) + shift) % count
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], good[order], [False]]).astype(np.int8)))
-    return [order[first:end] for first, end in edges.reshape(-1, 2)]
 
 
 def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[float, float]]:

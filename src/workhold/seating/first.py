@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Progress
 from workhold.listing.listed import stage
 from workhold.listing.ranking import rank
-from workhold.model.notes import best_note, seated_note
+from workhold.model.notes import best_note, cut_note, seated_note
 from workhold.model.quality import SEATING_FIGURES, WARNINGS
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
@@ -46,7 +46,8 @@ class Receiver(Protocol):
     def folder(self) -> Path: ...
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other."""
+        """Take a result and its fixtures, so many, best first, in tables one after the other; fewer when somebody asks to
+        stop."""
 
 
 @frozen
@@ -131,8 +132,13 @@ def rising(progress: Progress) -> Progress:
     return told
 
 
-def seated(result: Result, work: Seats) -> Result:
-    """A result of a query without seating as that of the query with it."""
+def seated(result: Result, work: Seats, listed: int | None = None) -> Result:
+    """A result of a query without seating as that of the query with it.
+
+    Parameters
+    ----------
+    listed : how many fixtures it lists, where it does not have all of them.
+    """
     query, count = work.query, min(work.query.seating or 0, len(result))
     told = seatings_of(result.part(slice(0, count)), work)
     looked_at = np.flatnonzero([one is not None for one in told])
@@ -143,6 +149,7 @@ def seated(result: Result, work: Seats) -> Result:
     first = looked_at[kept]
     if query.has_seating_rules:
         # Why there is no fixture at all is said already.
+        notes = tuple(n for n in notes if n != cut_note(sum(result.found.values()), listed or len(result)))
         rows, notes = first, (*notes, seated_note(len(known), len(kept))) if len(result) else notes
     else:
         rows = np.concatenate([first, np.delete(np.arange(len(result)), first)])
@@ -211,7 +218,7 @@ class SeatedReceiver:
         """Take a result and its fixtures, so many, best first, in tables one after the other."""
         rest = iter(tables)
         held = list(taken(rest, self.work.query.seating or 0)) or [result.table]
-        made = seated(evolve(result, table=FixtureTable.joined(held)), self.work)
+        made = seated(evolve(result, table=FixtureTable.joined(held)), self.work, listed)
         further = () if self.work.query.has_seating_rules else rest
         count = len(made) + (0 if self.work.query.has_seating_rules else listed - sum(map(len, held)))
         self.receiver.receive(made, count, chain([made.table], further))

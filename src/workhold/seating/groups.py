@@ -7,7 +7,7 @@ one jaw are than those of the other. The pegs that are left only say whether a p
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from math import inf
 
@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 from workhold.kernels.seating.columns import PEG, PLACE_X, PLACE_Y, SEPARATION, THETA
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Group", "groups_of"]
+__all__ = ["Group", "groups_of", "jaw_groups"]
 
 Array = NDArray[np.float64]
 # Decimals of a mm to which pegs of one group stand alike: what differs less is rounding, and goes.
 DECIMALS = 11
+# Patterns whose groups are kept, one or two for each thread that is at work on both sides of a part.
+SIDES = 64
 # mm. Separations this much below a gap still count: which of them do is told by the pattern.
 SLACK = 1e-6
 
@@ -96,8 +98,17 @@ def rounded(x: float) -> float:
     return round(x, DECIMALS) + 0.0
 
 
-def groups_of(pattern: Pattern) -> list[Group]:
-    """The pairs of pegs of both jaws, those of a jaw that has no third, and all that are three."""
+@lru_cache(maxsize=SIDES)
+def groups_of(pattern: Pattern) -> tuple[Group, ...]:
+    """The pairs of pegs of both jaws, those of a jaw that has no third, and all that are three; kept for the other side of
+    the part."""
     right, every = pattern.right.tolist(), range(len(pattern.right))
     two = [(i, j) for i, j in combinations(every, 2) if right[i] != right[j] or right.count(right[i]) == 2]
-    return [Group.of(pattern, numbers) for numbers in (*two, *combinations(every, 3))]
+    return tuple(Group.of(pattern, numbers) for numbers in (*two, *combinations(every, 3)))
+
+
+@lru_cache(maxsize=SIDES)
+def jaw_groups(pattern: Pattern) -> dict[int, Group]:
+    """The pegs that move, and those that do not, by whether they do; kept as those of ``groups_of``."""
+    sides = dict.fromkeys(pattern.right.tolist())
+    return {side: Group.of(pattern, np.flatnonzero(pattern.right == side).tolist()) for side in sides}

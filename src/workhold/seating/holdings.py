@@ -44,7 +44,7 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
 from workhold.seating.filled import filled
-from workhold.seating.groups import Group
+from workhold.seating.groups import Group, jaw_groups
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -149,8 +149,7 @@ class Holdings:
         parts: list[tuple[NDArray[Any], ...]] = []
         jaws: dict[int, tuple[JawHoldings, int, float]] = {}
         before = curves_before = 0
-        for side in dict.fromkeys(pattern.right.tolist()):
-            group = Group.of(pattern, np.flatnonzero(pattern.right == side).tolist())
+        for side, group in jaw_groups(pattern).items():
             known, names = JawHoldings.known(locus, group), np.array([*group.numbers, -1.0])
             rows, slid = np.array(known.holdings), np.array(known.slides)
             for column in (FIRST_PEG, SECOND_PEG):

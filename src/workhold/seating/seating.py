@@ -260,8 +260,9 @@ class Reading:
 
     def contacts(self, row: list[float]) -> tuple[Contact, ...]:
         """What touches in a candidate."""
-        every = self.every_contact
-        return tuple(every[int(row[PEG + k])][int(row[PIECE + k])] for k in range(int(row[CONTACTS])))
+        every, count = self.every_contact, int(row[CONTACTS])
+        touching = zip(row[PEG : PEG + count], row[PIECE : PIECE + count], strict=True)
+        return tuple([every[int(peg)][int(piece)] for peg, piece in touching])
 
     def kind(self, kind: str, contacts: tuple[Contact, ...]) -> str:
         """What a seat is called, four contacts of which are a fixture's or what they touch."""
@@ -284,6 +285,8 @@ class Reading:
         levels = rows[:, SEPARATION].tolist()
         depths = [None if join is None else join.separation - level for join, level in zip(joins, levels, strict=False)]
         depths += [0.0] * len(slack) + [None] * len(unknown)
+        kept = [k for k, (kind, depth) in enumerate(zip(kinds, depths, strict=True)) if is_listed(kind, depth)]
+        rows, kinds, depths = rows[kept], [kinds[k] for k in kept], [depths[k] for k in kept]
         configs, own, sign = rows[:, CONFIG] + self.shift, self.own, self.pattern.door.sign
         apart = distances(configs, own, self.solver.outline.arm), np.abs(configs[:, 3] - own[3])
         is_own = (apart[0] < AGREES) & (apart[1] < AGREES) & (not mirrored)
@@ -303,8 +306,9 @@ class Reading:
             contacts = self.contacts(row)
             forces = tuple(row[FORCE : FORCE + len(contacts)]) if kind in KINDS.values() else ()
             kind, itself = self.kind(kind, contacts), itself and kind != "unsettled"
-            out.append(Seat(kind, pose, separation, difference, mirrored, same, contacts, forces, depth, itself))
-        return [seat for seat in out if seat.kind in ALWAYS or deep(seat)]
+            if is_listed(kind, depth):
+                out.append(Seat(kind, pose, separation, difference, mirrored, same, contacts, forces, depth, itself))
+        return out
 
     def seats(self) -> tuple[Seat, ...]:
         """All seats, by their separations."""
@@ -379,9 +383,9 @@ def unsettled_words(count: int) -> tuple[str, ...]:
     return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
 
 
-def deep(seat: Seat) -> bool:
-    """Whether a part does not get out of a seat with next to nothing."""
-    return seat.depth is None or seat.depth >= SHALLOW
+def is_listed(kind: str, depth: float | None) -> bool:
+    """Whether a seat is listed: because of its kind, or as a part does not get out of it with next to nothing."""
+    return kind in ALWAYS or depth is None or depth >= SHALLOW
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Seating]:

@@ -37,7 +37,7 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / closing.size
     wrenches = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves])
     # Loose rest may touch with more than three: some of them do.
-    for count in (2, 3):
+    for count in (3, 2):
         for chosen in combinations(range(wrenches.shape[1]), count):
             some, target = wrenches[:, chosen], np.array([0.0, 0.0, 0.0, 1.0])
             forces = np.linalg.lstsq(some, target, rcond=None)[0]

@@ -20,25 +20,23 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
-from workhold.kernels.seating.columns import MOTION, PLACE_X, PLACE_Y, SECOND, SEPARATION, THETA
+from workhold.kernels.seating.columns import SEPARATION
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.families import Family
+from workhold.seating.ways_down import BESIDE, CONFIG, both_ways_down
 
-__all__ = ["OUTSIDE", "STOP", "Join", "Tree"]
+__all__ = ["CONFIG", "OUTSIDE", "STOP", "Join", "Tree"]
 
 Array = NDArray[np.float64]
 Seen = tuple[Array, int, bool, list[int], int, list[int]]
 OUTSIDE, STOP = -1, -2
-# mm. How far from a pass a way down begins, and how long its first steps are; how near it begins at least, and by which
-# part of its way the motion may have bent there.
-BESIDE, FIRST_STEP = 0.01, 0.005
-SHORTEST, MOST_BEND = 1e-5, 0.1
+# mm. How long the first steps of a way down off a loose set are.
+FIRST_STEP = BESIDE / 2.0
 # mm. A way down that ends this near to a seat, with a separation this near, ended in it.
 AT_SEAT, SAME_LEVEL = 0.05, 1e-3
 # mm. What ends lower than a loose set by this much fell off it.
 FALLS = 1e-6
-CONFIG = [THETA, PLACE_X, PLACE_Y, SEPARATION]
 
 
 @frozen
@@ -85,35 +83,33 @@ class Tree:
         strict = np.array([number is None for number in rested], np.bool_)
         # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing leads on.
         builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], strict)
-        slack, joins = list[Family](), list[tuple[Array, Array]]()
+        slack, rows = list[Family](), list[Array]()
         seats = np.ascontiguousarray(found.seats[strict][:, CONFIG])
         beyond = [ends_of(family, closing.size) for family in found.loose]
-        ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)[0][:, 3]
-        ended_of = np.split(ended, np.cumsum([len(starts) for starts in beyond]))
-        for family, starts, ends in zip(found.loose, beyond, ended_of[:-1], strict=True):
-            falling = ends < family.separation - FALLS
+        ended, how_ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)
+        at, starts, ends, how = 0, list[Array](), list[Array](), list[NDArray[np.int8]]()
+        for family, begun in zip(found.loose, beyond, strict=True):
+            end, way = ended[at : at + len(begun)], how_ended[at : at + len(begun)]
+            at, falling = at + len(begun), end[:, 3] < family.separation - FALLS
             if not falling.any():
                 builder.loose.append(family)
                 continue
             # A part on two pegs that slides off is no rest at all; on three or more it lies there a while.
             if family.across is None and family.candidate[4] >= 3.0:
                 slack.append(family)
-            builder.falling.append((family, starts[int(np.argmax(falling))]))
+            first = int(np.argmax(falling))
+            builder.falling.append((family, begun[first], end[first], int(way[first])))
             if falling.sum() == 2:
-                joins.append((family.candidate, starts))
-        steps, lengths = steps_off(found.passes, closing.size)
-        beside = np.concatenate([np.full(len(joins), BESIDE), lengths])
-        configs = found.passes[:, CONFIG]
-        joins += zip(found.passes, np.stack([configs + steps, configs - steps], axis=1), strict=True)
-        starts = np.array([start for _, start in joins]).reshape(-1, 4)
-        ends, how = np.zeros((2 * len(joins), 4)), np.zeros(2 * len(joins), np.int8)
-        for length in set(beside.tolist()):
-            chosen = np.repeat(beside == length, 2)
-            ends[chosen], how[chosen] = closing.run(starts[chosen], length / 2.0, seats)
-        places = builder.places(starts, ends, how)
-        made = [
-            Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, (row, _) in enumerate(joins)
-        ]
+                rows.append(family.candidate)
+                starts.append(begun)
+                ends.append(end)
+                how.append(way)
+        off, down, told = both_ways_down(found, closing, seats)
+        rows += list(found.passes)
+        places = builder.places(
+            np.concatenate([*starts, off]), np.concatenate([*ends, down]), np.concatenate([*how, told])
+        )
+        made = [Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, row in enumerate(rows)]
         doubtful = np.array(builder.doubtful).reshape(-1, 4)
         beside_loose = lying_on(builder.loose, found.seats[~strict][:, CONFIG], closing.size)
         shared = {
@@ -177,20 +173,6 @@ def separations(families: Iterable[Family]) -> Array:
     return np.array([family.separation for family in families], dtype=np.float64)
 
 
-def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
-    """Steps (N, 4) along the free motions of passes (N, 24) at which ways down begin, and their lengths (N,) in mm: shorter
-    where the motion bends so much that they would lie elsewhere."""
-    motions, seconds = rows[:, MOTION : MOTION + 3], np.abs(rows[:, SECOND])
-    speeds = np.abs(motions[:, 0]) * size + np.hypot(motions[:, 1], motions[:, 2])
-    bent = 2.0 * MOST_BEND * speeds * speeds
-    lengths = np.where(
-        seconds * BESIDE > bent, np.maximum(bent / np.maximum(seconds, 1e-300), SHORTEST), np.full(len(rows), BESIDE)
-    )
-    steps = np.zeros((len(rows), 4))
-    steps[:, :3] = (lengths / speeds)[:, None] * motions
-    return steps, lengths
-
-
 def ends_of(family: Family, size: float) -> Array:
     """Configurations (2, 4) just beyond the ends of a loose set, or to both sides of its middle; none of a whole turn."""
     if family.across is not None:
@@ -217,7 +199,7 @@ class Builder:
     ----------
     closing : the jaws.
     seats, loose, doubtful : as of :class:`Tree`, the last as far as they are known.
-    falling : loose sets off which a way leads down, and a configuration on it.
+    falling : loose sets off which a way leads down, with a configuration on it, what it ends in, and how.
     strict : (N,) which seats lie on no loose set.
     fallen : places of what ways off the falling sets end in, as far as they were asked for.
     """
@@ -225,23 +207,33 @@ class Builder:
     closing: Closing
     seats: Array
     loose: list[Family]
-    falling: list[tuple[Family, Array]]
+    falling: list[tuple[Family, Array, Array, int]]
     doubtful: list[Array]
     strict: NDArray[np.bool_]
     fallen: dict[int, int] = field(factory=dict)
 
     def places(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[int]:
         """The places of the ends (N, 4) of ways down that began at some configurations (N, 4)."""
-        return [self.place(*one) for one in self.seen(starts, configs, how)]
+        stopped, near = how == AT_THE_STOP, self.near_seats(configs)
+        # What most are: at the stop, or in a seat that is level with nothing from which a way may lead on.
+        on_a_way = (np.abs(self.fall_levels - configs[:, 3:]) < SAME_LEVEL).any(axis=1)
+        out = np.where(stopped, np.where(self.leave(starts, configs, stopped), OUTSIDE, STOP), near)
+        left = np.flatnonzero(~stopped & ((how != AT_REST) | (near < 0) | on_a_way))
+        out[left] = [self.place(*one) for one in self.seen(starts[left], configs[left], how[left])]
+        return [int(place) for place in out.tolist()]
+
+    def leave(self, starts: Array, configs: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether a part can be taken away where ways ended that were stopped (N,), or where they began: what can be taken
+        away at first can be, wherever closing the jaws leads."""
+        away = np.zeros(len(stopped), np.bool_)
+        away[stopped] = self.closing.escape(configs[stopped])
+        left = stopped & ~away
+        away[left] = self.closing.escape(starts[left])
+        return away
 
     def seen(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[Seen]:
         """What is asked of the ends of ways down, all at once; see ``place``."""
-        stopped = how == AT_THE_STOP
-        away = np.zeros(len(how), np.bool_)
-        away[stopped] = self.closing.escape(configs[stopped])
-        # What can be taken away at first can be, wherever closing the jaws leads.
-        left = stopped & ~away
-        away[left] = self.closing.escape(starts[left])
+        away = self.leave(starts, configs, how == AT_THE_STOP)
         falls, loose = (
             numbers_of(np.abs(levels - configs[:, 3:]) < SAME_LEVEL) for levels in (self.fall_levels, self.loose_levels)
         )
@@ -251,7 +243,7 @@ class Builder:
     @cached_property
     def fall_levels(self) -> Array:
         """The separations of the falling sets, in mm."""
-        return separations(family for family, _ in self.falling)
+        return separations(family for family, *_ in self.falling)
 
     @cached_property
     def loose_levels(self) -> Array:
@@ -260,21 +252,24 @@ class Builder:
 
     def near_seats(self, configs: Array) -> NDArray[np.int64]:
         """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
-        if not self.strict.any():
-            return np.full(len(configs), -1)
-        strict = np.flatnonzero(self.strict)
-        seats = self.seats[strict][:, CONFIG]
-        away = distances(configs[:, None], seats, self.closing.size)
-        nearest = np.argmin(away, axis=1)
-        is_in = away[np.arange(len(configs)), nearest] < AT_SEAT
-        is_in &= np.abs(seats[nearest, 3] - configs[:, 3]) < SAME_LEVEL
-        return np.where(is_in, strict[nearest], -1)
+        numbers = np.flatnonzero(self.strict)
+        numbers = numbers[np.argsort(self.seats[numbers, SEPARATION], kind="stable")]
+        seats, out = self.seats[numbers][:, CONFIG], np.full(len(configs), -1)
+        first, end = (np.searchsorted(seats[:, 3], configs[:, 3] + by) for by in (-SAME_LEVEL, SAME_LEVEL))
+        nearest = np.full(len(configs), AT_SEAT)
+        for k in range(int((end - first).max(initial=0))):
+            some = np.flatnonzero(first + k < end)
+            at = first[some] + k
+            away = distances(configs[some], seats[at], self.closing.size)
+            is_nearer = away < nearest[some]
+            nearest[some[is_nearer]], out[some[is_nearer]] = away[is_nearer], numbers[at[is_nearer]]
+        return out
 
     @cached_property
     def below(self) -> list[Seen]:
         """What ways off the falling sets end in."""
-        starts = np.array([beyond for _, beyond in self.falling])
-        return self.seen(starts, *self.closing.run(starts, FIRST_STEP))
+        starts, ends = (np.array([falling[k] for falling in self.falling]) for k in (1, 2))
+        return self.seen(starts, ends, np.array([how for *_, how in self.falling], np.int8))
 
     def place(self, config: Array, how: int, is_away: bool, falls: list[int], near: int, loose: list[int]) -> int:
         """The place of the end of a way down; one that is not known is added to what is not settled.
@@ -289,7 +284,7 @@ class Builder:
             return OUTSIDE if is_away else STOP
         size = self.closing.size
         for k in falls:
-            family, _ = self.falling[k]
+            family = self.falling[k][0]
             # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
             if how == AT_REST and config[3] >= family.separation - FALLS and family.holds(config, size):
                 end = self.below[k]

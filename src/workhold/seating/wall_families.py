@@ -49,7 +49,7 @@ def sliding_on_wall(finder: Finder, fence: Fence) -> list[Family]:
             configs = np.stack(
                 [theta * every, known * every, np.linspace(low, high, SLIDE_STEPS), separation * every], axis=1
             )
-            for family in finder.cut(Way(configs, [(TIP, number)], False, None)):
+            for family in finder.cut([Way(configs, [(TIP, number)], False, None)]):
                 with_both_ends(family.candidate, fence, side)
                 out.append(family)
     return out

@@ -26,6 +26,7 @@ from workhold.model.force_ratio import working_forces
 from workhold.model.toolkit import Toolkit
 from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece
+from workhold.rowwise import largest
 from workhold.statics.wrenches import wrenches
 
 __all__ = ["ContactMatrices", "Touched"]
@@ -114,9 +115,11 @@ class Touched:
         walls = [Line((a, b), (x, y)) for (a, b), (x, y) in flush.ends.tolist()]
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
         rows = np.zeros((len(features) + len(walls) + 1, FEATURE_LENGTH))
-        rows[:-1, :SEGMENT_LENGTH] = np.concatenate([feature_rows(features), segment_rows(walls)])
-        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint.
-        rows[: len(features), SEGMENT_LENGTH:] = np.concatenate([end_slacks(list(locus)) for locus in loci])
+        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint. Many touch the same.
+        different = {id(locus): list(locus) for locus in loci}
+        known = {key: np.hstack([feature_rows(locus), end_slacks(locus)]) for key, locus in different.items()}
+        rows[: len(features)] = np.concatenate([known[id(locus)] for locus in loci])
+        rows[len(features) : -1, :SEGMENT_LENGTH] = segment_rows(walls)
         rows[:, [X, Y]] -= center
         faces = [number * segments + feature.face for number, locus in enumerate(loci) for feature in locus]
         radius = max(carrier.peg_radius for carrier in carriers)
@@ -154,9 +157,9 @@ class Touched:
         on_wall = on == self.wall
         edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
         touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
-        moves = self.moving[on]
+        moves = self.moving.take(on)
         # Each fixture has an axis of its own where a toolkit has several carriers that move.
-        mover = (on * (moves > 0.0)).max(axis=1, initial=0)
+        mover = largest(on * (moves > 0.0))
         # A kernel is compiled anew for arrays that are read-only or laid out otherwise.
         contact_matrices_of(
             np.require(pegs, np.float64, ["C", "W"]),

@@ -32,6 +32,7 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.wall import ON_WALL
 from workhold.model.workpiece import Workpiece
+from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.jaw import jaw_forces_needed
 from workhold.statics.judging import Judging
@@ -112,7 +113,7 @@ def quality_of(
         if toolkit.needs_pairs:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
         filled[:, TILT] = tilts(block.theta, direction)
-        filled[:, SMALLEST_FACE] = touched_sizes(block, toolkit, workpiece, sizes).min(axis=1, initial=np.inf)
+        filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
         filled[:, PENALTY] = judging.penalty(filled)
 
@@ -149,7 +150,7 @@ def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) ->
 
 def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
     """Sizes (N, 4) in mm of what is touched, from those (S,) of the faces; on a wall how long the part lies on it."""
-    out = sizes[block.face]
+    out = sizes.take(block.face)
     if toolkit.wall is not None:
         flush = workpiece.flush
         out[:, ON_WALL] = flush.length[flush.number(block.theta)][:, None]

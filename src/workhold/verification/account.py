@@ -29,6 +29,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.notes import (
     best_note,
+    cut_note,
     fitted_note,
     kept_note,
     no_fixture_notes,
@@ -82,7 +83,7 @@ def count_faults(listing: Listing) -> Iterator[str]:
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
         yield f"the best {best} are asked for, but {listed} are listed"
-    said = kept_note(found, listed) in listing.notes or listing.query.has_seating_rules
+    said = {kept_note(found, listed), cut_note(found, listed)} & set(listing.notes) or listing.query.has_seating_rules
     if found > listed != best and not said:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
@@ -200,6 +201,8 @@ def may_be_said(note: str, listing: Listing) -> bool:
         return True
     if note == kept_note(found, listed):
         return found > listed
+    if note == cut_note(found, listed):
+        return found > listed and not listing.complete
     return not listing.complete and note in stopped_notes(note)
 
 

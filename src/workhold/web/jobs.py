@@ -19,7 +19,7 @@ from attrs import define, evolve, field
 from workhold.errors import InputError
 from workhold.listing.alike import Entries
 from workhold.model.explanation import Explanation
-from workhold.model.notes import kept_note, stopped_note
+from workhold.model.notes import cut_note, kept_note, stopped_note
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.web.answers import arrangements_answer, proof_answer
@@ -241,7 +241,8 @@ class Jobs:
         """Keep the outcome of a search."""
         result, notes = found.result, list(found.result.notes)
         if found.left_out:
-            notes.insert(0, kept_note(len(result) + found.left_out, len(result)))
+            every, put_in_order = sum(result.found.values()), len(result) + found.left_out
+            notes = [kept_note(every, len(result)), *(n for n in notes if n != cut_note(every, put_in_order))]
         if not result.complete and job.task is not None and not job.task.stop.is_set():
             notes.insert(0, stopped_note(self.limits.seconds))
         job.result = evolve(result, query=job.queries[0][1], notes=tuple(notes))

@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -15,7 +14,7 @@ import workhold
 from workhold.kernels.base import compiling, sources
 
 # What compiling takes of the kernels' base.
-BASE = ("__init__", "built", "compiling", "feature", "shallow", "sources", "storing")
+BASE = ("__init__", "built", "compiling", "feature", "lean", "shallow", "sources", "storing")
 PROGRAM = """
 import numpy as np
 from workhold.kernels.base.distance import outline_distance
@@ -150,9 +149,3 @@ def test_the_cache_is_named_by_the_environment(monkeypatch, tmp_path):
     assert compiling.user_cache() == tmp_path / "workhold"
     monkeypatch.delenv("XDG_CACHE_HOME")
     assert compiling.user_cache() == Path("~/.cache/workhold").expanduser()
-
-
-def test_the_kernel_by_which_a_first_run_is_told_exists():
-    """A first run is told by the stored code of one kernel: one of that name is there, and its code is stored."""
-    module, name = compiling.LONGEST_KERNEL
-    assert hasattr(import_module(f"workhold.kernels.crossing.{module}"), name)

@@ -27,6 +27,7 @@ MAKERS = {
     "pairs_of",
     "interval_newton",
     "jacobians",
+    "kept_edges",
     "outline_distances",
     "sliding_pairs_between",
     "sliding_three_and_one",
@@ -59,7 +60,8 @@ def counting_functions(kernel: Any) -> dict[str, int]:
         pass
     (signature,) = kernel.signatures
     # What is stored cannot be looked at.
-    anew = type(kernel)(kernel.py_func, targetoptions=kernel.targetoptions)
+    compiler = kernel._compiler.pipeline_class
+    anew = type(kernel)(kernel.py_func, targetoptions=kernel.targetoptions, pipeline_class=compiler)
     anew.compile(signature)
     functions = anew.inspect_llvm(signature).split("\ndefine ")[1:]
     assert functions

@@ -43,7 +43,6 @@ from workhold.kernels.crossing.three_and_one import (
     write_triple,
 )
 from workhold.kernels.crossing.two_and_two import (
-    HAIR,
     ROLE_LENGTH,
     ROLE_X,
     flat_slope,
@@ -54,11 +53,13 @@ from workhold.kernels.crossing.two_and_two import (
 )
 from workhold.kernels.crossing.work_space import TRIPLE_ROWS
 from workhold.kernels.curves.columns import CENTER, HEAD, TAIL
+from workhold.kernels.curves.edges import HAIR, kept_edges
 from workhold.kernels.curves.piece_columns import (
     CURVE,
     HIGH,
     LEFTWARD_LOW,
     LOW,
+    PIECE_LENGTH,
     RIGHTWARD_LOW,
     STEADY,
     VALUE_LEAST,
@@ -89,7 +90,10 @@ def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np
     table = search.table
     members = np.arange(len(table))
     pitch = search.frame.lattice.pitch_x
-    return cell_pieces(low, high, members, search.loose, table.curves, pitch, 0.0, mode)
+    kept = kept_edges(len(members))
+    room = np.empty((1, PIECE_LENGTH))
+    pieces, count = cell_pieces(low, high, members, search.loose, table.curves, pitch, 0.0, mode, kept, np.inf, room)
+    return pieces[:count]
 
 
 @numba.njit

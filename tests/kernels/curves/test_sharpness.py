@@ -20,6 +20,7 @@ from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
 from workhold.kernels.curves import force_directions, pieces
 from workhold.kernels.curves.columns import BACKWARD_ERROR, KAPPA, SHIFT
+from workhold.kernels.curves.edges import write_edge
 from workhold.kernels.curves.piece_columns import (
     EDGE_LENGTH,
     EDGE_VALUE,
@@ -48,7 +49,7 @@ def edges_of(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple
     """Both edges of a piece, and its row with the values there."""
     edges, row = np.zeros((2, EDGE_LENGTH)), np.zeros(PIECE_LENGTH)
     for edge, psi in zip(edges, (low, high), strict=True):
-        pieces.write_edge(edge, a, b, curve, psi, HEIGHT)
+        write_edge(edge, a, b, curve, psi, cos(psi), sin(psi), HEIGHT)
     row[[VALUE_LOW, VALUE_HIGH]] = edges[:, EDGE_VALUE]
     row[[VALUE_ERROR_LOW, VALUE_ERROR_HIGH]] = edges[:, EDGE_VALUE_ERROR]
     return edges[0], edges[1], row

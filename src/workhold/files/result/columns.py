@@ -49,7 +49,7 @@ class ColumnsReceiver:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Write a result and its fixtures, so many.
+        """Write a result and its fixtures, so many unless somebody asks to stop.
 
         Raises
         ------
@@ -63,6 +63,8 @@ class ColumnsReceiver:
                 counts.update(result.toolkit.arrangements_counted(table.arrangement))
                 for start in range(0, len(table), BLOCK):
                     archive.add(as_written(table.take(slice(start, start + BLOCK))))
+            if archive.done < listed:
+                result = result.cut_short(archive.done)
             text = head(result) | {"counts": {name: counts[name] for name in result.toolkit.types}}
             if result.query.seating is not None:
                 text["seatings"] = [told.as_fields() for told in result.seating]

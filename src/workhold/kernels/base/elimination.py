@@ -32,13 +32,27 @@ def eliminate(matrix: Array, inverse: Array) -> float:
         determinant *= abs(pivot)
         if not determinant > 0.0:
             return determinant
+        # Told by name, the pivot's row is not read again for each row that it is taken from.
+        a, b, c, d = matrix[best, 0] / pivot, matrix[best, 1] / pivot, matrix[best, 2] / pivot, matrix[best, 3] / pivot
+        e, f, g, h = (
+            inverse[best, 0] / pivot,
+            inverse[best, 1] / pivot,
+            inverse[best, 2] / pivot,
+            inverse[best, 3] / pivot,
+        )
         for j in range(4):
-            one, other = matrix[best, j] / pivot, inverse[best, j] / pivot
             matrix[best, j], inverse[best, j] = matrix[k, j], inverse[k, j]
-            matrix[k, j], inverse[k, j] = one, other
+        matrix[k, 0], matrix[k, 1], matrix[k, 2], matrix[k, 3] = a, b, c, d
+        inverse[k, 0], inverse[k, 1], inverse[k, 2], inverse[k, 3] = e, f, g, h
         for i in range(4):
-            factor = matrix[i, k] if i != k else 0.0
-            for j in range(4):
-                matrix[i, j] -= factor * matrix[k, j]
-                inverse[i, j] -= factor * inverse[k, j]
+            if i != k:
+                factor = matrix[i, k]
+                matrix[i, 0] -= factor * a
+                matrix[i, 1] -= factor * b
+                matrix[i, 2] -= factor * c
+                matrix[i, 3] -= factor * d
+                inverse[i, 0] -= factor * e
+                inverse[i, 1] -= factor * f
+                inverse[i, 2] -= factor * g
+                inverse[i, 3] -= factor * h
     return determinant

@@ -36,7 +36,6 @@ from workhold.kernels.crossing.two_and_two import (
     CANDIDATES,
     CONTACTS,
     CROSSED,
-    HAIR,
     PAIRS,
     STOPPED,
     is_among,
@@ -44,7 +43,17 @@ from workhold.kernels.crossing.two_and_two import (
 )
 from workhold.kernels.crossing.work_space import WorkSpace, work_space
 from workhold.kernels.curves.columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
-from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW, STEADY, VALUE_LEAST, VALUE_MOST, X_STANDING
+from workhold.kernels.curves.edges import HAIR, kept_edges
+from workhold.kernels.curves.piece_columns import (
+    CURVE,
+    HIGH,
+    LOW,
+    PIECE_LENGTH,
+    STEADY,
+    VALUE_LEAST,
+    VALUE_MOST,
+    X_STANDING,
+)
 from workhold.kernels.curves.pieces import cell_pieces
 
 Array = NDArray[np.float64]
@@ -372,11 +381,12 @@ def add_limb_pairs(
             if other[LIMB_TAIL] != limb[LIMB_TAIL]:
                 break
             stats[PAIRS] += 1
-            if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
-                continue
+            # Most pairs differ by this.
             if not circle and (
                 limb[LIMB_VALUE_LEAST] > other[LIMB_VALUE_MOST] or other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]
             ):
+                continue
+            if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
                 continue
             second = pieces[int(other[LIMB_PIECE])]
             two = int(second[CURVE])
@@ -430,15 +440,20 @@ def three_and_one_cells(
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    space = work_space()
+    space, kept, room = work_space(), kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
     loose, integers = features.loose, curves.integers
     for cell in range(edges.shape[0] - 1):
         if stats[STOPPED] != 0:
             break
-        pieces = cell_pieces(edges[cell], edges[cell + 1], members, loose, curves, lattice.pitch_x, 0.0, POSITION)
-        farthest = farthest_right(features, edges[cell], edges[cell + 1]) - limits.gap + GAP_SLACK + HAIR
+        farthest = np.inf
+        if not counting:
+            farthest = farthest_right(features, edges[cell], edges[cell + 1]) - limits.gap + GAP_SLACK + HAIR
+        room, number = cell_pieces(
+            edges[cell], edges[cell + 1], members, loose, curves, lattice.pitch_x, 0.0, POSITION, kept, farthest, room
+        )
+        pieces = room[:number]
         limbs = np.empty((pieces.shape[0], LIMB_LENGTH))
-        limb_count = write_limbs(pieces, integers, features.standing, np.inf if counting else farthest, limbs)
+        limb_count = write_limbs(pieces, integers, features.standing, farthest, limbs)
         limbs, space.at[0] = limbs[:limb_count], 0
         while True:
             count = add_limb_pairs(out, count, limbs, pieces, features, curves, lattice, limits, counting, space, stats)

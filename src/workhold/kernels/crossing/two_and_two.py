@@ -26,6 +26,7 @@ from workhold.kernels.contact.rules import is_fixture, is_listed
 from workhold.kernels.crossing.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 from workhold.kernels.crossing.work_space import WorkSpace, work_space
 from workhold.kernels.curves.columns import CENTER, COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
+from workhold.kernels.curves.edges import HAIR, kept_edges
 from workhold.kernels.curves.piece_columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
@@ -33,6 +34,7 @@ from workhold.kernels.curves.piece_columns import (
     HIGH,
     LEFTWARD_LOW,
     LOW,
+    PIECE_LENGTH,
     RIGHTWARD_LOW,
     STEADY,
     VALUE_LEAST,
@@ -50,8 +52,6 @@ PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
 # Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
 STOPPED = 4
 STATISTICS = 5
-# Rounding of places along x in mm, generously counted.
-HAIR = 1e-6
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST, ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(8)
 ROLE_LENGTH = 8
@@ -302,7 +302,7 @@ def two_and_two_cells(
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    space = work_space()
+    space, kept, room = work_space(), kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
     loose, integers = features.loose, curves.integers
     # Where closing clamps, standing pegs push to the right; where opening does, to the left.
     standing_force, moving_force = RIGHTWARD_LOW, LEFTWARD_LOW
@@ -311,9 +311,20 @@ def two_and_two_cells(
     for cell in range(edges.shape[0] - 1):
         if stats[STOPPED] != 0:
             break
-        pieces = cell_pieces(
-            edges[cell], edges[cell + 1], members, loose, curves, lattice.pitch_x, limits.least_margin, HEIGHT
+        room, number = cell_pieces(
+            edges[cell],
+            edges[cell + 1],
+            members,
+            loose,
+            curves,
+            lattice.pitch_x,
+            limits.least_margin,
+            HEIGHT,
+            kept,
+            np.inf,
+            room,
         )
+        pieces = room[:number]
         roles, counts = np.empty((2, pieces.shape[0], ROLE_LENGTH)), np.empty(2, np.int64)
         for side in range(2):
             touched = features.standing if side == 0 else features.moving

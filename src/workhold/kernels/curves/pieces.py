@@ -21,18 +21,18 @@ Directions of forces are told in ``force_directions``, and columns in ``piece_co
 
 from __future__ import annotations
 
-from math import cos, floor, hypot, inf, isfinite, pi, sin, sqrt
+from math import cos, floor, hypot, inf, isfinite, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner, inner_making_arrays
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SIGN
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
 from workhold.kernels.base.growing import grown
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.shallow import local_size
 from workhold.kernels.chord.discs import tail_disc, value_disc
-from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value, valued
+from workhold.kernels.chord.evaluation import HEIGHT, POSITION, curve_value
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
@@ -63,6 +63,7 @@ from workhold.kernels.curves.columns import (
     TO,
     Curves,
 )
+from workhold.kernels.curves.edges import is_farther, write_edge
 from workhold.kernels.curves.force_directions import HAIR, write_all_force_directions, write_force_directions
 from workhold.kernels.curves.piece_columns import (
     ACROSS_LEAST,
@@ -83,7 +84,6 @@ from workhold.kernels.curves.piece_columns import (
     HEAD_NORMAL_Y,
     HIGH,
     LOW,
-    PIECE_LENGTH,
     SECOND_DERIVATIVE_HIGH,
     SECOND_DERIVATIVE_LOW,
     SLOPE_ERROR_HIGH,
@@ -116,29 +116,6 @@ MOST_TURN = 1.0
 def unwrapped(value: float, near: float) -> float:
     """An angle moved by whole turns to be nearest to another."""
     return value + TURN * floor((near - value) / TURN + 0.5)
-
-
-@inner
-def write_edge(edge: Array, a: Array, b: Array, curve: Array, psi: float, mode: float) -> None:
-    """Write what a piece needs of a chord at one of its ends to a (14,) row."""
-    cosine, sine = cos(psi), sin(psi)
-    state = chord_state(a, b, curve, psi, cosine, sine)
-    edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = valued(
-        a, b, state, cosine, sine, mode
-    )
-    edge[EDGE_X] = cosine * state[0] + sine * state[1]
-    px, py, ax, ay = state[6], state[7], state[6] - state[0], state[7] - state[1]
-    edge[EDGE_CENTER] = sqrt(px * px + py * py)
-    edge[EDGE_ARM] = sqrt(ax * ax + ay * ay) + curve[LENGTH]
-    edge[EDGE_ERROR] = state[8]
-    edge[EDGE_ACROSS] = cosine * py - sine * px
-    edge[EDGE_CENTER_ERROR] = state[9]
-    side_a = 1.0 if a[IS_ARC] == 0.0 else a[SIGN]
-    side_b = 1.0 if b[IS_ARC] == 0.0 else b[SIGN]
-    edge[TAIL_NORMAL_X] = side_a * (cosine * state[2] + sine * state[3])
-    edge[TAIL_NORMAL_Y] = side_a * (cosine * state[3] - sine * state[2])
-    edge[HEAD_NORMAL_X] = side_b * (cosine * state[4] + sine * state[5])
-    edge[HEAD_NORMAL_Y] = side_b * (cosine * state[5] - sine * state[4])
 
 
 @inner
@@ -286,9 +263,12 @@ def add_pieces(
     index: int,
     low: float,
     high: float,
+    cell_end: tuple[float, float, float],
     base: float,
     mode: float,
     edges: Array,
+    kept: Array,
+    farthest: float,
 ) -> int:
     """Append the pieces of one curve over [low, high] to ``out``, which has room for one for each stretch; their new number.
 
@@ -296,8 +276,11 @@ def add_pieces(
     ----------
     share : see ``shared_force``.
     low, high : psi in radians, inside the curve's range and inside one cell.
+    cell_end : psi where the cell ends, as most pieces in it do, its cosine and its sine.
     base : psi at the low end of the curve's range.
     edges : (2, 14) work space.
+    kept : (15,) the last edge that was written of the curve, and psi there: where a cell ends its neighbour begins.
+    farthest : pieces whose rightmost peg stands farther right than this, in mm, may be left out.
     """
     integers, stretches, curve = curves.integers, curves.stretches, curves.reals[index]
     a, b = features[integers[index, TAIL]], features[integers[index, HEAD]]
@@ -307,12 +290,17 @@ def add_pieces(
     # No tail is farther from the centre of the part than this.
     size = local_size(a) + a[HALF_EXTENT]
     at_low, at_high = edges[0], edges[1]
-    left, known = low, False
+    cell_high, end_cosine, end_sine = cell_end
+    for n in range(EDGE_LENGTH):
+        at_low[n] = kept[n]
+    # Where the edge in ``at_low`` is, where the piece begins, and where the stretch does.
+    at, left, begin = kept[EDGE_LENGTH], low, base
     for k in range(integers[index, FIRST_STRETCH], integers[index, END_STRETCH]):
         stretch = stretches[k]
         end = base + (stretch[STRETCH_HIGH] - curve[FROM])
         last = stretch[STRETCH_HIGH] >= curve[TO]
         if end <= left and not last:
+            begin = end
             continue
         right = high if last else min(end, high)
         if right <= left:
@@ -322,35 +310,49 @@ def add_pieces(
             second_derivatives = second_derivative_beside(stretch, a, curve[LENGTH], size, left, right, mode)
             if second_derivatives[0] < 0.0 < second_derivatives[1]:
                 continue
-        if not known:
-            write_edge(at_low, a, b, curve, left, mode)
-        write_edge(at_high, a, b, curve, right, mode)
-        row = out[count]
-        count += 1
-        row[LOW], row[HIGH], row[CURVE] = left, right, index
-        row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
-        row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
-        row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
-        row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR], at_high[EDGE_SLOPE_ERROR]
         tangent_low = curve[TANGENT_FROM] if left <= base else 0.0
         tangent_high = curve[TANGENT_TO] if right >= base + span else 0.0
         steady = stretch[SPEED] < inf and tangent_low == 0.0 and tangent_high == 0.0
-        steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
-        if circles and steady:
-            unwind(row, a, b, curve)
-        if steady:
-            write_steady(row, a, curve, at_low, at_high, stretch, right - left, share, mode)
-        else:
-            write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
-            if circles:
+        skipped = False
+        if steady and farthest < inf:
+            least = farthest - max(step, 0.0)
+            skipped = begin <= at and is_farther(at_low, at, right, stretch[SPEED], least)
+            if not skipped and at != left:
+                write_edge(at_low, a, b, curve, left, cos(left), sin(left), mode)
+                at = left
+                skipped = is_farther(at_low, at, right, stretch[SPEED], least)
+        if not skipped:
+            if at != left:
+                write_edge(at_low, a, b, curve, left, cos(left), sin(left), mode)
+            cosine, sine = (end_cosine, end_sine) if right == cell_high else (cos(right), sin(right))
+            write_edge(at_high, a, b, curve, right, cosine, sine, mode)
+            row = out[count]
+            count += 1
+            row[LOW], row[HIGH], row[CURVE] = left, right, index
+            row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
+            row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
+            row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
+            row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR], at_high[EDGE_SLOPE_ERROR]
+            steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
+            if circles and steady:
                 unwind(row, a, b, curve)
-        row[X_STANDING] += max(step, 0.0)
-        row[X_MOVING] += min(step, 0.0)
-        for n in range(EDGE_LENGTH):
-            at_low[n] = at_high[n]
-        left, known = right, True
+            if steady:
+                write_steady(row, a, curve, at_low, at_high, stretch, right - left, share, mode)
+            else:
+                write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
+                if circles:
+                    unwind(row, a, b, curve)
+            row[X_STANDING] += max(step, 0.0)
+            row[X_MOVING] += min(step, 0.0)
+            for n in range(EDGE_LENGTH):
+                at_low[n] = at_high[n]
+            at = right
+        left = right
         if right >= high:
             break
+    for n in range(EDGE_LENGTH):
+        kept[n] = at_low[n]
+    kept[EDGE_LENGTH] = at
     return count
 
 
@@ -379,6 +381,8 @@ def add_members(
     share: float,
     mode: float,
     edges: Array,
+    kept: Array,
+    farthest: float,
 ) -> tuple[int, int]:
     """Append the pieces of curves, from the ``first`` of the members on, as long as ``out`` has room for all of a curve.
 
@@ -387,6 +391,7 @@ def add_members(
     (which of the members comes next, number of pieces)
     """
     integers, reals = curves.integers, curves.reals
+    cell_end = (cell_high, cos(cell_high), sin(cell_high))
     for n in range(first, members.shape[0]):
         index = members[n]
         # A curve of nearly a turn may enter the cell at both of its ends.
@@ -399,7 +404,23 @@ def add_members(
             low = start + lap * TURN
             left, right = max(low, cell_low), min(low + span, cell_high)
             if right - left > 0.0:
-                count = add_pieces(out, count, features, curves, pitch_x, share, index, left, right, low, mode, edges)
+                count = add_pieces(
+                    out,
+                    count,
+                    features,
+                    curves,
+                    pitch_x,
+                    share,
+                    index,
+                    left,
+                    right,
+                    cell_end,
+                    low,
+                    mode,
+                    edges,
+                    kept[n],
+                    farthest,
+                )
     return members.shape[0], count
 
 
@@ -413,7 +434,10 @@ def cell_pieces(
     pitch_x: float,
     least_margin: float,
     mode: float,
-) -> Array:
+    kept: Array,
+    farthest: float,
+    room: Array,
+) -> tuple[Array, int]:
     """Pieces of curves inside one cell.
 
     Parameters
@@ -425,19 +449,34 @@ def cell_pieces(
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
         m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
+    kept : of the members, see ``edges.kept_edges``.
+    farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
+    room : (R, 24) that may be written over.
 
     Returns
     -------
-    (N, 24) array, in the order of the curves
+    (that room, or more of it, which begins with the pieces in the order of the curves; their number)
     """
     share = least_margin / (1.0 - 3.0 * least_margin)
-    out = np.empty((64, PIECE_LENGTH))
     edges = np.empty((2, EDGE_LENGTH))
     done, count = 0, int(np.int64(0))
     while True:
         done, count = add_members(
-            out, count, done, members, cell_low, cell_high, features, curves, pitch_x, share, mode, edges
+            room,
+            count,
+            done,
+            members,
+            cell_low,
+            cell_high,
+            features,
+            curves,
+            pitch_x,
+            share,
+            mode,
+            edges,
+            kept,
+            farthest,
         )
         if done == members.shape[0]:
-            return out[:count]
-        out = grown(out)
+            return room, count
+        room = grown(room)

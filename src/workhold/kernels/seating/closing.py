@@ -20,6 +20,7 @@ from workhold.kernels.seating.squeezing import squeeze
 from workhold.kernels.seating.walls import add_wall
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 Four = tuple[float, float, float, float]
 
 # How a descent ended.
@@ -33,6 +34,8 @@ AROUND = 0.1
 REACH = 6.0
 # mm. What is entered by less is not; how often what is met may change on one way out.
 BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40
+# How many times as far as is looked at a way out leads at most: out of a narrow corner it is longer than what is entered.
+FAR = 8.0
 # No unit. Ways that come nearer to something by less than this share go along it.
 ALONG = 1e-10
 # Steps of linear programs that follow where squeezing found something in the way.
@@ -188,7 +191,8 @@ def shortest_out(count: int, work: WorkSpace) -> None:
 @inner
 def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> int:
     """Move a configuration out of what it enters by little, by the shortest way; how many clearances there are within a
-    reach, or -1 where that was not possible."""
+    reach, or -1 where that was not possible: where pegs are on both sides of what is too wide, the way out of what is
+    linearized leads far beyond what was looked at."""
     near, step = work.near, work.step
     count, deepest = 0, 0.0
     for attempt in range(7):
@@ -199,6 +203,8 @@ def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace)
         if deepest > -1e-10 or attempt == 6:
             break
         shortest_out(count, work)
+        if step[0] * step[0] + step[1] * step[1] + step[2] * step[2] + step[3] * step[3] > (FAR * reach) ** 2:
+            return -1
         config[0] += step[0] / obstacles.size
         for j in range(1, 4):
             config[j] += step[j]
@@ -317,20 +323,41 @@ def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
 
 
 @inner
-def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, seats: Array, work: WorkSpace) -> int:
-    """Close the jaws from a configuration, in place; how it ended."""
-    trial, longest, wait, below = work.trial, trust, 0, seats.shape[0]
+def add_node(config: Array, trust: float, longest: float, nodes: Array, at: int) -> int:
+    """Write a configuration on a way and how long the next steps from it are, if there is room; the next number."""
+    if at < nodes.shape[0]:
+        for j in range(4):
+            nodes[at, j] = config[j]
+        nodes[at, 4], nodes[at, 5] = trust, longest
+    return at + 1
+
+
+@inner
+def close_one(
+    config: Array,
+    trust: float,
+    longest: float,
+    most: float,
+    obstacles: Obstacles,
+    seats: Array,
+    work: WorkSpace,
+    nodes: Array,
+    at: int,
+) -> tuple[int, int]:
+    """Close the jaws from a configuration, in place; how it ended, and the number after that of the last node."""
+    trial, wait, below = work.trial, 0, seats.shape[0]
     count = push_out(config, obstacles, 8.0 * trust + 1e-6, work)
     if count < 0:
-        return GAVE_UP
+        return (GAVE_UP, at)
+    at = add_node(config, trust, longest, nodes, at)
     for _ in range(MOST_STEPS):
         if config[3] <= obstacles.stop + 1e-9:
             config[3] = obstacles.stop
-            return AT_THE_STOP
+            return (AT_THE_STOP, at)
         while below > 0 and seats[below - 1, 3] >= config[3] + SAME_LEVEL:
             below -= 1
         if is_in_one_of(config, seats, below, obstacles.size):
-            return AT_REST
+            return (AT_REST, at)
         if count < 0:
             count = look_around(config, obstacles, REACH * trust, work)
         length = squeeze(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
@@ -342,6 +369,7 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
         if length != 0.0:
             for j in range(4):
                 config[j] = trial[j]
+            at = add_node(config, trust, longest, nodes, at)
             count = -1
             continue
         gain = best_step(count, trust, work)
@@ -356,35 +384,44 @@ def close_one(config: Array, trust: float, most: float, obstacles: Obstacles, se
             # Where no step leads down, no shorter one does: that is only seen again, against rounding.
             trust *= 0.4 if gain >= LEAST_GAIN else 0.01
             if trust < LEAST_STEP:
-                return AT_REST
+                return (AT_REST, at)
             count = -1
             continue
         if trial[3] < config[3] - 0.7 * gain:
             trust = min(1.6 * trust, most)
         for j in range(4):
             config[j] = trial[j]
-    return GAVE_UP
+        at = add_node(config, trust, longest, nodes, at)
+    return (GAVE_UP, at)
 
 
 @compiled
 def close_jaws(
     configs: Array,
-    first: float,
+    lengths: Array,
     most: float,
     obstacles: Obstacles,
     seats: Array,
     work: WorkSpace,
     ends: NDArray[np.int8],
+    begins: IntArray,
+    nodes: Array,
 ) -> None:
     """Close the jaws from configurations (N, 4) of theta, x, y and S, in place, until nothing moves or the stop is met.
 
     Parameters
     ----------
-    first, most : how long the first steps are, and all, in mm.
+    lengths : (N, 2) how long the first steps are, in mm: of linear programs, and along both faces.
+    most : how long all of them are at most.
     seats : (M, 4) configurations at which closing ends, known beforehand, ordered by S.
     ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
+    begins : (N + 1,) where the nodes of each way begin and, last, end, written here.
+    nodes : (M, 6) configurations after each step, with the lengths of the next steps, written here as far as there is room.
     """
+    count = 0
     for peg in range(obstacles.pegs.shape[0]):
         work.known[peg, 2] = work.places[peg, 2] = -inf
     for k in range(configs.shape[0]):
-        ends[k] = close_one(configs[k], first, most, obstacles, seats, work)
+        begins[k] = count
+        ends[k], count = close_one(configs[k], lengths[k, 0], lengths[k, 1], most, obstacles, seats, work, nodes, count)
+    begins[configs.shape[0]] = count

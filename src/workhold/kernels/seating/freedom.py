@@ -16,6 +16,11 @@ from workhold.kernels.seating.walls import SUPPORTS, off_wall
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# A run of configurations of a way, in columns: number of the way, of the first configuration among those of all ways, how
+# many there are, the middle of those with the most contacts, a bit for each peg (and last a wall) that touches there, and,
+# of what is not closed, the last free configurations at both ends.
+RUN_WAY, RUN_FIRST, RUN_COUNT, RUN_MIDDLE, RUN_TOUCHES, RUN_START = range(6)
+RUN_END, RUN_LENGTH = 9, 13
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7
 # mm. By this much more than a peg moved it was clear, or in the part, where it surely still is.
@@ -71,33 +76,22 @@ def nothing_seen(seen: Array) -> None:
 
 @compiled
 def free_ones(
-    configs: Array,
-    touched: IntArray,
-    known: int,
-    around: Obstacles,
-    seen: Array,
-    clear: Array,
-    good: NDArray[np.int8],
-) -> int:
-    """Leave 1 where a part is free in configurations (N, 4), and write the clearances (N, K) there, or less where they are
-    large; how many there are.
+    configs: Array, touched: IntArray, around: Obstacles, seen: Array, clear: Array, good: NDArray[np.int8]
+) -> None:
+    """Write to ``good`` (N,) whether a part is free in configurations (N, 4), and the clearances (N, K) where it is, or less
+    where they are large.
 
     Parameters
     ----------
     touched : (K,) piece that each peg has to touch, -1 where none.
-    known : a bit for each peg that is known to leave the part free where 1 stands.
     seen : (K, 3) work space.
     """
-    count = 0
     nothing_seen(seen)
     for n in range(configs.shape[0]):
-        if good[n] != 0:
-            good[n] = 1 if write_clearances(configs[n], touched, known, around, seen, clear[n]) else 0
-            count += good[n]
-    return count
+        good[n] = 1 if write_clearances(configs[n], touched, 0, around, seen, clear[n]) else 0
 
 
-@compiled
+@inner
 def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array) -> None:
     """Move the first of two configurations (2, 4), which is free, along the straight way to the second, which is not, to the
     last free one.
@@ -122,6 +116,132 @@ def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, s
             low, way = ends[0, k], ends[1, k] - ends[0, k]
             ends[0, k] = low + last / EDGE_PARTS * way
             ends[1, k] = low + (last + 1) / EDGE_PARTS * way
+
+
+@inner
+def touching(clear: Array) -> int:
+    """How many of some clearances (K,) are none."""
+    count = 0
+    for k in range(clear.shape[0]):
+        count += abs(clear[k]) < TOUCHES
+    return count
+
+
+@inner
+def write_run(clear: Array, begin: int, end: int, first: int, count: int, out: Array) -> None:
+    """Write a run of a way from ``begin`` to ``end``: RUN_FIRST, RUN_COUNT, RUN_MIDDLE and RUN_TOUCHES."""
+    most, number = 0, 0
+    for i in range(count):
+        touches = touching(clear[begin + (first - begin + i) % (end - begin)])
+        if touches > most or number == 0:
+            most, number = touches, 0
+        number += touches == most
+    middle, seen = first, 0
+    for i in range(count):
+        at = begin + (first - begin + i) % (end - begin)
+        if touching(clear[at]) == most:
+            if seen == number // 2:
+                middle = at
+            seen += 1
+    bits = 0
+    for k in range(clear.shape[1]):
+        if abs(clear[middle, k]) < TOUCHES:
+            bits |= 1 << k
+    out[RUN_FIRST], out[RUN_COUNT], out[RUN_MIDDLE], out[RUN_TOUCHES] = first, count, middle, bits
+
+
+@inner
+def write_edge(
+    configs: Array,
+    inside: int,
+    outside: int,
+    begin: int,
+    end: int,
+    touched: IntArray,
+    around: Obstacles,
+    work: Array,
+    seen: Array,
+    clear: Array,
+    out: Array,
+) -> None:
+    """Write the last free configuration (4,) from one that is free on to the next of the same way, if there is one."""
+    for j in range(4):
+        work[0, j] = configs[inside, j]
+    if begin <= outside < end:
+        for j in range(4):
+            work[1, j] = configs[outside, j]
+        last_free(work, touched, around, work[2], seen, clear)
+    for j in range(4):
+        out[j] = work[0, j]
+
+
+@compiled
+def free_runs(
+    configs: Array,
+    begins: IntArray,
+    closed: NDArray[np.int8],
+    touched: IntArray,
+    names: IntArray,
+    known: Array,
+    around: Obstacles,
+    clear: Array,
+    seen: Array,
+    work: Array,
+    out: Array,
+) -> int:
+    """Write the runs of ways in which a part is free, and return how many there are, or -1 where they do not fit.
+
+    Parameters
+    ----------
+    configs, begins : (M, 4) of all ways, one after the other, and (W + 1,) where each begins.
+    closed : (W,) 1 for those of which the last configuration is beside the first.
+    touched : (W, P) piece that each peg has to touch, -1 where none.
+    names : (W, 4) pegs whose clearances are known, -1 of none.
+    known : (M, 4) their clearances in mm, -inf first where one of them hinders.
+    clear, seen, work : (M, K), (P, 3) and (4, 4) work space.
+    out : (N, 13) runs, see above, written here.
+    """
+    count = 0
+    for w in range(begins.shape[0] - 1):
+        begin, end, bits = begins[w], begins[w + 1], 0
+        for j in range(names.shape[1]):
+            bits |= 1 << names[w, j] if names[w, j] >= 0 else 0
+        nothing_seen(seen)
+        bad, good = -1, 0
+        for n in range(begin, end):
+            free = bits == 0 or known[n, 0] != -inf
+            if free:
+                for j in range(names.shape[1]):
+                    if names[w, j] >= 0:
+                        clear[n, names[w, j]] = known[n, j]
+                free = write_clearances(configs[n], touched[w], bits, around, seen, clear[n])
+            if not free:
+                clear[n, 0] = -inf
+                bad = n if bad < 0 else bad
+            good += free
+        start, length = begin, 0
+        # Of what is closed the last and the first are neighbours.
+        shift = bad - begin if closed[w] != 0 and bad >= 0 else 0
+        for i in range(end - begin + 1):
+            n = begin + (i + shift) % (end - begin)
+            free = i < end - begin and clear[n, 0] != -inf
+            if free:
+                start = n if length == 0 else start
+                length += 1
+            elif length > 0:
+                if count >= out.shape[0]:
+                    return -1
+                row = out[count]
+                row[RUN_WAY] = w
+                write_run(clear, begin, end, start, length, row)
+                if closed[w] == 0:
+                    last, room = start + length - 1, work[3]
+                    write_edge(
+                        configs, start, start - 1, begin, end, touched[w], around, work, seen, room, row[RUN_START:]
+                    )
+                    write_edge(configs, last, last + 1, begin, end, touched[w], around, work, seen, room, row[RUN_END:])
+                count, length = count + 1, 0
+    return count
 
 
 @compiled

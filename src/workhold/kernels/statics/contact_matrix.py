@@ -88,11 +88,12 @@ def contact_matrices_of(
             px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
             x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
             # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
-            nearest, chosen = -inf, -1
+            nearest, chosen, parameter = -inf, -1, 0.0
             for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
-                distance = distance_to_end(features[f], parameter_on(features[f], x, y))
+                s = parameter_on(features[f], x, y)
+                distance = distance_to_end(features[f], s)
                 if distance > nearest:
-                    nearest, chosen = distance, f
+                    nearest, chosen, parameter = distance, f, s
             known = known and chosen >= 0
             row = features[max(chosen, 0)]
             nx, ny = row[AXIS_Y], -row[AXIS_X]
@@ -102,7 +103,7 @@ def contact_matrices_of(
                 nx, ny = nx / size, ny / size
             points[k, i, 0], points[k, i, 1] = x, y
             normals[k, i, 0], normals[k, i, 1] = nx, ny
-            ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter_on(row, x, y))
+            ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter)
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
             matrix[i, 3] = moves[k, i] * (
                 (nx * cosine - ny * sine) * axes[k, 0] + (nx * sine + ny * cosine) * axes[k, 1]

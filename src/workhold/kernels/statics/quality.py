@@ -16,6 +16,8 @@ IntArray = NDArray[np.int64]
 
 # No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a line.
 FLAT = 1e-12
+# A bound of a movement is rounded by less than this.
+SURELY = 1.0 + 1e-12
 
 
 @inner
@@ -149,11 +151,14 @@ def location_error(
     tolerances: Array,
     corners: Array,
     arcs: Array,
+    farthest: float,
     work: Array,
 ) -> float:
     """Worst movement in mm of a point of the silhouette when pegs and faces are off by their tolerances.
 
-    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners move alike.
+    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners move alike. No
+    point moves farther than c and by more than the turn times its distance from c: most corners of the box are left out by
+    that, after the one at which all errors turn the part the same way.
 
     Parameters
     ----------
@@ -161,20 +166,38 @@ def location_error(
     faces : (P,) touched.
     length : L in mm.
     tolerances : (2,) of a peg and of a face, in mm.
-    corners, arcs : see :func:`farthest_movement`.
+    corners, arcs, farthest : see :func:`farthest_movement` and :func:`farthest_point`.
     work : (10, 3) work space.
     """
     count = generators(inverse, faces, tolerances[0], tolerances[1], work)
+    first = int(np.int64(0))
+    for m in range(count - 1):
+        if work[m, 2] * work[count - 1, 2] > 0.0:
+            first |= 1 << m
     worst = 0.0
-    for signs in range(1 << (count - 1)):
+    for number in range(1 << (count - 1)):
+        signs = number ^ first
         x, y, turn = work[count - 1, 0], work[count - 1, 1], work[count - 1, 2]
         for m in range(count - 1):
             sign = 1.0 if (signs >> m) & 1 else -1.0
             x += sign * work[m, 0]
             y += sign * work[m, 1]
             turn += sign * work[m, 2]
-        worst = max(worst, farthest_movement(x, y, turn / length, corners, arcs))
+        turn /= length
+        if not SURELY * (sqrt(x * x + y * y) + abs(turn) * farthest) <= worst:
+            worst = max(worst, farthest_movement(x, y, turn, corners, arcs))
     return worst
+
+
+@inner
+def farthest_point(corners: Array, arcs: Array) -> float:
+    """Distance in mm from c that no point of the silhouette exceeds; see :func:`farthest_movement`."""
+    most = 0.0
+    for k in range(len(corners)):
+        most = max(most, hypot(corners[k, 0], corners[k, 1]))
+    for k in range(len(arcs)):
+        most = max(most, hypot(arcs[k, 0], arcs[k, 1]) + arcs[k, 2])
+    return most
 
 
 @compiled
@@ -206,6 +229,7 @@ def figures(
         matrix has no inverse.
     work : (10, 3) work space.
     """
+    farthest = farthest_point(corners, arcs)
     for k in range(len(points)):
         inverse = inverses[k]
         # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null vector.
@@ -224,7 +248,9 @@ def figures(
             out[k, 2] = wrench_radius(points[k], normals[k], length)
         elif known:
             out[k, 2] = wrench_radius_of_five(points[k], normals[k], length)
-        out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, work) if known else np.nan
+        out[k, 3] = np.nan
+        if known:
+            out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, farthest, work)
         out[k, 4] = nearest if known else np.nan
         out[k, 5] = largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan
         out[k, 6] = edge if known else np.nan

@@ -1,0 +1,138 @@
+"""Equilibria in which a peg of each jaw touches arcs of one centre, and the normal of a third goes through it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from math import atan2, cos, hypot, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+from seating_examples import held
+from workhold import Vise, Workpiece, load
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, MOTION, PEG, PIECE, SECOND, SEPARATION
+from workhold.kernels.seating.concentric import about_one_center
+from workhold.seating.alone import in_balance
+from workhold.seating.equilibria import equilibria
+from workhold.seating.filled import filled
+from workhold.seating.holdings import Holdings
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+from workhold.seating.tree import CONFIG, Tree
+
+VISE = Vise(pitch=10, columns=2, peg_radius=3)
+# A plate with a rounded end, a round notch, a slanted side and a small hole.
+PLATE = Workpiece.from_loops(
+    "plate",
+    [
+        [[0, 0, 0], [60, 0, 1], [60, 50, 0], [40, 50, -0.6], [20, 50, 0], [5, 45, 0]],
+        [[30, 20, -1], [22, 20, -1]],
+    ],
+)
+
+
+def on_pieces(row, given, config):
+    """The pieces of a candidate's three contacts, each with where its peg is in a configuration, seen from its middle or
+    centre."""
+    theta, x, y, s = config
+    for k in range(3):
+        peg, piece = int(row[PEG + k]), given.rows[int(row[PIECE + k])]
+        qx, qy = given.pegs[peg, 0] + given.right[peg] * s - x, given.pegs[peg, 1] - y
+        yield piece, cos(theta) * qx + sin(theta) * qy - piece[X], cos(theta) * qy - sin(theta) * qx - piece[Y]
+
+
+def touching(row, given, config):
+    """How far the three pegs of a candidate are from the lines and circles of their pieces in a configuration."""
+    return np.array(
+        [
+            dx * piece[AXIS_Y] - dy * piece[AXIS_X]
+            if piece[IS_ARC] == 0.0
+            else piece[SIGN] * (hypot(dx, dy) - piece[RADIUS])
+            for piece, dx, dy in on_pieces(row, given, config)
+        ]
+    )
+
+
+def beyond_ends(row, given):
+    """How far the three pegs of a candidate are past the ends of their pieces, in mm, at most."""
+    out = []
+    for piece, dx, dy in on_pieces(row, given, row[CONFIG]):
+        along, across = dx * piece[AXIS_X] + dy * piece[AXIS_Y], dy * piece[AXIS_X] - dx * piece[AXIS_Y]
+        at, scale = (along, 1.0) if piece[IS_ARC] == 0.0 else (atan2(across, along), piece[RADIUS])
+        out.append((abs(at) - piece[HALF_EXTENT]) * scale)
+    return max(out)
+
+
+def at_angle(row, given, theta):
+    """The separation at which the three pegs touch, the part turned a little farther."""
+    found = root(lambda u: touching(row, given, (theta, *u)), row[CONFIG][1:], tol=1e-13)
+    assert np.abs(found.fun).max() < 1e-10
+    return found.x[2]
+
+
+@pytest.fixture(scope="module")
+def found():
+    """Of pegs at random heights what the kernel writes, with what it is given; two of the left jaw and two of the right."""
+    random, solver, out = np.random.default_rng(7), Solver(PLATE, VISE), []
+    for _ in range(60):
+        places = random.uniform((0.0, 0.0), (25.0, 60.0), (4, 2))
+        pegs = [("left" if k < 2 else "right", x + 100.0 * (k >= 2), y) for k, (x, y) in enumerate(places.tolist())]
+        pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
+        closing = solver.closing(pattern, False)
+        given = Holdings.of(closing.locus, pattern).given
+        rows = filled(CANDIDATE_LENGTH, 4, about_one_center, given, -1e3, 1e3)
+        out.append((closing, given, rows, in_balance(rows.copy(), given, closing.size)))
+    return out
+
+
+def test_three_pegs_touch_and_the_separation_is_stationary(found):
+    """Its second derivative is what is written, by differences of what three contacts leave free."""
+    kinds = Counter()
+    for _, given, rows, _ in found:
+        for row in rows[:: max(len(rows) // 6, 1)]:
+            assert np.abs(touching(row, given, row[CONFIG])).max() < 1e-9 and beyond_ends(row, given) < 1e-8
+            step = 2e-4
+            before, after = (at_angle(row, given, row[0] + off) for off in (-step, step))
+            second = (before + after - 2.0 * row[SEPARATION]) / step**2
+            assert abs(after - before) / (2 * step) < 1e-4 * (1.0 + abs(row[SECOND]))
+            assert second == pytest.approx(row[SECOND], rel=2e-2, abs=1e-2)
+            # The part turns about the centre, where it is.
+            center, (c, s) = given.rows[int(row[PIECE]), [X, Y]], (cos(row[0]), sin(row[0]))
+            assert row[MOTION : MOTION + 3] == pytest.approx(
+                [1.0, s * center[0] + c * center[1], s * center[1] - c * center[0]]
+            )
+            one, other = (given.rows[int(row[PIECE + k])] for k in (1, 2))
+            kinds[bool(one[IS_ARC]), bool(given.right[int(row[PEG])]), bool(row[SECOND] > 0)] += 1
+            assert hypot(*(other[[X, Y]] - center)) < 1e-9
+    # The third on lines and on arcs, of both jaws, least and greatest separations.
+    assert len(kinds) == 8, kinds
+
+
+def test_ways_down_end_nowhere_that_is_not_known(found):
+    """Where a part comes to rest so, ways down end there: in a seat, and in none that is unsettled."""
+    looked_at = 0
+    for closing, _, _, balanced in found:
+        known = equilibria(closing.locus, closing.pattern, closing.size)
+        free = balanced[(balanced[:, SECOND] > 0.0) & (balanced[:, CLEAR] > 0.0)][:, 1:4]
+        resting = [row for row in free if (np.abs(known.seats[:, 1:4] - row).max(axis=1) < 1e-6).any()]
+        if resting:
+            looked_at += 1
+            assert len(Tree.of(known, closing).doubtful) == 0
+        if looked_at == 4:
+            break
+    assert looked_at == 4
+
+
+def test_a_bracket_that_rests_on_its_rounded_end_is_seated():
+    """A peg of each jaw on the rounded end, and one of the left in a rounded inner corner: it was told as unsettled."""
+    part = load(Path(__file__).parents[2] / "examples" / "bracket.dxf")
+    pegs = [("left", 10, 0), ("left", 10, 60), ("right", 65.09828112125015, 20), ("right", 65.09828112125015, 100)]
+    fixture = held(pegs, (90.0, 62.098281121250174, 3.0), 55.09828112125016)
+    closing = Solver(part, VISE).closing(Pattern.of(fixture, VISE), True)
+    tree = Tree.of(equilibria(closing.locus, closing.pattern, closing.size), closing)
+    assert len(tree.doubtful) == 0
+    [seat] = [row for row in tree.seats if abs(row[SEPARATION] - 26.2451) < 1e-4]
+    assert np.degrees(seat[0]) % 360.0 == pytest.approx(96.1725, abs=1e-4)

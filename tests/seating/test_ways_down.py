@@ -1,0 +1,167 @@
+"""Ways down of a few pegs, followed once for many patterns, end where those of all pegs end that are followed anew."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from workhold import Fixture, Peg, Pose, Vise, Workpiece
+from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONTACTS, PEG, PIECE, SEPARATION
+from workhold.kernels.seating.pieces import clearances
+from workhold.seating import alone
+from workhold.seating.equilibria import equilibria
+from workhold.seating.pattern import Pattern
+from workhold.seating.seating import Solver
+from workhold.seating.tree import OUTSIDE, STOP, Builder
+from workhold.seating.ways_down import CONFIG, both_ways_down, free_ways, starts_off
+
+STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
+VISE = Vise(pitch=10, columns=2, peg_radius=3)
+PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))
+
+
+def pattern_of(lifted: float = 0.0, wider: float = 0.0) -> Pattern:
+    """Four pegs, the last one lifted by some mm, and the second one farther to the left by some."""
+    places = [(jaw, x - wider * (k == 1), y + lifted * (k == 3)) for k, (jaw, x, y) in enumerate(PEGS)]
+    fixture = Fixture(
+        "I", tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places), Pose(0, 0, 0), 40.0, {}
+    )
+    return Pattern.of(fixture, VISE)
+
+
+PATTERNS = [pattern_of(), pattern_of(lifted=-10.0), pattern_of(lifted=10.0, wider=10.0)]
+
+
+def followed(solver, pattern, turned_over=False):
+    """The jaws, what was found, the strict seats, and where the ways down begin and end, and how."""
+    closing = solver.closing(pattern, turned_over)
+    found = equilibria(closing.locus, pattern, closing.size)
+    seats = np.ascontiguousarray(found.seats[:, CONFIG])
+    return closing, found, seats, both_ways_down(found, closing, seats)
+
+
+@pytest.fixture(scope="module")
+def ways():
+    """The same of all patterns, both sides, by one solver."""
+    solver = Solver(STEP, VISE)
+    return [followed(solver, pattern, side) for pattern in PATTERNS for side in (False, True)]
+
+
+def clearance(closing, configs, pegs):
+    """Least distance in mm of some pegs from the boundary in configurations (N, 4): (N,)."""
+    (first, end), out = closing.locus.parts[0].tolist(), np.empty(len(configs) * len(pegs))
+    points = np.ascontiguousarray(closing.pattern.at(configs)[:, pegs].reshape(-1, 2))
+    clearances(points, closing.locus.rows, first, end, out)
+    return out.reshape(len(configs), len(pegs)).min(axis=1, initial=np.inf)
+
+
+def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
+    seen = set()
+    for closing, found, seats, (starts, ends, how) in ways:
+        assert starts[::2] + starts[1::2] == pytest.approx(2.0 * found.passes[:, CONFIG], abs=1e-9)
+        first = starts_off(found.passes, closing.size)[1]
+        known, ended = closing.run(starts, np.stack([first, first], axis=1), seats)
+        assert np.array_equal(how, ended)
+        assert ends[:, 3] == pytest.approx(known[:, 3], abs=1e-5)
+        assert (clearance(closing, ends, [0, 1, 2, 3]) > -2e-8).all()
+        stopped = how == AT_THE_STOP
+        assert np.array_equal(closing.escape(ends[stopped]), closing.escape(known[stopped]))
+        seen |= set(how.tolist())
+    assert seen == {AT_REST, AT_THE_STOP}
+
+
+def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the_part(ways):
+    """Up to the last node that is told all are free and above the stop, and the next is not."""
+    cut = whole = 0
+    for closing, found, _, _ in ways:
+        for number, (group, down) in enumerate(found.groups):
+            rows = found.origins[found.origins[:, 0] == number, 1]
+            known = down.off(rows)
+            chosen, lasts = free_ways(group, known, known.numbers[rows].ravel(), closing)
+            for way, last in zip(chosen.tolist(), lasts.tolist(), strict=True):
+                nodes = known.nodes.rows[known.nodes.begins[way] : known.nodes.begins[way + 1], :4] + group.shift
+                free = clearance(closing, nodes, [0, 1, 2, 3]) > -2e-8
+                free &= nodes[:, 3] > closing.pattern.stop + 1e-6
+                count = last - known.nodes.begins[way] + 1
+                assert free[:count].all()
+                # Between nodes a peg may be in the part, too.
+                apart = np.abs(np.diff(nodes[count - 1 : count + 1], axis=0)).max(initial=0.0)
+                assert count == len(nodes) or not free[count] or apart > 0.35
+                cut, whole = cut + (0 < count < len(nodes)), whole + (count == len(nodes))
+    assert cut > 20 and whole > 20
+
+
+def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
+    """Nor on what is forgotten: to the last bit."""
+    monkeypatch.setattr(alone, "MOST_NODES", 0)
+    for number in (2, 1):
+        again = followed(Solver(STEP, VISE), PATTERNS[number])[3]
+        assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
+
+
+def test_ways_are_followed_once(ways):
+    """A second time none is; and some serve several patterns."""
+    _, found, _, _ = ways[0]
+    for number, (_, down) in enumerate(found.groups):
+        rows = found.origins[found.origins[:, 0] == number, 1]
+        before = down.known
+        assert down.off(rows) is before
+    shared = [down for _, down in found.groups if any(down is other for _, other in ways[2][1].groups)]
+    assert len(shared) >= 4 and sum(len(down.known.how) for down in shared) > 10
+
+
+def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
+    """Each pass is one of a group, in whose own frame it has the same contacts."""
+    for _, found, _, _ in ways:
+        for row, (number, own) in zip(found.passes, found.origins.tolist(), strict=True):
+            group, down = found.groups[number]
+            there = group.candidates(down.candidates[[own]])[0]
+            assert there[:13] == pytest.approx(row[:13], abs=1e-9)
+
+
+def test_of_two_seats_in_one_pose_the_level_one_is_the_nearest():
+    """The jaw may press from within and from without: then only S tells them apart."""
+    rows = np.zeros((3, CANDIDATE_LENGTH))
+    rows[:, CONTACTS], rows[:, SEPARATION] = 4.0, [5.0, 9.0, 9.0]
+    rows[2, 0] = pi
+    builder = Builder(type("Jaws", (), {"size": 10.0})(), rows, [], [], [], np.array([True, True, False]))
+    configs = np.zeros((5, 4))
+    configs[:, 3] = [9.0, 5.0004, 7.0, 9.0, 9.0]
+    configs[3:, 0] = [pi, 0.004]
+    assert builder.near_seats(configs).tolist() == [1, 0, -1, -1, 1]
+
+
+def test_what_leaves_where_a_way_began_or_ended_is_outside():
+    """Jaws from which a part can be taken away at x above 0."""
+    escape = staticmethod(lambda configs: configs[:, 1] > 0.0)
+    none = np.zeros((0, CANDIDATE_LENGTH))
+    builder = Builder(type("Jaws", (), {"size": 10.0, "escape": escape})(), none, [], [], [], np.ones(0, np.bool_))
+    starts, ends = np.zeros((4, 4)), np.zeros((4, 4))
+    starts[[0, 1], 1], ends[[1, 2], 1] = 1.0, 1.0
+    how = np.full(4, AT_THE_STOP, np.int8)
+    assert builder.places(starts, ends, how) == [OUTSIDE, OUTSIDE, OUTSIDE, STOP]
+
+
+def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):
+    """All along and at both ends, beyond which they are not free or have come to the end of a face; and in the middle they
+    touch with as many pegs as anywhere."""
+    count, ended = 0, np.zeros(2)
+    for closing, found, _, _ in ways:
+        for family in found.loose:
+            every = [clearance(closing, family.configs, [peg]) for peg in range(4)]
+            assert np.min(every) > -1e-6
+            middle = [float(clearance(closing, family.middle[None], [peg])[0]) for peg in range(4)]
+            told = {int(peg) for peg in family.candidate[PEG:PIECE] if peg >= 0}
+            assert told == {peg for peg in range(4) if abs(middle[peg]) < 1e-7}
+            touching = np.sum(np.abs(every) < 1e-7, axis=0)
+            inner = touching if family.is_closed else touching[1:-1]
+            most = np.flatnonzero(inner == inner.max()) + (not family.is_closed)
+            assert np.array_equal(family.configs[most[len(most) // 2]], family.middle)
+            # Where another peg ends a run, it goes on from the last step by a part of one.
+            steps = np.abs(np.diff(family.configs, axis=0)).sum(axis=1)
+            ended += (steps[[0, -1]] > 0.0) & (steps[[0, -1]] < 0.99 * steps[1])
+            count += 1
+    assert count > 5 and ended.min() > 0
