@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from walking import SEARCH_PATIENCE, Walk
 
+NEW_SEARCH = "old => import('/static/state.js').then(({ state }) => state.job?.job && state.job.job !== old)"
+SAME_FORCE = "() => import('/static/state.js').then(({ change, state }) => change({ force: { ...state.force } }))"
+# In one go, as somebody quick would.
+PUSH_AND_SEARCH = "for (const id of ['push', 'search']) document.getElementById(id).click();"
 
-def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
-    """Rows and a drawing come before the end; files wait for it; settings changed then leave nothing behind."""
+
+def search_for_long(walk: Walk) -> None:
+    """A search that shows its first fixtures long before its end."""
     page = walk.page
     walk.take("8Handle", None)
     page.select_option("#toolkit", "vise")
@@ -17,6 +22,12 @@ def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
     walk.seen("#progress-row")
     walk.seen("#list .row:not(.coming)", SEARCH_PATIENCE)
     walk.seen("#drawing-fixture .peg", SEARCH_PATIENCE)
+
+
+def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
+    """Rows and a drawing come before the end; files wait for it; settings changed then leave nothing behind."""
+    page = walk.page
+    search_for_long(walk)
     assert page.get_attribute("body", "data-search") in ("running", "listing")
     assert page.get_attribute("#take-sheet", "href") is None
     old = walk.job()
@@ -30,3 +41,22 @@ def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
     page.click("#cancel")
     page.wait_for_selector("#progress-row", state="hidden", timeout=SEARCH_PATIENCE)
     assert page.get_attribute("body", "data-search") == "cancelled"
+
+
+def test_a_force_waits_for_the_first_fixtures(walk: Walk) -> None:
+    """Which fixture resists best is asked once there are some, and again when there are others."""
+    page = walk.page
+    search_for_long(walk)
+    old = walk.job()
+    page.evaluate(PUSH_AND_SEARCH)
+    page.wait_for_function(NEW_SEARCH, arg=old, timeout=SEARCH_PATIENCE)
+    walk.seen("#resist-words button", SEARCH_PATIENCE)
+    assert walk.shown()["rank"] == 1
+    page.click("#cancel")
+    page.wait_for_selector("#progress-row", state="hidden", timeout=SEARCH_PATIENCE)
+    with page.expect_request(lambda request: request.url.endswith(f"/api/jobs/{walk.job()}/resist")):
+        page.evaluate(SAME_FORCE)
+    link = walk.seen("#resist-words button")
+    rank = link.inner_text().split(":")[0]
+    link.click()
+    walk.seen(f"#quality-heads:has-text('Fixture {rank}')")

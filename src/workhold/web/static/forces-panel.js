@@ -7,6 +7,7 @@ import { tellForces } from "./details-panel.js";
 import { centerOf, reactions } from "./forces.js";
 import { inside } from "./geometry.js";
 import { intoPart, intoVise } from "./pose.js";
+import { searching } from "./search.js";
 import { selectRank } from "./selection.js";
 import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
@@ -39,6 +40,10 @@ export function forcesPanel() {
   on(["force", "selected", "part", "unit"], (changed) => {
     write();
     if (changed.has("force") && !held) askBest();
+  });
+  on(["job"], () => {
+    const list = listOf(state.job);
+    if (list !== bestOf && !held) askBest();
   });
   on(["selected", "force"], () => show(byId("forces"), state.force !== null && state.selected !== null));
 }
@@ -180,14 +185,20 @@ let told = null;
 /** Forces and what is needed: solved here for four pegs, else told by the server; undefined until it has. */
 function answered(part, row, force) {
   if (row.pegs.length === 4 || !row.rank) return reactions(part, row, force);
-  const key = JSON.stringify([state.job?.job, row.rank, force]);
+  const key = keyOf(row, force);
   if (told?.key === key) return told.answer;
   tellSoon(key, row.rank, force);
   return undefined;
 }
 
+/** Which fixture of which search is under which load. */
+function keyOf(row, force) {
+  return JSON.stringify([state.job?.job, row?.rank, force]);
+}
+
 const tellSoon = quiet(async (key, rank, force) => {
-  if (!state.force || !state.job?.job || !(force.size > 0 || force.moment)) return;
+  // Nobody waits for it any more when another fixture, or none, is on show by now.
+  if (key !== keyOf(state.selected, state.force) || !(force.size > 0 || force.moment)) return;
   const body = { loads: [loadOf(force)], jaw_force: force.jaw, jaw: force.kind ?? "screw" };
   try {
     const { cases: [worst] } = await send(`jobs/${encodeURIComponent(state.job.job)}/fixtures/${rank}/loads`, body);
@@ -227,11 +238,23 @@ function writeBars(row, { forces, needed, jaw, loose }) {
   ].join(" ");
 }
 
+/** Which fixtures there are to choose from: the first of a search, then all of it; null while there is none. */
+function listOf(job) {
+  return job?.job && job.listed ? `${job.job} ${searching()}` : null;
+}
+
 let asked = 0;
+/** The fixtures that were asked for the best. @type {string|null} */
+let bestOf = null;
 const askSoon = quiet(async () => {
   const mine = ++asked;
   const { force, job } = state;
-  if (!force || !job?.job || !(force.size > 0 || force.moment)) return;
+  bestOf = listOf(job);
+  if (!force || !(force.size > 0 || force.moment)) return;
+  if (!bestOf) {
+    byId("resist-words").replaceChildren();
+    return;
+  }
   try {
     const { best } = await send(`jobs/${encodeURIComponent(job.job)}/resist`, { loads: [loadOf(force)] });
     if (mine === asked && state.force && state.job?.job === job.job) writeBest(best);
