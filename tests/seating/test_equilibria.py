@@ -8,7 +8,7 @@ import pytest
 from seating_examples import moved, solved
 from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, DEPTH, SEPARATION
-from workhold.kernels.seating.four_contacts import third_of_jaw
+from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.filled import filled
 from workhold.seating.holdings import Holdings
@@ -18,9 +18,12 @@ from workhold.seating.seating import Solver
 
 def told_by(holdings, locus, pattern, discs, stop):
     """Candidates of three contacts above the stop, and of three with one jaw."""
-    stack = np.empty((DEPTH, 2))
-    three = filled(ROOT_LENGTH, 4096, three_contacts, holdings.cells, holdings.sought, discs, stop, stack)
-    third = filled(ROOT_LENGTH, 4096, third_of_jaw, holdings.cells, holdings.sought, discs, stack)
+    stack, work, three, third = np.empty((DEPTH, 2)), np.empty((5, len(discs))), [], []
+    for side in holdings.jaws:
+        given = *holdings.by_holding(side), holdings.sought, discs
+        three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
+        third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
+    three, third = np.concatenate(three), np.concatenate(third)
     found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, locus.pocket_pieces)
     fixed = filled(CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, locus.pocket_pieces)
     return found[found[:, SEPARATION] > pattern.stop], fixed
@@ -40,6 +43,19 @@ def test_pieces_left_out_have_no_roots(number):
     assert len(few) > 20
     assert np.array_equal(few, all_of_them)
     assert np.array_equal(fixed, all_fixed)
+
+
+def test_holdings_meet_as_of_each_cell_by_itself():
+    """Which cells of the other jaw reach into a cell does not depend on the cells before it."""
+    solver, fixture, _ = solved(0)
+    pattern = Pattern.of(fixture, solver.toolkit)
+    holdings = Holdings.of(solver.closing(pattern, False).locus, pattern)
+    left, right = holdings.of_jaw(0), holdings.of_jaw(1)
+    work = np.empty((DEPTH, 2)), np.empty(len(right), np.int64)
+    every = filled(ROOT_LENGTH, 1024, two_holdings, left, right, holdings.sought, *work)
+    alone = [filled(ROOT_LENGTH, 64, two_holdings, one[None, :], right, holdings.sought, *work) for one in left]
+    assert len(every) > 10
+    assert np.array_equal(every, np.concatenate(alone))
 
 
 def test_many_fixtures_are_told_as_one_by_one():

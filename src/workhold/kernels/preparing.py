@@ -57,6 +57,7 @@ from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lies_along
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
+from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.pocketed import tip_in_pocket
@@ -160,9 +161,11 @@ def seats_and_passes() -> Calls:
     none, pockets = np.zeros(0, np.int64), np.zeros((0, 2), np.int64)
     yield clearances, (points, rows, 0, 0, one)
     yield make_cells, (given, np.zeros((0, STRETCH_LENGTH)), cells)
-    yield three_contacts, (cells, given, np.zeros((0, 3)), 0.0, stack, roots)
-    yield two_holdings, (cells, cells, given, stack, roots)
-    yield third_of_jaw, (cells, given, np.zeros((0, 3)), stack, roots)
+    between = np.zeros((0, MIDDLE_LENGTH))
+    yield write_middles, (cells, given, between)
+    yield three_contacts, (cells, between, given, np.zeros((0, 3)), 0.0, stack, np.zeros((5, 0)), roots)
+    yield two_holdings, (cells, cells, given, stack, none, roots)
+    yield third_of_jaw, (cells, between, given, np.zeros((0, 3)), stack, roots)
     for complete in (complete_three, complete_two, complete_third):
         yield complete, (roots, given, pockets, many)
     yield fourths, (many, 0, given, many)
@@ -210,6 +213,7 @@ def seats_and_passes() -> Calls:
 # Kernels of seating of which many call the same ones: half of the work.
 HOLDINGS = (
     make_cells,
+    write_middles,
     three_contacts,
     two_holdings,
     third_of_jaw,

@@ -90,9 +90,12 @@ def two_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
 
 def three_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
     """Of two pegs of a jaw and one of the other."""
-    holdings, finder, stack = Holdings.of(locus, pattern), Finder(locus, pattern), np.empty((DEPTH, 2))
+    holdings, finder = Holdings.of(locus, pattern), Finder(locus, pattern)
     given, sought = holdings.given, holdings.sought
-    roots = filled(ROOT_LENGTH, 1024, three_contacts, holdings.cells, sought, locus.discs, pattern.stop, stack)
+    # Of the jaw of two; the other's only peg holds the part in pockets alone.
+    cells = holdings.by_holding(int(pattern.right.sum() == 2))
+    work = np.empty((DEPTH, 2)), np.empty((5, len(locus.discs)))
+    roots = filled(ROOT_LENGTH, 1024, three_contacts, *cells, sought, locus.discs, pattern.stop, *work)
     candidates = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_squared, holdings.slides, given),
@@ -107,7 +110,8 @@ def three_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
 def jaw_alone(locus: Locus, pattern: Pattern, _: float) -> Told:
     """Of pegs of one jaw that touch in three places: three, or two of which one is in a pocket."""
     holdings, stack = Holdings.of(locus, pattern), np.empty((DEPTH, 2))
-    roots = filled(ROOT_LENGTH, 1024, third_of_jaw, holdings.cells, holdings.sought, locus.discs, stack)
+    cells = holdings.by_holding(int(pattern.right[0]))
+    roots = filled(ROOT_LENGTH, 1024, third_of_jaw, *cells, holdings.sought, locus.discs, stack)
     fixed = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, holdings.given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_stopped, holdings.slides, holdings.given),

@@ -67,7 +67,8 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
         return on_fence(locus, pattern, size)
     holdings, finder = Holdings.of(locus, pattern), Finder(locus, pattern)
     given, jaws, pockets = holdings.given, (holdings.of_jaw(0), holdings.of_jaw(1)), locus.pocket_pieces
-    roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, np.empty((DEPTH, 2)))
+    work = np.empty((DEPTH, 2)), np.empty(len(jaws[1]), np.int64)
+    roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, *work)
     candidates = [filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)]
     groups, ways, origins = list[tuple[Group, WaysDown]](), [], [nowhere(len(candidates[0]))]
     for group in groups_of(pattern):

@@ -42,6 +42,7 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.holdings import make_cells
+from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
 from workhold.seating.filled import filled
 from workhold.seating.groups import Group, jaw_groups
@@ -51,7 +52,7 @@ from workhold.seating.pattern import Pattern
 __all__ = ["Holdings", "JawHoldings"]
 
 Array = NDArray[np.float64]
-# Cells of the holdings that are kept, of about 200 bytes with all that belongs to them; beyond, all are forgotten.
+# Cells of the holdings that are kept, of about 360 bytes with all that belongs to them; beyond, all are forgotten.
 MOST_KEPT = 250_000
 
 
@@ -62,7 +63,7 @@ class JawHoldings:
     Parameters
     ----------
     holdings, curves, reals : as of ``Given``, pegs and curves counted from 0.
-    cells : (C, 7) of all holdings, those of one after each other.
+    cells, middles : (C, 7) and (C, 19) of all holdings, those of one after each other, see ``kernels.seating.middles``.
     slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
     """
 
@@ -70,6 +71,7 @@ class JawHoldings:
     curves: NDArray[np.int64]
     reals: Array
     cells: Array
+    middles: Array
     slides: Array
 
     @classmethod
@@ -103,7 +105,9 @@ class JawHoldings:
         rows, curves = np.concatenate(holdings), (np.concatenate(integers), np.concatenate(reals))
         given, every = Given(rows, *curves, np.array(locus.loose), pegs, right, locus.parts), np.concatenate(stretches)
         cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(locus.pockets) + 64, make_cells, given, every)
-        return cls(rows, *curves, cells, np.array(slides).reshape(-1, SLIDE_LENGTH))
+        known = np.empty((len(cells), MIDDLE_LENGTH))
+        write_middles(cells, given, known)
+        return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
 
     @cached_property
     def ordered(self) -> Array:
@@ -164,10 +168,10 @@ class Holdings:
         given = Given(rows, curves, reals, np.array(locus.rows), *pegs)
         return cls(given, given._replace(rows=np.array(locus.loose)), slides, jaws)
 
-    @property
-    def cells(self) -> Array:
-        """The cells (C, 7) of all holdings, those of one after each other."""
-        return np.concatenate([moved(known.cells, before, y) for known, before, y in self.jaws.values()])
+    def by_holding(self, right: int) -> tuple[Array, Array]:
+        """The cells of one jaw's holdings and their middles, those of one after each other."""
+        known, before, height = self.jaws[right]
+        return moved(known.cells, before, height), known.middles
 
     def of_jaw(self, right: int) -> Array:
         """The cells of one jaw's holdings, ordered by their lowest orientation, those beyond a turn a second time."""

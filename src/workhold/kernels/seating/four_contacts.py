@@ -27,9 +27,10 @@ from workhold.kernels.seating.columns import (
     VAGUE,
     Given,
 )
-from workhold.kernels.seating.holdings import END, height, held
+from workhold.kernels.seating.holdings import END, Held, height, held
+from workhold.kernels.seating.middles import COSINE, SINE, held_in
 from workhold.kernels.seating.pieces import length
-from workhold.kernels.seating.roots import APART, GAP, is_level, root_between
+from workhold.kernels.seating.roots import APART, GAP, gap, have_no_root, is_level, root_between
 from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
 
 Array = NDArray[np.float64]
@@ -62,10 +63,21 @@ def told_of_two(p: Array, q: Array, low: float, high: float, given: Given) -> in
 @inner
 def told_of_third(cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given) -> int:
     """What is told of a range in which a peg (ox, oy) from the first may touch a piece; see ``told_of_two``."""
-    psi, reach = (low + high) / 2.0, (high - low) / 2.0
+    psi = (low + high) / 2.0
     s = held(given.holdings[int(cell[HOLDING])], given, psi)
-    cosine, sine = cos(psi), sin(psi)
-    x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
+    x, y = place_of(s, cos(psi), sin(psi), ox, oy)
+    return told_of_place(cell, s, x, y, piece, (high - low) / 2.0)
+
+
+@inner
+def place_of(s: Held, cosine: float, sine: float, ox: float, oy: float) -> tuple[float, float]:
+    """Place on the part of a peg (ox, oy) from the first in the vise frame."""
+    return (s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy)
+
+
+@inner
+def told_of_place(cell: Array, s: Held, x: float, y: float, piece: Array, reach: float) -> int:
+    """The same by what is in the middle of the range: the holding, and the peg's place (x, y)."""
     gx, gy = x - s[6], y - s[7]
     speed = (length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
     bend = speed + cell[SPEED]
@@ -136,7 +148,7 @@ def roots_between(
 
 
 @compiled
-def two_holdings(left: Array, right: Array, given: Given, stack: Array, out: Array) -> int:
+def two_holdings(left: Array, right: Array, given: Given, stack: Array, reaching: NDArray[np.int64], out: Array) -> int:
     """Orientations at which a holding of the left jaw and one of the right have one height; how many, or -1.
 
     Parameters
@@ -144,26 +156,29 @@ def two_holdings(left: Array, right: Array, given: Given, stack: Array, out: Arr
     left, right : (C, 7) cells of each jaw, ordered by their lowest orientation; those that reach beyond a turn stand there a
         second time, a turn lower.
     stack : (DEPTH, 2) work space.
+    reaching : as many as right cells: work space.
     out : (N, 6) roots, written here: the right holding stands in the column of the piece.
     """
-    count, widest = 0, 0.0
-    for j in range(right.shape[0]):
-        widest = max(widest, right[j, HIGH] - right[j, LOW])
+    count = known = begun = 0
     for i in range(left.shape[0]):
         p = left[i]
-        # The first cell that may reach into this one.
-        start, end = 0, right.shape[0]
-        while start < end:
-            at = (start + end) // 2
-            if right[at, LOW] < p[LOW] - widest:
-                start = at + 1
-            else:
-                end = at
-        for j in range(start, right.shape[0]):
-            q = right[j]
+        # The right cells that began before this one and reach into it are few; then come those that begin in it.
+        kept = 0
+        for k in range(known):
+            if right[reaching[k], HIGH] >= p[LOW]:
+                reaching[kept] = reaching[k]
+                kept += 1
+        known = kept
+        while begun < right.shape[0] and right[begun, LOW] < p[LOW]:
+            if right[begun, HIGH] >= p[LOW]:
+                reaching[known] = begun
+                known += 1
+            begun += 1
+        for k in range(known + right.shape[0] - begun):
+            q = right[reaching[k] if k < known else begun + k - known]
             if q[LOW] > p[HIGH]:
                 break
-            if q[HIGH] < p[LOW] or q[BOTTOM] > p[TOP] or q[TOP] < p[BOTTOM]:
+            if q[BOTTOM] > p[TOP] or q[TOP] < p[BOTTOM]:
                 continue
             count = roots_between(APART, p, q, -1, -1, given, stack, out, count)
             if count < 0:
@@ -172,31 +187,41 @@ def two_holdings(left: Array, right: Array, given: Given, stack: Array, out: Arr
 
 
 @compiled
-def third_of_jaw(cells: Array, given: Given, discs: Array, stack: Array, out: Array) -> int:
+def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack: Array, out: Array) -> int:
     """Orientations at which a third peg of a holding's own jaw touches a piece; how many, or -1. See ``two_holdings``.
 
     Parameters
     ----------
+    cells, middles : (C, 7) and (C, 19) of one jaw.
     discs : (N, 3) around the pieces: middle and radius in mm.
     """
     count = 0
     for number in range(cells.shape[0]):
-        cell = cells[number]
+        cell, middle = cells[number], middles[number]
         holding = given.holdings[int(cell[HOLDING])]
         tail, head = int(holding[FIRST_PEG]), int(holding[SECOND_PEG])
-        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
-        s = held(holding, given, psi)
-        cosine, sine = cos(psi), sin(psi)
+        reach, s, at_low, at_high = (cell[HIGH] - cell[LOW]) / 2.0, held_in(middle), held_in(middle), held_in(middle)
+        if cell[VAGUE] != 0.0:
+            at_low, at_high = held(holding, given, cell[LOW]), held(holding, given, cell[HIGH])
         for third in range(given.pegs.shape[0]):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
             ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
-            x, y = s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy
+            x, y = place_of(s, middle[COSINE], middle[SINE], ox, oy)
+            low = high = (x, y)
+            if cell[VAGUE] != 0.0:
+                low = place_of(at_low, cos(cell[LOW]), sin(cell[LOW]), ox, oy)
+                high = place_of(at_high, cos(cell[HIGH]), sin(cell[HIGH]), ox, oy)
             play = (length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach + END + ROUNDING
             for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
-                dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
-                if cell[VAGUE] == 0.0 and dx * dx + dy * dy > far * far:
-                    continue
+                row = given.rows[piece]
+                if cell[VAGUE] != 0.0:
+                    if have_no_root(gap(row, low[0], low[1]), gap(row, high[0], high[1])):
+                        continue
+                else:
+                    dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
+                    if dx * dx + dy * dy > far * far or told_of_place(cell, s, x, y, row, reach) == NOTHING:
+                        continue
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:
                     return -1

@@ -32,7 +32,7 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.pieces import on_piece
 
 Array = NDArray[np.float64]
-Held = tuple[float, float, float, float, float, float, float, float]
+Held = tuple[float, float, float, float, float, float, float, float, float, float]
 
 TURN = 2.0 * pi
 # Cells into which a turn about a pocket is cut.
@@ -45,14 +45,18 @@ ROUNDING = 1e-9
 
 @inner
 def held(holding: Array, given: Given, psi: float) -> Held:
-    """A holding at an orientation: place of its first peg on the part, outward normals of both contacts, instant centre."""
+    """A holding at an orientation: place of its first peg on the part, outward normals of both contacts, instant centre, and
+    place of its second peg."""
     if holding[KIND] == 1.0:
-        return (holding[PIVOT_X], holding[PIVOT_Y], 0.0, 0.0, 0.0, 0.0, holding[PIVOT_X], holding[PIVOT_Y])
+        x, y = holding[PIVOT_X], holding[PIVOT_Y]
+        return (x, y, 0.0, 0.0, 0.0, 0.0, x, y, x, y)
     k = int(holding[SOURCE])
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-    alpha = psi + holding[ANGLE]
-    s = chord_state(a, b, given.reals[k], alpha, cos(alpha), sin(alpha))
-    return (s[0], s[1], a[SIGN] * s[2], a[SIGN] * s[3], b[SIGN] * s[4], b[SIGN] * s[5], s[6], s[7])
+    alpha, d = psi + holding[ANGLE], given.reals[k, LENGTH]
+    cosine, sine = cos(alpha), sin(alpha)
+    s = chord_state(a, b, given.reals[k], alpha, cosine, sine)
+    normals = (a[SIGN] * s[2], a[SIGN] * s[3], b[SIGN] * s[4], b[SIGN] * s[5])
+    return (s[0], s[1], *normals, s[6], s[7], s[0] + d * cosine, s[1] + d * sine)
 
 
 @inner

@@ -15,7 +15,7 @@ from workhold.kernels.seating.columns import Obstacles
 Array = NDArray[np.float64]
 # mm. Two pieces are as near when their distances agree to this: they end in one point.
 SAME_END = 1e-9
-Foot = tuple[float, float, float, float, float, float]
+Foot = tuple[float, float, float, float, float]
 
 
 @inner
@@ -65,16 +65,15 @@ def foot(row: Array, x: float, y: float, side: float) -> Foot:
 
     Returns
     -------
-    (x, y, outward normal's x and y, distance in mm from the centre or inf of a line, parameter)
+    (x, y, outward normal's x and y, distance in mm from the centre or inf of a line)
     """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         s = dx * row[AXIS_X] + dy * row[AXIS_Y]
-        return (row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf, s)
+        return (row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf)
     size = max(length(dx, dy), 1e-150)
     ex, ey = side * dx / size, side * dy / size
-    at = angle_from_middle(row, ex, ey)
-    return (row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size, at)
+    return (row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size)
 
 
 @inner

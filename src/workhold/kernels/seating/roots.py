@@ -48,10 +48,22 @@ def value(
     if kind == MISS:
         f = foot(piece, s[6], s[7], second)
         return cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - first
-    dx, dy = s[0] + cosine * first - sine * second - piece[X], s[1] + sine * first + cosine * second - piece[Y]
+    return gap(piece, s[0] + cosine * first - sine * second, s[1] + sine * first + cosine * second)
+
+
+@inner
+def gap(piece: Array, x: float, y: float) -> float:
+    """Distance in mm of a point from a piece's carrier, negative on the part's side."""
+    dx, dy = x - piece[X], y - piece[Y]
     if piece[IS_ARC] == 0.0:
         return dx * piece[AXIS_Y] - dy * piece[AXIS_X]
     return piece[SIGN] * (length(dx, dy) - piece[RADIUS])
+
+
+@inner
+def have_no_root(f_low: float, f_high: float) -> bool:
+    """Whether a function's values at two orientations tell of no root between them."""
+    return f_low * f_high > 0.0 and min(abs(f_low), abs(f_high)) > AT_END
 
 
 @inner
@@ -70,8 +82,7 @@ def root_between(
     f_low = value(kind, one, two, piece, first, second, given, low)
     f_high = value(kind, one, two, piece, first, second, given, high)
     if f_low * f_high > 0.0:
-        psi = low if abs(f_low) < abs(f_high) else high
-        return (min(abs(f_low), abs(f_high)) <= AT_END, psi)
+        return (not have_no_root(f_low, f_high), low if abs(f_low) < abs(f_high) else high)
     psi = (low + high) / 2.0
     for step in range(MOST_STEPS):
         f = value(kind, one, two, piece, first, second, given, psi)

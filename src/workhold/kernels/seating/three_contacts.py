@@ -1,11 +1,12 @@
 """Where the normal of a third peg, of the other jaw, goes through the instant centre of a holding: three forces in balance.
 
-Over a range of orientations the instant centre P moves no faster than the speed V of its cell, which bounds the foot of P
-on a piece, the directions of all three forces and the height missed (``roots.MISS``). A range is dropped where the foot is
-off the piece, the forces cannot all press, or the height cannot vanish; before that, whole pieces by the discs around them.
-Where the derivative keeps its sign, by an enclosure of P' (``chord.center_speeds``), there is one root at most; else the
-range is halved. What is too narrow to be halved is told as in doubt, but for ranges beside a tangency, where V tells
-nothing, in which three values hardly differ.
+Over a range of orientations the instant centre P moves no faster than the speed V of its cell, and along a ray
+(``kernels.seating.rays``). Both bound the foot of P on a piece, the directions of all three forces and the height missed
+(``roots.MISS``). A range is dropped where the foot is off the piece, the forces cannot all press, or the height cannot
+vanish; before that, whole pieces by the discs around them. By an enclosure of P' (``chord.center_speeds``) there is no root
+where the mean value theorem leaves none, and one at most where the derivative keeps its sign; else the range is halved.
+What is too narrow to be halved is told as in doubt, but for ranges beside a tangency, where V tells nothing, in which three
+values hardly differ.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
 from workhold.kernels.chord.center_speeds import center_motion
-from workhold.kernels.curves.columns import HEAD, LENGTH, TAIL
+from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
@@ -33,8 +34,10 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.holdings import END, Held, held
-from workhold.kernels.seating.pieces import Foot, foot, length, share_normals
-from workhold.kernels.seating.roots import MISS, is_level, root_between
+from workhold.kernels.seating.middles import COSINE, SINE, held_in, ray_in, ray_over
+from workhold.kernels.seating.pieces import Foot, angle_from_middle, foot, length, share_normals
+from workhold.kernels.seating.rays import Ray, foot_is_off
+from workhold.kernels.seating.roots import AT_END, MISS, is_level, root_between
 
 Array = NDArray[np.float64]
 
@@ -50,60 +53,51 @@ NOTHING, HALVES, MAYBE = 0, 1, 2
 
 
 @inner
-def turns_of(
-    a: Array, b: Array, d: float, alpha: float, s: Held, low: float, high: float, move: float
-) -> tuple[float, float]:
-    """How far the normals of both contacts turn to either side over a range: those of arcs with the contacts, which move
-    about P."""
-    reach = (high - low) / 2.0 * (1.0 + (high - low))
-    turn_a = turn_b = 0.0
-    if a[IS_ARC] != 0.0:
-        turn_a = (length(s[0] - s[6], s[1] - s[7]) + move) * reach / a[RADIUS]
-    if b[IS_ARC] != 0.0:
-        vx, vy = s[0] + d * cos(alpha), s[1] + d * sin(alpha)
-        turn_b = (length(vx - s[6], vy - s[7]) + move) * reach / b[RADIUS]
-    return (turn_a, turn_b)
-
-
-@inner
-def may_balance(s: Held, nx: float, ny: float, turns: tuple[float, float], turn: float) -> bool:
+def may_balance(s: Held, nx: float, ny: float, ray: Ray, turn: float) -> bool:
     """Whether the force of the third contact may lie between the other two somewhere in a range; its normal n turns by
-    ``turn`` at most, and theirs by ``turns``."""
+    ``turn`` at most, and theirs as told with the ray."""
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
     first, second = sign * (ny * s[4] - nx * s[5]), sign * (s[3] * nx - s[2] * ny)
-    return first >= -(turn + turns[1]) - 1e-9 and second >= -(turn + turns[0]) - 1e-9
+    return first >= -(turn + ray[6]) - 1e-9 and second >= -(turn + ray[5]) - 1e-9
 
 
 @inner
-def is_out_of_reach(
-    disc: Array,
-    s: Held,
-    cosine: float,
-    sine: float,
-    speed: float,
-    reach: float,
-    above: float,
-    beyond: float,
-    push: float,
-) -> bool:
-    """Whether no point in a disc of the part comes level with the third peg over a range, at a separation above the stop.
+def write_off_level(discs: Array, s: Held, cosine: float, sine: float, speed: float, reach: float, off: Array) -> None:
+    """Write over which heights above the first peg points in discs of the part may be over a range.
 
-    Seen from the first peg, a point c of the part rises by x . (P - c) per radian and goes along x by y . (c - P); P moves
-    no faster than ``speed``.
+    Seen from the first peg, a point c of the part rises by x . (P - c) per radian; P moves no faster than ``speed``.
+
+    Parameters
+    ----------
+    discs : (3, N) middles and radii in mm.
+    off : (2, N) heights in the middle of the range, and how far from them they may be, in mm.
+    """
+    xs, ys, radii, heights, slacks = discs[0], discs[1], discs[2], off[0], off[1]
+    most = speed * (1.0 + reach)
+    for k in range(xs.shape[0]):
+        gx, gy = xs[k] - s[6], ys[k] - s[7]
+        bend = reach * reach / 2.0 * (abs(gx) + abs(gy) + most)
+        heights[k] = cosine * (ys[k] - s[1]) - sine * (xs[k] - s[0])
+        slacks[k] = radii[k] + bend + END + ROUNDING + reach * abs(cosine * gx + sine * gy)
+
+
+@inner
+def is_behind(
+    disc: Array, s: Held, cosine: float, sine: float, speed: float, reach: float, beyond: float, push: float
+) -> bool:
+    """Whether no point in a disc of the part meets the third peg over a range at a separation above the stop: seen from the
+    first peg, a point c goes along x by y . (c - P) per radian.
 
     Parameters
     ----------
     disc : (3,) middle and radius in mm.
-    above, beyond : height of the third peg over the first, and its place along x from the first at the stop, in mm.
+    beyond : place of the third peg along x from the first at the stop, in mm.
     push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
     """
     gx, gy = disc[0] - s[6], disc[1] - s[7]
-    dx, dy = disc[0] - s[0], disc[1] - s[1]
     bend = reach * reach / 2.0 * (abs(gx) + abs(gy) + speed * (1.0 + reach))
-    slack = disc[2] + bend + END + ROUNDING
-    if abs(cosine * dy - sine * dx - above) > slack + reach * abs(cosine * gx + sine * gy):
-        return True
-    return push * (cosine * dx + sine * dy - beyond) < -slack - reach * abs(cosine * gy - sine * gx)
+    slack = disc[2] + bend + END + ROUNDING + reach * abs(cosine * gy - sine * gx)
+    return push * (cosine * (disc[0] - s[0]) + sine * (disc[1] - s[1]) - beyond) < -slack
 
 
 @inner
@@ -116,20 +110,32 @@ def excluded(
         if f[4] <= move * 1.0001 + ROUNDING:
             return HALVES
         turn = asin(move / f[4])
-        if piece[HALF_EXTENT] < pi and abs(f[5]) > piece[HALF_EXTENT] + turn + END / piece[RADIUS]:
-            return NOTHING
-    elif abs(f[5]) > piece[HALF_EXTENT] + move + END:
-        return NOTHING
     if push * (f[2] * cosine + f[3] * sine) < -(turn + reach):
         return NOTHING
     way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f[4] - move)
     if abs(missed) > (length(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
         return NOTHING
-    return MAYBE
+    if piece[IS_ARC] == 0.0:
+        at = (f[0] - piece[X]) * piece[AXIS_X] + (f[1] - piece[Y]) * piece[AXIS_Y]
+        return NOTHING if abs(at) > piece[HALF_EXTENT] + move + END else MAYBE
+    beyond = piece[HALF_EXTENT] + turn + END / piece[RADIUS]
+    is_off = beyond < pi and abs(angle_from_middle(piece, piece[SIGN] * f[2], piece[SIGN] * f[3])) > beyond
+    return NOTHING if is_off else MAYBE
 
 
 @inner
-def is_steady(
+def may_tell(
+    piece: Array, missed: float, cosine: float, sine: float, s: Held, f: Foot, speed: float, reach: float
+) -> bool:
+    """Whether ``slope_over`` may show that there is one root at most, or none: its doubt is no less than without P'."""
+    move, gx, gy = speed * reach, s[6] - f[0], s[7] - f[1]
+    turn, ratio = (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f[4]), piece[RADIUS] / f[4])
+    doubt = move + (length(gx, gy) + move) * (turn + reach)
+    return abs(cosine * gx + sine * gy) + ratio * speed > doubt or abs(missed) > doubt * reach
+
+
+@inner
+def slope_over(
     piece: Array,
     side: float,
     cosine: float,
@@ -139,11 +145,11 @@ def is_steady(
     motion: tuple[Interval, Interval],
     speed: float,
     reach: float,
-) -> bool:
-    """Whether the height missed is monotone over a range in which P' is enclosed."""
+) -> tuple[float, float]:
+    """A derivative of the height missed, and how far from it those over a range may be in which P' is enclosed."""
     qx, qy = motion
     if not (qx[1] - qx[0] < inf and qy[1] - qy[0] < inf):
-        return False
+        return (0.0, inf)
     mx, my, spread = (qx[0] + qx[1]) / 2.0, (qy[0] + qy[1]) / 2.0, length(qx[1] - qx[0], qy[1] - qy[0]) / 2.0
     move, size = speed * reach, min(length(mx, my) + spread, speed)
     gx, gy = s[6] - f[0], s[7] - f[1]
@@ -152,14 +158,14 @@ def is_steady(
     if piece[IS_ARC] == 0.0:
         tx, ty = -f[3], f[2]
         slope += (mx * tx + my * ty) * (cosine * ty - sine * tx)
-        return abs(slope) > (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING
+        return (slope, (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING)
     # foot' is the part of P' across the way from the centre, in proportion; that way turns by ``turn`` at most.
     turn = asin(move / f[4])
     ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
     ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
     slope += side * ratio * (my * ex - mx * ey) * (cosine * ex + sine * ey)
     doubt = move + far * (turn + reach) + worst * (spread + size * (2.0 * turn + reach)) + size * (worst - ratio)
-    return abs(slope) > doubt * (1.0 + 1e-6) + ROUNDING
+    return (slope, doubt * (1.0 + 1e-6) + ROUNDING)
 
 
 @inner
@@ -178,7 +184,7 @@ def roots_of_cell(
     third: int,
     number: int,
     side: float,
-    middle: Held,
+    middle: Array,
     given: Given,
     stack: Array,
     out: Array,
@@ -187,32 +193,39 @@ def roots_of_cell(
     """Write the balances of a cell with a third peg on a piece; return the new count, or -1 where they do not fit."""
     holding, piece = given.holdings[int(cell[HOLDING])], given.rows[number]
     k, tail, speed = int(holding[SOURCE]), int(holding[FIRST_PEG]), cell[SPEED]
-    a, b, d = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]], given.reals[k, LENGTH]
+    a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     # Forces press the left jaw to the left, the right one to the right.
     push = 1.0 if given.right[third] == 1 else -1.0
     above = given.pegs[third, 1] - given.pegs[tail, 1]
+    s, ray, cosine, sine = held_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
     depth = 1
     stack[0, 0], stack[0, 1] = cell[LOW], cell[HIGH]
     while depth > 0:
         depth -= 1
         low, high = stack[depth, 0], stack[depth, 1]
         psi, reach = (low + high) / 2.0, (high - low) / 2.0
-        first = reach == (cell[HIGH] - cell[LOW]) / 2.0
-        s = middle if first else held(holding, given, psi)
-        cosine, sine = cos(psi), sin(psi)
+        if reach < (cell[HIGH] - cell[LOW]) / 2.0:
+            s, cosine, sine = held(holding, given, psi), cos(psi), sin(psi)
+            ray = ray_over(holding, given, s, speed, reach)
+        if foot_is_off(piece, side, push, above, cosine, sine, s, ray, reach):
+            continue
         f = foot(piece, s[6], s[7], side)
         missed = cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - above
         told = excluded(piece, push, missed, cosine, sine, s, f, speed, reach)
         if told == NOTHING:
             continue
         if told == MAYBE:
-            alpha, move = psi + holding[ANGLE], speed * reach
-            turn = 0.0 if piece[IS_ARC] == 0.0 else asin(move / f[4])
-            if not may_balance(s, f[2], f[3], turns_of(a, b, d, alpha, s, low, high, move), turn):
+            turn = 0.0 if piece[IS_ARC] == 0.0 else asin(speed * reach / f[4])
+            if not may_balance(s, f[2], f[3], ray, turn):
                 continue
-            sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-            motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
-            if is_steady(piece, side, cosine, sine, s, f, motion, speed, reach):
+            slope, doubt = 0.0, inf
+            if may_tell(piece, missed, cosine, sine, s, f, speed, reach):
+                sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+                motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
+                slope, doubt = slope_over(piece, side, cosine, sine, s, f, motion, speed, reach)
+            if abs(missed) > (abs(slope) + doubt) * reach + AT_END:
+                continue
+            if abs(slope) > doubt:
                 found, psi = root_between(MISS, holding, holding, piece, above, side, given, low, high)
                 if found:
                     count = write_root(out, count, cell[HOLDING], third, number, side, psi, 0.0)
@@ -244,30 +257,33 @@ def write_root(
 
 
 @compiled
-def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack: Array, out: Array) -> int:
+def three_contacts(
+    cells: Array, middles: Array, given: Given, discs: Array, stop: float, stack: Array, work: Array, out: Array
+) -> int:
     """All orientations at which two pegs of one jaw and one of the other may balance; how many, or -1 where they do not fit.
 
     Parameters
     ----------
-    cells : (C, 7) of the holdings.
+    cells, middles : (C, 7) and (C, 19) of the holdings of two pegs of one jaw.
     discs : (N, 3) around the pieces.
     stop : the smallest jaw separation in mm.
-    stack : (DEPTH, 2) work space.
+    stack, work : (DEPTH, 2) and (5, N) work space.
     out : (N, 6) roots, written here.
     """
+    # The same number of each disc in a row, for loops that work out several at a time.
+    for piece in range(discs.shape[0]):
+        for k in range(3):
+            work[k, piece] = discs[piece, k]
     count = 0
     for number in range(cells.shape[0]):
-        cell = cells[number]
+        cell, middle = cells[number], middles[number]
         holding = given.holdings[int(cell[HOLDING])]
         if cell[VAGUE] != 0.0 or holding[KIND] == 1.0:
             continue
-        k, tail = int(holding[SOURCE]), int(holding[FIRST_PEG])
+        k, tail, reach = int(holding[SOURCE]), int(holding[FIRST_PEG]), (cell[HIGH] - cell[LOW]) / 2.0
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
-        middle = held(holding, given, psi)
-        cosine, sine = cos(psi), sin(psi)
-        alpha, d = psi + holding[ANGLE], given.reals[k, LENGTH]
-        turns = turns_of(a, b, d, alpha, middle, cell[LOW], cell[HIGH], cell[SPEED] * reach)
+        s, ray, cosine, sine = held_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
+        write_off_level(work[:3], s, cosine, sine, cell[SPEED], reach, work[3:])
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
                 continue
@@ -275,11 +291,13 @@ def three_contacts(cells: Array, given: Given, discs: Array, stop: float, stack:
             above = given.pegs[third, 1] - given.pegs[tail, 1]
             beyond = given.pegs[third, 0] - given.pegs[tail, 0] + push * stop
             for piece in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
+                if abs(work[3, piece] - above) > work[4, piece]:
+                    continue
                 c = given.rows[piece]
                 # The normal of a line is one, wherever it is touched.
-                if c[IS_ARC] == 0.0 and not may_balance(middle, c[AXIS_Y], -c[AXIS_X], turns, 0.0):
+                if c[IS_ARC] == 0.0 and not may_balance(s, c[AXIS_Y], -c[AXIS_X], ray, 0.0):
                     continue
-                if is_out_of_reach(discs[piece], middle, cosine, sine, cell[SPEED], reach, above, beyond, push):
+                if is_behind(discs[piece], s, cosine, sine, cell[SPEED], reach, beyond, push):
                     continue
                 # Where its normal is that of another contact throughout, the one that is left has no force.
                 if share_normals(a, c) or share_normals(b, c):

@@ -1,0 +1,64 @@
+"""What is known of a cell from its middle: worked out once for all third pegs that may press against a holding.
+
+Columns of a middle: COSINE and SINE of the orientation, ten numbers from HELD on (``holdings.Held``), and seven from RAY on
+(``rays.Ray``), which stand for nothing in a cell of a pocket or beside a tangency.
+"""
+
+from __future__ import annotations
+
+from math import cos, inf, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.seating.columns import HIGH, HOLDING, KIND, LOW, SOURCE, SPEED, VAGUE, Given
+from workhold.kernels.seating.holdings import Held, held
+from workhold.kernels.seating.rays import Ray, ray_of
+
+__all__ = ["COSINE", "MIDDLE_LENGTH", "SINE", "held_in", "ray_in", "ray_over", "write_middles"]
+
+Array = NDArray[np.float64]
+
+COSINE, SINE, HELD, RAY = 0, 1, 2, 12
+MIDDLE_LENGTH = 19
+
+
+@inner
+def ray_over(holding: Array, given: Given, s: Held, speed: float, reach: float) -> Ray:
+    """The ray of a holding of two contacts; see ``rays.ray_of``."""
+    k = int(holding[SOURCE])
+    a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
+    return ray_of(given.reals[k], a, b, s, speed, reach)
+
+
+@compiled
+def write_middles(cells: Array, given: Given, out: Array) -> None:
+    """Write the middles (C, 19) of cells (C, 7)."""
+    for number in range(cells.shape[0]):
+        cell, row = cells[number], out[number]
+        holding = given.holdings[int(cell[HOLDING])]
+        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
+        s, ray = held(holding, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if holding[KIND] == 0.0 and cell[VAGUE] == 0.0:
+            ray = ray_over(holding, given, s, cell[SPEED], reach)
+        row[COSINE], row[SINE] = cos(psi), sin(psi)
+        for k in range(10):
+            row[HELD + k] = s[k]
+        for k in range(7):
+            row[RAY + k] = ray[k]
+
+
+@inner
+def held_in(middle: Array) -> Held:
+    """The holding in the middle of a cell."""
+    h = middle[HELD:RAY]
+    return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
+
+
+@inner
+def ray_in(middle: Array) -> Ray:
+    """The ray over a cell."""
+    r = middle[RAY:]
+    return (r[0], r[1], r[2], r[3], r[4], r[5], r[6])

@@ -1,0 +1,101 @@
+"""Bounds of the ray on which an instant centre lies, and that nothing is left out by them that balances."""
+
+from __future__ import annotations
+
+from itertools import product
+from math import cos, hypot, sin
+
+import numpy as np
+import pytest
+
+from seating_examples import solved
+from workhold.kernels.base.feature import IS_ARC
+from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, HOLDING, KIND, LOW, SOURCE, VAGUE
+from workhold.kernels.seating.holdings import held
+from workhold.kernels.seating.middles import held_in, ray_in
+from workhold.kernels.seating.pieces import foot, on_piece, share_normals
+from workhold.kernels.seating.three_contacts import (
+    NARROWEST,
+    ROOT_LENGTH,
+    ROOT_PEG,
+    ROOT_PIECE,
+    ROOT_PSI,
+    ROOT_SIDE,
+    may_balance,
+    three_contacts,
+)
+from workhold.seating.filled import filled
+from workhold.seating.holdings import Holdings
+from workhold.seating.pattern import Pattern
+
+# mm, and a share. Rounding of an instant centre, which may be a kilometre off.
+ROUNDING, SHARE = 1e-6, 1e-6
+STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def cells_of(number):
+    """An example's part and holdings, and every cell over which its ray is known, with its middle."""
+    solver, fixture, _ = solved(number)
+    pattern = Pattern.of(fixture, solver.toolkit)
+    locus = solver.closing(pattern, False).locus
+    holdings = Holdings.of(locus, pattern)
+    kinds = holdings.given.holdings[:, KIND]
+    kept = [
+        (cell, middle)
+        for side in holdings.jaws
+        for cell, middle in zip(*holdings.by_holding(side), strict=True)
+        if cell[VAGUE] == 0.0 and kinds[int(cell[HOLDING])] == 0.0 and ray_in(middle)[0] > 0.0
+    ]
+    assert len(kept) > 200
+    return locus, holdings, kept
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_instant_centers_are_on_their_ray(number):
+    """As far off as told, in about its direction, the first contact no farther from its place in the middle than told."""
+    _, holdings, kept = cells_of(number)
+    given = holdings.sought
+    for cell, middle in kept:
+        (least, most, rx, ry, drift, turn, _), known = ray_in(middle), held_in(middle)
+        for psi in np.linspace(cell[LOW], cell[HIGH], 7)[1:-1]:
+            s = held(given.holdings[int(cell[HOLDING])], given, psi)
+            px, py = s[6] - s[0], s[7] - s[1]
+            far = hypot(px, py)
+            assert least * (1.0 - SHARE) - ROUNDING <= far <= most * (1.0 + SHARE) + ROUNDING
+            assert hypot(px / far - rx, py / far - ry) <= turn + SHARE
+            assert hypot(s[0] - known[0], s[1] - known[1]) <= drift + ROUNDING
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_where_a_third_peg_balances_it_is_found(number):
+    """Pegs of the other jaw are put level with the foot of P at an orientation in a cell, if the three forces balance."""
+    locus, holdings, kept = cells_of(number)
+    given, random, count = holdings.sought, np.random.default_rng(number), 0
+    work = np.empty((DEPTH, 2)), np.empty((5, len(locus.discs)))
+    for cell, middle in kept:
+        # Narrower ones, beside a tangency, are not cut, and told of where P is known well alone.
+        if cell[HIGH] - cell[LOW] <= 2.0 * NARROWEST:
+            continue
+        holding, psi = given.holdings[int(cell[HOLDING])], random.uniform(cell[LOW], cell[HIGH])
+        tail, curve, s = int(holding[FIRST_PEG]), int(holding[SOURCE]), held(holding, given, psi)
+        others, (x, y) = given.right != given.right[tail], (cos(psi), sin(psi))
+        push = 1.0 if given.right[tail] == 0 else -1.0
+        for piece, side in product(range(len(given.rows)), (1.0, -1.0)):
+            row = given.rows[piece]
+            fx, fy, nx, ny, _ = foot(row, s[6], s[7], side)
+            balances = push * (nx * x + ny * y) > 0.0 and may_balance(s, nx, ny, STILL, -2e-9)
+            if not (balances and on_piece(row, fx, fy, 0.0)) or (row[IS_ARC] == 0.0 and side < 0.0):
+                continue
+            if any(share_normals(given.rows[given.curves[curve, end]], row) for end in (TAIL, HEAD)):
+                continue
+            pegs = np.array(given.pegs)
+            pegs[others, 1] = pegs[tail, 1] + x * (fy - s[1]) - y * (fx - s[0])
+            one = cell[None, :], middle[None, :], given._replace(pegs=pegs), locus.discs, -1e4
+            roots = filled(ROOT_LENGTH, 64, three_contacts, *one, *work)
+            here = (
+                (roots[:, ROOT_PIECE] == piece) & (roots[:, ROOT_SIDE] == side) & (abs(roots[:, ROOT_PSI] - psi) < 1e-7)
+            )
+            assert set(roots[here, ROOT_PEG]) == set(np.flatnonzero(others))
+            count += 1
+    assert count > 200
