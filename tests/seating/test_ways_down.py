@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -9,14 +10,26 @@ import pytest
 
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONTACTS, PEG, PIECE, SEPARATION
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    COSINE,
+    MOVED,
+    NODE_LENGTH,
+    PEG,
+    PIECE,
+    SEPARATION,
+    SINE,
+    TURNED,
+)
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating import alone
+from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 from workhold.seating.tree import OUTSIDE, STOP, Builder
-from workhold.seating.ways_down import CONFIG, both_ways_down, free_ways, starts_off
+from workhold.seating.ways_down import CONFIG, Trodden, both_ways_down, free_ways, starts_off
 
 STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -77,21 +90,35 @@ def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the
     """Up to the last node that is told all are free and above the stop, and the next is not."""
     cut = whole = 0
     for closing, found, _, _ in ways:
-        for number, (group, down) in enumerate(found.groups):
-            rows = found.origins[found.origins[:, 0] == number, 1]
-            known = down.off(rows)
-            chosen, lasts = free_ways(group, known, known.numbers[rows].ravel(), closing)
-            for way, last in zip(chosen.tolist(), lasts.tolist(), strict=True):
-                nodes = known.nodes.rows[known.nodes.begins[way] : known.nodes.begins[way + 1], :4] + group.shift
-                free = clearance(closing, nodes, [0, 1, 2, 3]) > -2e-8
-                free &= nodes[:, 3] > closing.pattern.stop + 1e-6
-                count = last - known.nodes.begins[way] + 1
-                assert free[:count].all()
-                # Between nodes a peg may be in the part, too.
-                apart = np.abs(np.diff(nodes[count - 1 : count + 1], axis=0)).max(initial=0.0)
-                assert count == len(nodes) or not free[count] or apart > 0.35
-                cut, whole = cut + (0 < count < len(nodes)), whole + (count == len(nodes))
+        trodden = found.groups[0][1].trodden
+        chosen, whose, lasts = free_ways(found, np.arange(len(found.passes)), closing)
+        for way, group, last in zip(chosen.tolist(), whose.tolist(), lasts.tolist(), strict=True):
+            first, end = trodden.begins[way : way + 2]
+            nodes = trodden.nodes[first:end, :4] + found.groups[group][0].shift
+            free = clearance(closing, nodes, [0, 1, 2, 3]) > -2e-8
+            free &= nodes[:, 3] > closing.pattern.stop + 1e-6
+            count = last - first + 1
+            assert free[:count].all()
+            # Between nodes a peg may be in the part, too.
+            apart = np.abs(np.diff(nodes[count - 1 : count + 1], axis=0)).max(initial=0.0)
+            assert count == len(nodes) or not free[count] or apart > 0.35
+            cut, whole = cut + (0 < count < len(nodes)), whole + (count == len(nodes))
     assert cut > 20 and whole > 20
+
+
+def test_nodes_say_how_far_their_way_has_come(ways):
+    """All of it counted, and what the orientation's cosine and sine are."""
+    trodden = ways[0][1].groups[0][1].trodden
+    _, _, count = trodden.counts
+    assert count > 100
+    for first, end in pairwise(trodden.begins[: count + 1].tolist()):
+        nodes = trodden.nodes[first:end]
+        steps = np.abs(np.diff(nodes[:, :4], axis=0))
+        assert nodes[:, COSINE] == pytest.approx(np.cos(nodes[:, 0]), abs=1e-15)
+        assert nodes[:, SINE] == pytest.approx(np.sin(nodes[:, 0]), abs=1e-15)
+        assert nodes[0, [TURNED, MOVED]].tolist() == [0.0, 0.0]
+        assert nodes[1:, TURNED] == pytest.approx(np.cumsum(steps[:, 0]), abs=1e-12)
+        assert nodes[1:, MOVED] == pytest.approx(np.cumsum(steps[:, 1:].sum(axis=1)), abs=1e-9)
 
 
 def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
@@ -102,15 +129,39 @@ def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
         assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
 
 
-def test_ways_are_followed_once(ways):
+def test_ways_are_followed_once(ways, monkeypatch):
     """A second time none is; and some serve several patterns."""
-    _, found, _, _ = ways[0]
-    for number, (_, down) in enumerate(found.groups):
-        rows = found.origins[found.origins[:, 0] == number, 1]
-        before = down.known
-        assert down.off(rows) is before
+    closing, found, seats, _ = ways[0]
+    with monkeypatch.context() as patched:
+        patched.setattr(Closing, "followed", None)
+        both_ways_down(found, closing, seats)
     shared = [down for _, down in found.groups if any(down is other for _, other in ways[2][1].groups)]
-    assert len(shared) >= 4 and sum(len(down.known.how) for down in shared) > 10
+    known = [down.trodden.numbers[down.first : down.first + len(down.candidates)] for down in shared]
+    assert len(shared) >= 4 and (np.concatenate(known) >= 0).sum() > 10
+
+
+def test_what_is_added_while_others_read_stays_where_it_is():
+    """Room is made by moving all to where there is more: who has what was there still has it."""
+    trodden, (rng, read) = Trodden(), (np.random.default_rng(1), [])
+    for _ in range(20):
+        count = int(rng.integers(0, 5))
+        first = trodden.with_candidates(count)
+        lengths = rng.integers(1, 9, 2 * count)
+        nodes, how = rng.random((lengths.sum(), NODE_LENGTH)), rng.integers(0, 3, 2 * count).astype(np.int8)
+        trodden.add(np.arange(first, first + count), nodes, np.concatenate([[0], np.cumsum(lengths)]), how)
+        read.append((np.arange(first, first + count), trodden.nodes, trodden.begins, nodes, lengths, how))
+    for numbers, nodes, begins, told, lengths, how in read:
+        ways = trodden.numbers[numbers].ravel()
+        assert np.array_equal(trodden.how[ways], how)
+        for rows, starts in ((nodes, begins), (trodden.nodes, trodden.begins)):
+            assert np.array_equal(starts[ways + 1] - starts[ways], lengths)
+            own = [rows[starts[way] : starts[way + 1]] for way in ways]
+            assert np.array_equal(np.concatenate([np.zeros((0, NODE_LENGTH)), *own]), told)
+    assert trodden.counts == (
+        len(trodden.numbers[: trodden.counts[0]]),
+        sum(len(one[3]) for one in read),
+        sum(len(one[5]) for one in read),
+    )
 
 
 def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
@@ -118,7 +169,7 @@ def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
     for _, found, _, _ in ways:
         for row, (number, own) in zip(found.passes, found.origins.tolist(), strict=True):
             group, down = found.groups[number]
-            there = group.candidates(down.candidates[[own]])[0]
+            there = group.candidates(down.candidates[[own - down.first]])[0]
             assert there[:13] == pytest.approx(row[:13], abs=1e-9)
 
 

@@ -46,6 +46,7 @@ from workhold.kernels.seating.columns import (
     CELL_LENGTH,
     DEPTH,
     HOLDING_LENGTH,
+    NODE_LENGTH,
     Given,
     Obstacles,
     WorkSpace,
@@ -54,7 +55,7 @@ from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lies_along
+from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lies_along, nearest_of
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
@@ -195,15 +196,17 @@ def seats_and_passes() -> Calls:
     )
     yield free_runs, runs
     yield lies_along, (0.0, 0.0, 0.0, np.zeros((0, 4)), 1.0)
+    yield nearest_of, (np.zeros((0, 4)), np.zeros((0, 4)), 1.0, 1.0, 1.0, none)
     yield first_of_each, (many, 1.0, 1.0, none)
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
     yield stationary, (stood, np.zeros((0, SHAPE_LENGTH)), stack, many)
     yield tip_in_pocket, (stood, points, pockets, stack, points, many)
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
-    begins, nodes = np.zeros(1, np.int64), np.zeros((0, 6))
+    begins, nodes = np.zeros(1, np.int64), np.zeros((0, NODE_LENGTH))
     yield close_jaws, (ways, points, 1.0, obstacles, ways, work, np.zeros(0, np.int8), begins, nodes)
-    yield free_until, (none, nodes, begins, one, none, 1.0, obstacles, one, pegs, seen, none)
+    followed = none, none, nodes, begins, ways, np.zeros((0, 4), np.int8)
+    yield free_until, (*followed, 1.0, obstacles, np.zeros((4, 3)), none)
     yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))

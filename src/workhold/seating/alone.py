@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
-from attrs import frozen
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.candidates import complete_third, complete_three, settle
@@ -30,13 +32,13 @@ from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.tangent import tangent
-from workhold.seating.ways_down import WaysDown
+from workhold.seating.ways_down import Trodden, WaysDown
 
-__all__ = ["Alone", "alone", "balanced", "settled"]
+__all__ = ["Alone", "Kept", "alone", "balanced", "settled"]
 
 Array = NDArray[np.float64]
-# Groups of which something is kept, and nodes of their ways down, of 48 bytes; beyond, all are forgotten.
-MOST_KEPT, MOST_NODES = 1024, 1_000_000
+# Groups of which something is kept, and nodes of their ways down, of 80 bytes; beyond, all are forgotten.
+MOST_KEPT, MOST_NODES = 1024, 600_000
 # No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
 NONE = np.zeros((0, CANDIDATE_LENGTH))
@@ -44,7 +46,7 @@ NONE = np.zeros((0, CANDIDATE_LENGTH))
 Told = tuple[Array, Array, tuple[Way, ...]]
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Alone:
     """What a group of pegs does, in its own frame.
 
@@ -61,24 +63,44 @@ class Alone:
     ways: tuple[Way, ...]
     down: WaysDown
 
+    @cached_property
+    def levels(self) -> Array:
+        """The separations (W,) of the ways in mm."""
+        return np.array([way.configs[0, 3] for way in self.ways], dtype=np.float64)
 
-def alone(locus: Locus, group: Group, size: float) -> Alone:
+
+@define(eq=False)
+class Kept:
+    """What is known of groups on a part.
+
+    Parameters
+    ----------
+    found : what each does, by how its pegs stand.
+    trodden : their ways down.
+    """
+
+    found: dict[tuple[object, ...], Alone] = field(factory=dict)
+    trodden: Trodden = field(factory=Trodden)
+
+    @classmethod
+    def on(cls, locus: Locus) -> Kept:
+        """What is kept of the groups on a part: nothing when it has become too much. Who has it goes on with it."""
+        kept = locus.alone.get("kept")
+        if kept is None or len(kept.found) >= MOST_KEPT or kept.trodden.counts[1] > MOST_NODES:
+            kept = locus.alone["kept"] = cls()
+        return kept
+
+
+def alone(kept: Kept, locus: Locus, group: Group, size: float) -> Alone:
     """What a group does; ``size`` in mm as of ``equilibria``."""
-    kept, key = locus.alone, (size, *group.key)
-    found = kept.get(key)
+    key = size, *group.key
+    found = kept.found.get(key)
     if found is None:
         kind = jaw_alone if group.is_of_a_jaw else two_alone if len(group.sides) == 2 else three_alone
         candidates, fixed, ways = kind(locus, group.pattern, size)
-        found = Alone(candidates, fixed, ways, WaysDown(Closing(locus, group.pattern, size), candidates))
-        if len(kept) >= MOST_KEPT or nodes_kept(locus) > MOST_NODES:
-            kept.clear()
-        kept[key] = found
+        closing = Closing(locus, group.pattern, size)
+        found = kept.found[key] = Alone(candidates, fixed, ways, WaysDown(closing, candidates, kept.trodden))
     return found
-
-
-def nodes_kept(locus: Locus) -> int:
-    """How many nodes of ways down are kept of groups on a part."""
-    return sum(len(one.down.known.nodes.rows) for one in list(locus.alone.values()))
 
 
 def two_alone(locus: Locus, pattern: Pattern, size: float) -> Told:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from attrs import define, frozen
+from attrs import define
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws
-from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.columns import NODE_LENGTH, Obstacles, WorkSpace
 from workhold.kernels.seating.leaving import leave
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["LONGEST_STEP", "Closing", "Nodes"]
+__all__ = ["LONGEST_STEP", "Closing"]
 
 Array = NDArray[np.float64]
 # No step is longer than this part of the peg radius: no wall is thin enough to be passed.
@@ -24,25 +24,6 @@ DIRECTIONS = 48
 NO_SEATS = np.zeros((0, 4))
 # Nodes that a way down has as a rule.
 USUAL = 128
-
-
-@frozen(eq=False)
-class Nodes:
-    """Configurations on ways, one way after the other.
-
-    Parameters
-    ----------
-    rows : (M, 6) configurations, with how long the next steps are in mm.
-    begins : (N + 1,) where those of each way begin and, last, end.
-    """
-
-    rows: Array
-    begins: NDArray[np.int64]
-
-    def joined(self, others: Nodes) -> Nodes:
-        """These and, after them, others."""
-        begins = np.concatenate([self.begins, others.begins[1:] + len(self.rows)])
-        return Nodes(np.concatenate([self.rows, others.rows]), begins)
 
 
 @define(frozen=True, eq=False, slots=False)
@@ -83,20 +64,25 @@ class Closing:
         ends, _, _ = self.closed(out, lengths, obstacles, seats, 0)
         return out, ends
 
-    def followed(self, configs: Array, first: Array, seats: Array) -> tuple[Nodes, NDArray[np.int8]]:
-        """The ways from configurations (N, 4), from first steps (N,) in mm on, and how they end; see ``run``."""
+    def followed(self, configs: Array, first: Array, seats: Array) -> tuple[Array, NDArray[np.int64], NDArray[np.int8]]:
+        """The nodes (M, 10) of the ways from configurations (N, 4), from first steps (N,) in mm on, where those of each
+        begin and, last, end, and how the ways end; see ``run``."""
         lengths, room = np.stack([first, first], axis=1), USUAL * len(configs)
         while True:
             ends, begins, nodes = self.closed(np.array(configs), lengths, self.obstacles, seats, room)
             if begins[-1] <= room:
-                return Nodes(np.array(nodes[: begins[-1]]), begins), ends
+                return nodes[: begins[-1]], begins, ends
             room = int(begins[-1])
 
     def closed(
         self, configs: Array, lengths: Array, obstacles: Obstacles, seats: Array, room: int
     ) -> tuple[NDArray[np.int8], NDArray[np.int64], Array]:
         """How ways from configurations, which are moved to their ends, end, and their nodes, as far as there is room."""
-        ends, begins, nodes = np.zeros(len(configs), np.int8), np.empty(len(configs) + 1, np.int64), np.empty((room, 6))
+        ends, begins, nodes = (
+            np.zeros(len(configs), np.int8),
+            np.empty(len(configs) + 1, np.int64),
+            np.empty((room, NODE_LENGTH)),
+        )
         work = WorkSpace.for_pieces(len(obstacles.rows))
         known = seats[np.argsort(seats[:, 3], kind="stable")]
         most = LONGEST_STEP * min(self.pattern.radii)

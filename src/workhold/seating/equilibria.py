@@ -13,9 +13,10 @@ from workhold.kernels.seating.four_contacts import two_holdings
 from workhold.kernels.seating.freedom import first_of_each
 from workhold.kernels.seating.slides import slides_held
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH
-from workhold.seating.alone import alone, balanced, settled
+from workhold.seating.alone import Kept, alone, balanced, settled
 from workhold.seating.balance import settle_on_wall
 from workhold.seating.common_normals import squeezed
+from workhold.seating.families import SAME as SAME_LEVEL
 from workhold.seating.families import Family, Finder
 from workhold.seating.fence import fence_candidates
 from workhold.seating.filled import filled
@@ -48,8 +49,8 @@ class Equilibria:
     passes : (N, 24) those with one way down, to both sides of the direction of motion.
     loose : sets of equilibria with one separation.
     doubtful : (N, 24) those of which bounds did not decide that they exist, of near ones the one that presses hardest.
-    origins : (N, 2) for each pass the number of the group that makes it, and its number among those of the group; -1 where
-        none does.
+    origins : (N, 2) for each pass the number of the group that makes it, and of its candidate among all that are kept; -1
+        where none does.
     groups : what is known of the ways down of groups.
     """
 
@@ -71,22 +72,25 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, *work)
     candidates = [filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)]
     groups, ways, origins = list[tuple[Group, WaysDown]](), [], [nowhere(len(candidates[0]))]
+    kept = Kept.on(locus)
     for group in groups_of(pattern):
-        own = alone(locus, group, size)
+        own = alone(kept, locus, group, size)
         candidates.append(group.candidates(own.candidates))
-        rows = np.arange(len(own.candidates))
-        origins.append(np.stack([np.full(len(rows), len(groups)), rows], axis=1))
+        rows = np.empty((len(own.candidates), 2), np.int64)
+        rows[:, 0], rows[:, 1] = len(groups), own.down.first + np.arange(len(rows))
+        origins.append(rows)
         groups.append((group, own.down))
         if len(own.fixed):
             jaw, fixed = group.sides[0], group.candidates(own.fixed)
             candidates.append(filled(CANDIDATE_LENGTH, 4 * len(fixed) + 64, fourths, fixed, jaw, given))
             origins.append(nowhere(len(candidates[-1])))
-        ways += [way.moved(group) for way in own.ways]
+        levels = own.levels + group.shift[3]
+        ways += [own.ways[k].moved(group) for k in np.flatnonzero(pattern.reaches(levels, SAME_LEVEL)).tolist()]
     candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets))
     every, whose = np.concatenate(candidates), np.concatenate([*origins, nowhere(len(candidates[-1]))])
     reached = pattern.reaches(every[:, SEPARATION])
     every = settled(every[reached], given, size)
-    return sorted_out(every, finder.families(finder.cut_all(ways)), whose[reached], tuple(groups))
+    return sorted_out(every, finder.families(finder.cut(ways)), whose[reached], tuple(groups))
 
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:

@@ -15,7 +15,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.columns import PEG, PLACE_X, PLACE_Y, SEPARATION, THETA
+from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION
 from workhold.seating.pattern import Pattern
 
 __all__ = ["Group", "groups_of", "jaw_groups"]
@@ -87,10 +87,15 @@ class Group:
     def candidates(self, rows: Array) -> Array:
         """Candidates (N, 24) of the pegs alone as those of the pattern."""
         out = np.array(rows)
-        out[:, [THETA, PLACE_X, PLACE_Y, SEPARATION]] += self.shift
-        names = np.array([*self.numbers, -1.0])
-        out[:, PEG : PEG + 4] = names[out[:, PEG : PEG + 4].astype(np.int64)]
+        # Of all four the first is a turn, and stays as it is.
+        out[:, PLACE_X : SEPARATION + 1] += self.shift[1:]
+        out[:, PEG : PEG + 4] = self.names[out[:, PEG : PEG + 4].astype(np.int64)]
         return out
+
+    @cached_property
+    def names(self) -> Array:
+        """The pattern's number of each peg, and -1 of none, which comes last."""
+        return np.array([*self.numbers, -1.0])
 
 
 def rounded(x: float) -> float:

@@ -30,7 +30,7 @@ from workhold.seating.hull import Hull
 from workhold.seating.touch import Touch
 
 if TYPE_CHECKING:
-    from workhold.seating.alone import Alone
+    from workhold.seating.alone import Kept
     from workhold.seating.common_normals import CommonNormal
     from workhold.seating.holdings import JawHoldings
     from workhold.seating.pattern import Pattern
@@ -164,8 +164,8 @@ class Locus:
         return {}
 
     @cached_property
-    def alone(self) -> dict[tuple[object, ...], Alone]:
-        """What groups of pegs do, by how they stand; see ``seating.alone``, which fills it."""
+    def alone(self) -> dict[str, Kept]:
+        """What is kept of groups of pegs; see ``seating.alone``, which fills it."""
         return {}
 
     def curves(self, length: float, side: int) -> CurveTable:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import SEPARATION
+from workhold.kernels.seating.freedom import nearest_of
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.families import Family
@@ -252,18 +253,17 @@ class Builder:
 
     def near_seats(self, configs: Array) -> NDArray[np.int64]:
         """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
+        numbers, seats = self.ordered
+        out = np.empty(len(configs), np.int64)
+        nearest_of(np.ascontiguousarray(configs), seats, self.closing.size, AT_SEAT, SAME_LEVEL, out)
+        return numbers[out]
+
+    @cached_property
+    def ordered(self) -> tuple[NDArray[np.int64], Array]:
+        """The numbers (N + 1,) of the strict seats by their separation, and -1, and their configurations (N, 4)."""
         numbers = np.flatnonzero(self.strict)
         numbers = numbers[np.argsort(self.seats[numbers, SEPARATION], kind="stable")]
-        seats, out = self.seats[numbers][:, CONFIG], np.full(len(configs), -1)
-        first, end = (np.searchsorted(seats[:, 3], configs[:, 3] + by) for by in (-SAME_LEVEL, SAME_LEVEL))
-        nearest = np.full(len(configs), AT_SEAT)
-        for k in range(int((end - first).max(initial=0))):
-            some = np.flatnonzero(first + k < end)
-            at = first[some] + k
-            away = distances(configs[some], seats[at], self.closing.size)
-            is_nearer = away < nearest[some]
-            nearest[some[is_nearer]], out[some[is_nearer]] = away[is_nearer], numbers[at[is_nearer]]
-        return out
+        return np.append(numbers, -1), np.ascontiguousarray(self.seats[numbers][:, CONFIG])
 
     @cached_property
     def below(self) -> list[Seen]:

@@ -6,10 +6,11 @@ pegs.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from threading import Lock
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
@@ -17,20 +18,22 @@ from workhold.kernels.seating.columns import (
     CONTACTS,
     DOUBT,
     MOTION,
+    NODE_LENGTH,
     PLACE_X,
     PLACE_Y,
     SECOND,
     SEPARATION,
+    STEP,
+    STEP_ALONG,
     THETA,
 )
 from workhold.kernels.seating.following import free_until
-from workhold.seating.descents import LONGEST_STEP, Closing, Nodes
-from workhold.seating.groups import Group
+from workhold.seating.descents import LONGEST_STEP, Closing
 
 if TYPE_CHECKING:
     from workhold.seating.equilibria import Equilibria
 
-__all__ = ["BESIDE", "CONFIG", "WaysDown", "both_ways_down", "steps_off"]
+__all__ = ["BESIDE", "CONFIG", "Trodden", "WaysDown", "both_ways_down", "steps_off"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -62,19 +65,57 @@ def starts_off(rows: Array, size: float) -> tuple[Array, Array]:
     return np.stack([configs + steps, configs - steps], axis=1).reshape(-1, 4), np.repeat(lengths / 2.0, 2)
 
 
-@frozen(eq=False)
-class Followed:
-    """Ways that were followed.
+@define(eq=False)
+class Trodden:
+    """The ways down of all groups of pegs on a part, as far as they were followed.
+
+    What was written stays where it is: who has read how much there is reads it while others add to it.
 
     Parameters
     ----------
-    numbers : (N, 2) of the ways off both sides of each candidate, -1 as long as they are not known.
-    nodes, how : along them, and how they end, as of ``Closing.followed``.
+    numbers : (C, 2) of the ways off both sides of each candidate, -1 as long as they are not known.
+    nodes : (M, 10) along all ways: ``kernels.seating.columns``.
+    begins : (W + 1,) where those of each way begin and, last, end.
+    how : (W,) how each ends: ``kernels.seating.closing``.
+    counts : how many candidates, nodes and ways there are: there is room for more.
     """
 
-    numbers: IntArray
-    nodes: Nodes
-    how: NDArray[np.int8]
+    numbers: IntArray = field(factory=lambda: np.zeros((0, 2), np.int64))
+    nodes: Array = field(factory=lambda: np.zeros((0, NODE_LENGTH)))
+    begins: IntArray = field(factory=lambda: np.zeros(1, np.int64))
+    how: NDArray[np.int8] = field(factory=lambda: np.zeros(0, np.int8))
+    counts: tuple[int, int, int] = (0, 0, 0)
+    lock: Lock = field(factory=Lock)
+
+    def with_candidates(self, count: int) -> int:
+        """The number of the first of so many further candidates."""
+        with self.lock:
+            first, nodes, ways = self.counts
+            self.numbers = with_room(self.numbers, first, count)
+            self.numbers[first : first + count] = -1
+            self.counts = first + count, nodes, ways
+        return first
+
+    def add(self, candidates: IntArray, nodes: Array, begins: IntArray, how: NDArray[np.int8]) -> None:
+        """Add the ways off both sides of some candidates, one after the other; the last two as of all."""
+        with self.lock:
+            every, first, ways = self.counts
+            self.nodes, self.how = with_room(self.nodes, first, len(nodes)), with_room(self.how, ways, len(how))
+            self.begins = with_room(self.begins, ways + 1, len(how))
+            self.nodes[first : first + len(nodes)] = nodes
+            self.begins[ways + 1 : ways + len(begins)] = first + begins[1:]
+            self.how[ways : ways + len(how)] = how
+            self.counts = every, first + len(nodes), ways + len(how)
+            self.numbers[candidates] = ways + np.arange(len(how)).reshape(-1, 2)
+
+
+def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
+    """An array of which some rows are taken, with room for more: itself, or one of twice the length that begins as it."""
+    if count + more <= len(rows):
+        return rows
+    out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)
+    out[:count] = rows[:count]
+    return out
 
 
 @define(eq=False)
@@ -85,32 +126,25 @@ class WaysDown:
     ----------
     closing : the jaws with these pegs alone.
     candidates : (N, 24) their equilibria.
-    known : what was followed so far.
+    trodden : what was followed so far.
+    first : number of the first candidate there.
     """
 
     closing: Closing
     candidates: Array
-    known: Followed = field(init=False)
+    trodden: Trodden
+    first: int = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        none = Nodes(np.zeros((0, 6)), np.zeros(1, np.int64))
-        self.known = Followed(np.full((len(self.candidates), 2), -1), none, np.zeros(0, np.int8))
+        self.first = self.trodden.with_candidates(len(self.candidates))
 
-    def off(self, rows: IntArray) -> Followed:
-        """The ways off some of the candidates, those known, and followed, before among others."""
-        # Another thread may follow some at the same time: what one of them found is lost then, and found again.
-        known = self.known
-        new = rows[known.numbers[rows, 0] < 0]
-        if len(new):
-            starts, first = starts_off(self.candidates[new], self.closing.size)
-            every = self.candidates
-            is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
-            nodes, how = self.closing.followed(starts, first, every[is_seat][:, CONFIG])
-            numbers = np.array(known.numbers)
-            numbers[new] = len(known.how) + np.arange(len(starts)).reshape(-1, 2)
-            known = Followed(numbers, known.nodes.joined(nodes), np.concatenate([known.how, how]))
-            self.known = known
-        return known
+    def follow(self, numbers: IntArray) -> None:
+        """Follow the ways off some of the candidates, by their numbers there."""
+        # Another thread may follow some at the same time: then both are there, and are the same.
+        starts, first = starts_off(self.candidates[numbers - self.first], self.closing.size)
+        every = self.candidates
+        is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
+        self.trodden.add(numbers, *self.closing.followed(starts, first, every[is_seat][:, CONFIG]))
 
 
 def both_ways_down(found: Equilibria, closing: Closing, seats: Array) -> tuple[Array, Array, NDArray[np.int8]]:
@@ -123,24 +157,37 @@ def both_ways_down(found: Equilibria, closing: Closing, seats: Array) -> tuple[A
     starts, first = starts_off(found.passes, closing.size)
     ends, how = np.array(starts), np.full(len(starts), AT_REST, np.int8)
     lengths, left = np.stack([first, first], axis=1), np.ones(len(starts), np.bool_)
-    for number, (group, down) in enumerate(found.groups):
-        chosen = np.flatnonzero(found.origins[:, 0] == number)
-        if len(chosen):
-            known = down.off(found.origins[chosen, 1])
-            ways, lasts = free_ways(group, known, known.numbers[found.origins[chosen, 1]].ravel(), closing)
-            mine = (2 * chosen[:, None] + [0, 1]).ravel()
-            begun = lasts >= known.nodes.begins[ways]
-            reached = known.nodes.rows[lasts[begun]]
-            ends[mine[begun]], lengths[mine[begun]] = reached[:, :4] + group.shift, reached[:, 4:]
-            left[mine] = ~begun | (lasts + 1 < known.nodes.begins[ways + 1]) | (known.how[ways] != AT_REST)
+    known = np.flatnonzero(found.origins[:, 0] >= 0)
+    if len(known):
+        trodden = found.groups[0][1].trodden
+        ways, whose, lasts = free_ways(found, known, closing)
+        mine, begun = (2 * known[:, None] + [0, 1]).ravel(), lasts >= trodden.begins[ways]
+        reached, mine_begun = trodden.nodes[lasts[begun]], mine[begun]
+        lengths[mine_begun], ends[mine_begun] = reached[:, [STEP, STEP_ALONG]], reached[:, :4]
+        ends[mine_begun] += shifts_of(found)[whose[begun]]
+        left[mine] = ~begun | (lasts + 1 < trodden.begins[ways + 1]) | (trodden.how[ways] != AT_REST)
     ends[left], how[left] = closing.run(ends[left], lengths[left], seats)
     return starts, ends, how
 
 
-def free_ways(group: Group, known: Followed, ways: IntArray, closing: Closing) -> tuple[IntArray, IntArray]:
-    """Some ways of a group, and the last node of each at which the pattern's other pegs are not in the part."""
-    others = np.array([peg for peg in range(len(closing.pattern.pegs)) if peg not in group.numbers], np.int64)
+def shifts_of(found: Equilibria) -> Array:
+    """By which configurations of each group (G, 4) become those of the pattern."""
+    return np.array([group.shift for group, _ in found.groups])
+
+
+def free_ways(found: Equilibria, passes: IntArray, closing: Closing) -> tuple[IntArray, IntArray, IntArray]:
+    """The ways off both sides of some passes (2 N,), the groups whose they are, and the last node of each at which the
+    pattern's other pegs are not in the part."""
+    whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
+    trodden = found.groups[0][1].trodden
+    new = trodden.numbers[numbers, 0] < 0
+    for group in dict.fromkeys(whose[new].tolist()):
+        found.groups[group][1].follow(numbers[new & (whose == group)])
+    ways, whose = trodden.numbers[numbers].ravel(), np.repeat(whose, 2)
+    others = np.ones((len(found.groups), len(closing.pattern.pegs)), np.int8)
+    for row, (group, _) in zip(others, found.groups, strict=True):
+        row[list(group.numbers)] = 0
     most, lasts = LONGEST_STEP * min(closing.pattern.radii), np.empty(len(ways), np.int64)
-    work = closing.obstacles, np.empty(4), np.empty((4, 2)), np.empty((4, 3))
-    free_until(ways, known.nodes.rows, known.nodes.begins, group.shift, others, most, *work, lasts)
-    return ways, lasts
+    work = shifts_of(found), others, most, closing.obstacles, np.empty((4, 3))
+    free_until(ways, whose, trodden.nodes, trodden.begins, *work, lasts)
+    return ways, whose, lasts

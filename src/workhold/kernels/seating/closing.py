@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.columns import COSINE, MOVED, SINE, STEP, STEP_ALONG, TURNED, Obstacles, WorkSpace
 from workhold.kernels.seating.squeezing import squeeze
 from workhold.kernels.seating.walls import add_wall
 
@@ -323,12 +323,20 @@ def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
 
 
 @inner
-def add_node(config: Array, trust: float, longest: float, nodes: Array, at: int) -> int:
-    """Write a configuration on a way and how long the next steps from it are, if there is room; the next number."""
+def add_node(config: Array, trust: float, longest: float, nodes: Array, first: int, at: int) -> int:
+    """Write a configuration on a way whose nodes begin with a first one, if there is room, and how long the next steps from
+    it are; the next number."""
     if at < nodes.shape[0]:
+        node = nodes[at]
         for j in range(4):
-            nodes[at, j] = config[j]
-        nodes[at, 4], nodes[at, 5] = trust, longest
+            node[j] = config[j]
+        node[STEP], node[STEP_ALONG] = trust, longest
+        node[COSINE], node[SINE] = cos(config[0]), sin(config[0])
+        node[TURNED] = node[MOVED] = 0.0
+        if at > first:
+            before = nodes[at - 1]
+            node[TURNED] = before[TURNED] + abs(node[0] - before[0])
+            node[MOVED] = before[MOVED] + abs(node[1] - before[1]) + abs(node[2] - before[2]) + abs(node[3] - before[3])
     return at + 1
 
 
@@ -345,11 +353,11 @@ def close_one(
     at: int,
 ) -> tuple[int, int]:
     """Close the jaws from a configuration, in place; how it ended, and the number after that of the last node."""
-    trial, wait, below = work.trial, 0, seats.shape[0]
+    trial, wait, below, first = work.trial, 0, seats.shape[0], at
     count = push_out(config, obstacles, 8.0 * trust + 1e-6, work)
     if count < 0:
         return (GAVE_UP, at)
-    at = add_node(config, trust, longest, nodes, at)
+    at = add_node(config, trust, longest, nodes, first, at)
     for _ in range(MOST_STEPS):
         if config[3] <= obstacles.stop + 1e-9:
             config[3] = obstacles.stop
@@ -369,7 +377,7 @@ def close_one(
         if length != 0.0:
             for j in range(4):
                 config[j] = trial[j]
-            at = add_node(config, trust, longest, nodes, at)
+            at = add_node(config, trust, longest, nodes, first, at)
             count = -1
             continue
         gain = best_step(count, trust, work)
@@ -391,7 +399,7 @@ def close_one(
             trust = min(1.6 * trust, most)
         for j in range(4):
             config[j] = trial[j]
-        at = add_node(config, trust, longest, nodes, at)
+        at = add_node(config, trust, longest, nodes, first, at)
     return (GAVE_UP, at)
 
 
@@ -416,7 +424,7 @@ def close_jaws(
     seats : (M, 4) configurations at which closing ends, known beforehand, ordered by S.
     ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
     begins : (N + 1,) where the nodes of each way begin and, last, end, written here.
-    nodes : (M, 6) configurations after each step, with the lengths of the next steps, written here as far as there is room.
+    nodes : (M, 10) configurations after each step, with what ``columns`` says, written here as far as there is room.
     """
     count = 0
     for peg in range(obstacles.pegs.shape[0]):

@@ -13,6 +13,10 @@ four pegs from PEG on, four pieces from PIECE on, four forces from FORCE on (per
 are fewer), SECOND (second derivative of the separation along what is left free, in any positive measure; 0 of four
 contacts), the direction of that motion from MOTION on (theta, x, y), DOUBT (1 where bounds did not decide that it
 exists), CLEAR (least clearance in mm of the pegs that do not touch), RESIDUAL (how far the forces are from a balance).
+
+A node is a configuration on a way down (theta, x, y, S), with STEP and STEP_ALONG (how long the next steps from it are in
+mm, of linear programs and along both faces), COSINE and SINE (of theta), TURNED and MOVED (how far in radians and in mm the
+way has turned and moved since it began, all of it counted).
 """
 
 from __future__ import annotations
@@ -30,6 +34,8 @@ THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS, PEG = range(6)
 PIECE, FORCE, SECOND, MOTION = 9, 13, 17, 18
 DOUBT, CLEAR, RESIDUAL = 21, 22, 23
 CANDIDATE_LENGTH = 24
+STEP, STEP_ALONG, COSINE, SINE, TURNED, MOVED = range(4, 10)
+NODE_LENGTH = 10
 # Rows of the work space in which ranges wait to be looked at.
 DEPTH = 128
 

@@ -1,13 +1,14 @@
-"""How far a way down of some pegs of a pattern is free of the others."""
+"""How far ways down of some pegs of a pattern are free of the others."""
 
 from __future__ import annotations
+
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.seating.columns import Obstacles
-from workhold.kernels.seating.pieces import place_on_part
+from workhold.kernels.seating.columns import COSINE, MOVED, SINE, TURNED, Obstacles
 from workhold.kernels.seating.squeezing import is_peg_free
 
 Array = NDArray[np.float64]
@@ -20,33 +21,69 @@ PARTS = 3
 
 
 @inner
-def keeps_off(
-    config: Array, peg: int, is_first: bool, most: float, obstacles: Obstacles, seen: Array, known: Array
+def place_at(node: Array, shift: Array, peg: int, obstacles: Obstacles) -> tuple[float, float]:
+    """Place of a peg's centre on the part at a node, which is shifted but not turned."""
+    x = obstacles.pegs[peg, 0] + obstacles.right[peg] * (node[3] + shift[3]) - (node[1] + shift[1])
+    y = obstacles.pegs[peg, 1] - (node[2] + shift[2])
+    return (node[COSINE] * x + node[SINE] * y, node[COSINE] * y - node[SINE] * x)
+
+
+@inner
+def is_step_free(
+    from_x: float, from_y: float, to_x: float, to_y: float, peg: int, most: float, obstacles: Obstacles, known: Array
 ) -> bool:
-    """Whether a peg is not in the part in a configuration, nor on a long way to it from where it was seen last."""
-    x, y = place_on_part(config, obstacles, peg)
-    dx, dy = x - seen[peg, 0], y - seen[peg, 1]
-    if not is_first and dx * dx + dy * dy > most * most:
+    """Whether a peg is not in the part on a step on it, at places no farther apart than most but for a few."""
+    dx, dy = to_x - from_x, to_y - from_y
+    if dx * dx + dy * dy > most * most:
         for part in range(1, PARTS):
-            if not is_peg_free(
-                seen[peg, 0] + part / PARTS * dx, seen[peg, 1] + part / PARTS * dy, peg, obstacles, known
-            ):
+            if not is_peg_free(from_x + part / PARTS * dx, from_y + part / PARTS * dy, peg, obstacles, known):
                 return False
-    seen[peg, 0], seen[peg, 1] = x, y
-    return is_peg_free(x, y, peg, obstacles, known)
+    return True
+
+
+@inner
+def last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, known: Array) -> int:
+    """The last node up to which, from one where a peg is at a place of the part, it surely stays within the disc in which it
+    is known to be free: no place on the part that is as far from its centre moves faster than the part turns and moves."""
+    dx, dy = x - known[peg, 0], y - known[peg, 1]
+    left = known[peg, 2] - sqrt(dx * dx + dy * dy)
+    if left > 0.0:
+        arm = sqrt(x * x + y * y) + left
+        turned, moved = nodes[at, TURNED], nodes[at, MOVED]
+        while at + 1 < end and (nodes[at + 1, TURNED] - turned) * arm + nodes[at + 1, MOVED] - moved < left:
+            at += 1
+    return at
+
+
+@inner
+def end_of_free(
+    nodes: Array, first: int, end: int, shift: Array, peg: int, most: float, obstacles: Obstacles, known: Array
+) -> int:
+    """The first of some nodes of a way at which a peg is in the part, or on the step to it; their end where there is
+    none."""
+    at, from_x, from_y = first, 0.0, 0.0
+    while at < end:
+        x, y = place_at(nodes[at], shift, peg, obstacles)
+        if at > first and not is_step_free(from_x, from_y, x, y, peg, most, obstacles, known):
+            return at
+        if not is_peg_free(x, y, peg, obstacles, known):
+            return at
+        last = last_near(nodes, at, end, x, y, peg, known)
+        from_x, from_y = (x, y) if last == at else place_at(nodes[last], shift, peg, obstacles)
+        at = last + 1
+    return end
 
 
 @compiled
 def free_until(
     chosen: IntArray,
+    whose: IntArray,
     nodes: Array,
     begins: IntArray,
-    shift: Array,
-    others: IntArray,
+    shifts: Array,
+    others: NDArray[np.int8],
     most: float,
     obstacles: Obstacles,
-    config: Array,
-    seen: Array,
     known: Array,
     lasts: IntArray,
 ) -> None:
@@ -55,26 +92,22 @@ def free_until(
 
     Parameters
     ----------
-    chosen : (N,) numbers of ways.
+    chosen, whose : (N,) numbers of ways, and of the groups of pegs whose they are.
     nodes, begins : of all ways, as of ``closing.close_jaws``.
-    shift : (4,) to be added to their configurations.
-    others : (K,) numbers of the pegs.
+    shifts : (G, 4) to be added to the configurations of each group.
+    others : (G, K) 1 for the pegs that are not in each group.
     most : how long a step of a peg on the part is that is looked at only where it ends, in mm.
-    config, seen, known : (4,), (4, 2) and (4, 3) work space.
+    known : (4, 3) work space.
     lasts : (N,) written here.
     """
     for peg in range(obstacles.pegs.shape[0]):
         known[peg, 2] = -1.0
     for n in range(chosen.shape[0]):
-        first, end = begins[chosen[n]], begins[chosen[n] + 1]
-        last = first
-        while last < end:
-            for j in range(4):
-                config[j] = nodes[last, j] + shift[j]
-            free = config[3] > obstacles.stop + ABOVE
-            for k in range(others.shape[0]):
-                free = free and keeps_off(config, others[k], last == first, most, obstacles, seen, known)
-            if not free:
-                break
-            last += 1
-        lasts[n] = last - 1
+        group, first, end = whose[n], begins[chosen[n]], begins[chosen[n] + 1]
+        # On a way S only falls.
+        while end > first and nodes[end - 1, 3] + shifts[group, 3] <= obstacles.stop + ABOVE:
+            end -= 1
+        for peg in range(obstacles.pegs.shape[0]):
+            if others[group, peg] != 0:
+                end = end_of_free(nodes, first, end, shifts[group], peg, most, obstacles, known)
+        lasts[n] = end - 1

@@ -263,6 +263,34 @@ def lies_along(theta: float, x: float, y: float, configs: Array, arm: float) -> 
 
 
 @compiled
+def nearest_of(configs: Array, others: Array, arm: float, most: float, level: float, out: IntArray) -> None:
+    """Write the number of the nearest of some configurations (M, 4), ordered by S, to each of others (N, 4); -1 where there
+    is none.
+
+    Parameters
+    ----------
+    arm : in mm, by which turns are counted.
+    most, level : how far in mm it may be at most, and how much its S may differ, in mm.
+    out : (N,) written here.
+    """
+    for n in range(configs.shape[0]):
+        config, nearest, low, high = configs[n], most, 0, others.shape[0]
+        out[n] = -1
+        while low < high:
+            middle = (low + high) // 2
+            if others[middle, 3] < config[3] - level:
+                low = middle + 1
+            else:
+                high = middle
+        while low < others.shape[0] and others[low, 3] < config[3] + level:
+            turn = abs((config[0] - others[low, 0] + pi) % (2.0 * pi) - pi)
+            away = turn * arm + hypot(config[1] - others[low, 1], config[2] - others[low, 2])
+            if away < nearest:
+                nearest, out[n] = away, low
+            low += 1
+
+
+@compiled
 def first_of_each(rows: Array, turn: float, shift: float, kept: IntArray) -> int:
     """Write the numbers of candidates (N, 24) that are none of those before them; how many they are.
 
