@@ -10,12 +10,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import root
 
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import PEG, PIECE
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.seating import Solver
+from workhold.seating.tree import CONFIG
 
 Array = NDArray[np.float64]
 SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]
@@ -168,3 +172,32 @@ def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array
             if trust < 1e-6 or sign * config[3] < sign * stop + 1e-6:
                 return config
     return config
+
+
+def on_pieces(row, given, config):
+    """The pieces of a candidate's three contacts, each with where its peg is in a configuration, seen from its middle or
+    centre."""
+    theta, x, y, s = config
+    for k in range(3):
+        peg, piece = int(row[PEG + k]), given.rows[int(row[PIECE + k])]
+        qx, qy = given.pegs[peg, 0] + given.right[peg] * s - x, given.pegs[peg, 1] - y
+        yield piece, cos(theta) * qx + sin(theta) * qy - piece[X], cos(theta) * qy - sin(theta) * qx - piece[Y]
+
+
+def touching(row, given, config):
+    """How far the three pegs of a candidate are from the lines and circles of their pieces in a configuration."""
+    return np.array(
+        [
+            dx * piece[AXIS_Y] - dy * piece[AXIS_X]
+            if piece[IS_ARC] == 0.0
+            else piece[SIGN] * (hypot(dx, dy) - piece[RADIUS])
+            for piece, dx, dy in on_pieces(row, given, config)
+        ]
+    )
+
+
+def at_angle(row, given, theta):
+    """The separation at which the three pegs touch, the part turned a little farther."""
+    found = root(lambda u: touching(row, given, (theta, *u)), row[CONFIG][1:], tol=1e-13)
+    assert np.abs(found.fun).max() < 1e-10
+    return found.x[2]

@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.optimize import root
 
-from seating_examples import held
+from seating_examples import at_angle, held, on_pieces, touching
 from workhold import Vise, Workpiece, load
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, MOTION, PEG, PIECE, SECOND, SEPARATION
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.seating.alone import in_balance
@@ -34,28 +33,6 @@ PLATE = Workpiece.from_loops(
 )
 
 
-def on_pieces(row, given, config):
-    """The pieces of a candidate's three contacts, each with where its peg is in a configuration, seen from its middle or
-    centre."""
-    theta, x, y, s = config
-    for k in range(3):
-        peg, piece = int(row[PEG + k]), given.rows[int(row[PIECE + k])]
-        qx, qy = given.pegs[peg, 0] + given.right[peg] * s - x, given.pegs[peg, 1] - y
-        yield piece, cos(theta) * qx + sin(theta) * qy - piece[X], cos(theta) * qy - sin(theta) * qx - piece[Y]
-
-
-def touching(row, given, config):
-    """How far the three pegs of a candidate are from the lines and circles of their pieces in a configuration."""
-    return np.array(
-        [
-            dx * piece[AXIS_Y] - dy * piece[AXIS_X]
-            if piece[IS_ARC] == 0.0
-            else piece[SIGN] * (hypot(dx, dy) - piece[RADIUS])
-            for piece, dx, dy in on_pieces(row, given, config)
-        ]
-    )
-
-
 def beyond_ends(row, given):
     """How far the three pegs of a candidate are past the ends of their pieces, in mm, at most."""
     out = []
@@ -64,13 +41,6 @@ def beyond_ends(row, given):
         at, scale = (along, 1.0) if piece[IS_ARC] == 0.0 else (atan2(across, along), piece[RADIUS])
         out.append((abs(at) - piece[HALF_EXTENT]) * scale)
     return max(out)
-
-
-def at_angle(row, given, theta):
-    """The separation at which the three pegs touch, the part turned a little farther."""
-    found = root(lambda u: touching(row, given, (theta, *u)), row[CONFIG][1:], tol=1e-13)
-    assert np.abs(found.fun).max() < 1e-10
-    return found.x[2]
 
 
 @pytest.fixture(scope="module")

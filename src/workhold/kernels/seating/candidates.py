@@ -11,6 +11,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import (
+    ANGLE,
     CANDIDATE_LENGTH,
     CLEAR,
     CONTACTS,
@@ -31,9 +32,8 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
-from workhold.kernels.seating.holdings import END, held, is_on_its_pieces
-from workhold.kernels.seating.pieces import clearance, distance_to, foot, normal_at, on_piece
-from workhold.kernels.seating.roots import MISS, value
+from workhold.kernels.seating.holdings import END, Held, held, is_on_its_pieces
+from workhold.kernels.seating.pieces import Foot, clearance, distance_to, foot, normal_at, on_piece
 from workhold.kernels.seating.three_contacts import (
     ROOT_DOUBT,
     ROOT_HOLDING,
@@ -41,13 +41,12 @@ from workhold.kernels.seating.three_contacts import (
     ROOT_PIECE,
     ROOT_PSI,
     ROOT_SIDE,
+    center_velocity,
 )
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Radians to either side by which a derivative is told from two values.
-STEP = 1e-5
 # Pivots of the balance below this are none.
 SINGULAR = 1e-14
 # mm. Pegs farther than this from what they are said to touch do not touch it.
@@ -76,6 +75,28 @@ def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> N
     row[THETA], row[PLACE_X], row[PLACE_Y], row[CONTACTS] = theta, x, y, contacts
 
 
+@inner
+def slope_of_miss(
+    holding: Array, piece: Array, side: float, s: Held, f: Foot, cosine: float, sine: float, psi: float, given: Given
+) -> float:
+    """The derivative of MISS in mm per radian, x . (P - foot) + y . foot'; no number where that of P is not known.
+
+    Not by differences: beside a tangency a curve may end within any step.
+    """
+    qx = qy = 0.0
+    if holding[KIND] == 0.0:
+        k, alpha = int(holding[SOURCE]), psi + holding[ANGLE]
+        a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
+        sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+        x, y = center_velocity(a, b, given.reals[k], alpha, alpha, sign)
+        qx, qy = (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0
+    slope = cosine * (s[6] - f[0]) + sine * (s[7] - f[1])
+    if piece[IS_ARC] == 0.0:
+        return slope + (qx * piece[AXIS_X] + qy * piece[AXIS_Y]) * (cosine * piece[AXIS_Y] - sine * piece[AXIS_X])
+    ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
+    return slope + side * piece[RADIUS] / f[4] * (qy * ex - qx * ey) * (cosine * ex + sine * ey)
+
+
 @compiled
 def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
     """Write the candidates of three contacts at roots of MISS (R, 6) to ``out``; return their number.
@@ -101,12 +122,12 @@ def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Arr
         write_holding(row, 0, holding, given, pocket_pieces)
         row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
         place_third(row, cosine * f[0] + sine * f[1], third, given)
-        above = given.pegs[third, 1] - given.pegs[tail, 1]
-        after = value(MISS, holding, holding, piece, above, root[ROOT_SIDE], given, psi + STEP)
-        before = value(MISS, holding, holding, piece, above, root[ROOT_SIDE], given, psi - STEP)
+        slope = slope_of_miss(holding, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
+        if not abs(slope) < inf:
+            slope, row[DOUBT] = 0.0, 1.0
         bend = 0.0 if piece[IS_ARC] == 0.0 else piece[SIGN] / piece[RADIUS]
         level = max(abs(f[2] * cosine + f[3] * sine), 1e-9)
-        second = (before - after) / (2.0 * STEP) * (1.0 + bend * ((s[6] - f[0]) * f[2] + (s[7] - f[1]) * f[3]))
+        second = -slope * (1.0 + bend * ((s[6] - f[0]) * f[2] + (s[7] - f[1]) * f[3]))
         row[SECOND] = (second if given.right[third] == 1 else -second) / (level * level)
         # The part turns about the instant centre.
         row[MOTION] = 1.0

@@ -41,8 +41,9 @@ from workhold.kernels.seating.roots import AT_END, MISS, is_level, root_between
 
 Array = NDArray[np.float64]
 
-# Ranges narrower than this, in radians, are not halved.
-NARROWEST = 2e-8
+# Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and P moves by
+# more than some mm, as beside a tangency; none is that is as narrow as the last.
+NARROWEST, STILL, LAST = 2e-8, 1e-3, 1e-13
 # mm. Rounding of a height and of a direction.
 ROUNDING = 2e-12
 # Columns of what is found: ROOT_HOLDING, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT.
@@ -232,11 +233,16 @@ def roots_of_cell(
                 if count < 0:
                     return -1
                 continue
-        if reach > NARROWEST and depth < stack.shape[0] - 1:
+        halved = reach > NARROWEST
+        if not halved:
+            if told != MAYBE or is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
+                continue
+            halved = reach > LAST and speed * reach > STILL
+        if halved and depth < stack.shape[0] - 1:
             stack[depth, 0], stack[depth, 1] = low, psi
             stack[depth + 1, 0], stack[depth + 1, 1] = psi, high
             depth += 2
-        elif told == MAYBE and not is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
+        else:
             count = write_root(out, count, cell[HOLDING], third, number, side, psi, 1.0)
             if count < 0:
                 return -1
