@@ -75,18 +75,19 @@ def test_nothing_depends_on_what_was_solved_before():
         assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[number]
         count += len(groups_of(patterns()[number]))
     [locus] = solver.loci.values()
-    assert len(locus.alone) < 0.8 * count and len(locus.held) < count
+    assert len(locus.alone["kept"].found) < 0.8 * count and len(locus.held) < count
 
 
 def test_what_is_forgotten_is_found_again(monkeypatch):
-    """With room for three groups and the cells of one or two jaws, the same; and no more are kept."""
+    """With room for three groups, which one pattern has more of, and the cells of one or two jaws, the same; and no more are
+    kept than those of a pattern."""
     monkeypatch.setattr(alone, "MOST_KEPT", 3)
     monkeypatch.setattr(holdings, "MOST_KEPT", 1500)
     solver = Solver(STEP, VISE)
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for locus in (one for drawn in solver.loci.values() for one in (drawn, drawn.turned_over)):
-        assert 0 < len(locus.alone) <= 3
+        assert 0 < len(locus.alone["kept"].found) <= len(groups_of(patterns()[1]))
         assert 0 < sum(len(one.cells) for one in locus.held.values()) <= 1500
 
 
@@ -163,7 +164,7 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     held = holdings.Holdings.of(locus, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_stopped, held.slides, held.given)
     assert len(stopped) > 2
-    every, told = np.split(alone.alone(locus, group, size).fixed, [-len(stopped)])
+    every, told = np.split(alone.alone(alone.Kept(), locus, group, size).fixed, [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:
         touch(row, group.pattern, locus)
