@@ -42,6 +42,7 @@ from workhold.kernels.seating.three_contacts import (
     ROOT_PSI,
     ROOT_SIDE,
     center_velocity,
+    slope_over,
 )
 
 Array = NDArray[np.float64]
@@ -79,22 +80,18 @@ def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> N
 def slope_of_miss(
     holding: Array, piece: Array, side: float, s: Held, f: Foot, cosine: float, sine: float, psi: float, given: Given
 ) -> float:
-    """The derivative of MISS in mm per radian, x . (P - foot) + y . foot'; no number where that of P is not known.
+    """The derivative of MISS in mm per radian; infinite, or no number, where that of P is not known.
 
     Not by differences: beside a tangency a curve may end within any step.
     """
-    qx = qy = 0.0
+    motion = ((0.0, 0.0), (0.0, 0.0))
     if holding[KIND] == 0.0:
         k, alpha = int(holding[SOURCE]), psi + holding[ANGLE]
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
         sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-        x, y = center_velocity(a, b, given.reals[k], alpha, alpha, sign)
-        qx, qy = (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0
-    slope = cosine * (s[6] - f[0]) + sine * (s[7] - f[1])
-    if piece[IS_ARC] == 0.0:
-        return slope + (qx * piece[AXIS_X] + qy * piece[AXIS_Y]) * (cosine * piece[AXIS_Y] - sine * piece[AXIS_X])
-    ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
-    return slope + side * piece[RADIUS] / f[4] * (qy * ex - qx * ey) * (cosine * ex + sine * ey)
+        motion = center_velocity(a, b, given.reals[k], alpha, alpha, sign)
+    slope, doubt = slope_over(piece, side, cosine, sine, s, f, motion, 0.0, 0.0)
+    return slope if doubt < inf else inf
 
 
 @compiled
