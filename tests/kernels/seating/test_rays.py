@@ -16,7 +16,6 @@ from workhold.kernels.seating.holdings import held
 from workhold.kernels.seating.middles import held_in, ray_in
 from workhold.kernels.seating.pieces import foot, on_piece, share_normals
 from workhold.kernels.seating.three_contacts import (
-    NARROWEST,
     ROOT_LENGTH,
     ROOT_PEG,
     ROOT_PIECE,
@@ -74,9 +73,6 @@ def test_where_a_third_peg_balances_it_is_found(number):
     given, random, count = holdings.sought, np.random.default_rng(number), 0
     work = np.empty((DEPTH, 2)), np.empty((5, len(locus.discs)))
     for cell, middle in kept:
-        # Narrower ones, beside a tangency, are not cut, and told of where P is known well alone.
-        if cell[HIGH] - cell[LOW] <= 2.0 * NARROWEST:
-            continue
         holding, psi = given.holdings[int(cell[HOLDING])], random.uniform(cell[LOW], cell[HIGH])
         tail, curve, s = int(holding[FIRST_PEG]), int(holding[SOURCE]), held(holding, given, psi)
         others, (x, y) = given.right != given.right[tail], (cos(psi), sin(psi))

@@ -235,14 +235,14 @@ def roots_of_cell(
                 continue
         halved = reach > NARROWEST
         if not halved:
-            if told != MAYBE or is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
+            if told == MAYBE and is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
                 continue
             halved = reach > LAST and speed * reach > STILL
         if halved and depth < stack.shape[0] - 1:
             stack[depth, 0], stack[depth, 1] = low, psi
             stack[depth + 1, 0], stack[depth + 1, 1] = psi, high
             depth += 2
-        else:
+        elif told == MAYBE:
             count = write_root(out, count, cell[HOLDING], third, number, side, psi, 1.0)
             if count < 0:
                 return -1
