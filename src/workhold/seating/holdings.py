@@ -110,6 +110,21 @@ class JawHoldings:
         return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
 
     @cached_property
+    def pegs(self) -> NDArray[np.int64]:
+        """The pegs (H, 2) of the holdings."""
+        return self.holdings[:, FIRST_PEG : SECOND_PEG + 1].astype(np.int64)
+
+    @cached_property
+    def sliding_pegs(self) -> NDArray[np.int64]:
+        """Those (S, 2) of the slides."""
+        return self.slides[:, SLIDE_FIRST : SLIDE_SECOND + 1].astype(np.int64)
+
+    @cached_property
+    def pockets(self) -> int:
+        """How many holdings are of a peg in a pocket: the first ones."""
+        return int(self.holdings[:, KIND].sum())
+
+    @cached_property
     def ordered(self) -> Array:
         """The cells ordered by their lowest orientation, those beyond a turn a second time."""
         again = np.array(self.cells[self.cells[:, HIGH] > tau])
@@ -154,12 +169,12 @@ class Holdings:
         jaws: dict[int, tuple[JawHoldings, int, float]] = {}
         before = curves_before = 0
         for side, group in jaw_groups(pattern).items():
-            known, names = JawHoldings.known(locus, group), np.array([*group.numbers, -1.0])
+            known = JawHoldings.known(locus, group)
             rows, slid = np.array(known.holdings), np.array(known.slides)
-            for column in (FIRST_PEG, SECOND_PEG):
-                rows[:, column] = names[rows[:, column].astype(np.int64)]
-            rows[rows[:, KIND] == 0.0, SOURCE] += curves_before
-            slid[:, [SLIDE_FIRST, SLIDE_SECOND]] = names[slid[:, [SLIDE_FIRST, SLIDE_SECOND]].astype(np.int64)]
+            rows[:, FIRST_PEG : SECOND_PEG + 1] = group.names[known.pegs]
+            slid[:, SLIDE_FIRST : SLIDE_SECOND + 1] = group.names[known.sliding_pegs]
+            # Pockets, of which curves are none, come first.
+            rows[known.pockets :, SOURCE] += curves_before
             parts.append((rows, known.curves, known.reals, slid))
             jaws[side] = known, before, float(group.shift[2])
             before, curves_before = before + len(rows), curves_before + len(known.curves)

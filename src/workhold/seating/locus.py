@@ -25,6 +25,7 @@ from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
 from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
+from workhold.model.seating import Contact
 from workhold.model.workpiece import Workpiece
 from workhold.seating.hull import Hull
 from workhold.seating.touch import Touch
@@ -147,6 +148,18 @@ class Locus:
             group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
             groups.append([k]) if group is None else group.append(k)
         return groups
+
+    @cached_property
+    def contacts(self) -> dict[int, tuple[Contact, ...]]:
+        """Those of pegs by their numbers, as far as they have been asked for."""
+        return {}
+
+    def contacts_of(self, peg: int) -> tuple[Contact, ...]:
+        """What a peg of a fixture may touch, by the numbers of the pieces and, after them, of what may touch a wall."""
+        if peg not in self.contacts:
+            touches = self.touches + self.hull.touches
+            self.contacts[peg] = tuple([Contact(peg, touch.face, touch.corner) for touch in touches])
+        return self.contacts[peg]
 
     @cached_property
     def tables(self) -> dict[tuple[float, int], CurveTable]:

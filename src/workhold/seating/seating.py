@@ -250,19 +250,19 @@ class Reading:
         return [Pose(*one) for one in zip(*(values.tolist() for values in told), strict=True)]
 
     @cached_property
-    def every_contact(self) -> list[list[Contact]]:
+    def every_contact(self) -> list[tuple[Contact, ...]]:
         """All that the fixture's pegs may touch, by the numbers of pegs and pieces in candidates."""
         locus = self.solver.closing(self.known, False).locus
         # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
         pegs = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
-        touches = locus.touches + locus.hull.touches
-        return [[Contact(peg, touch.face, touch.corner) for touch in touches] for peg in pegs]
+        return [locus.contacts_of(peg) for peg in pegs]
 
-    def contacts(self, row: list[float]) -> tuple[Contact, ...]:
-        """What touches in a candidate."""
-        every, count = self.every_contact, int(row[CONTACTS])
-        touching = zip(row[PEG : PEG + count], row[PIECE : PIECE + count], strict=True)
-        return tuple([every[int(peg)][int(piece)] for peg, piece in touching])
+    def contacts(self, rows: Array) -> list[tuple[Contact, ...]]:
+        """What touches in each of some candidates (N, 24)."""
+        every = self.every_contact
+        pegs, pieces = (rows[:, at : at + 4].astype(np.int64).tolist() for at in (PEG, PIECE))
+        told = zip(rows[:, CONTACTS].astype(np.int64).tolist(), pegs, pieces, strict=True)
+        return [tuple([every[p][q] for p, q in zip(one[:n], other[:n], strict=True)]) for n, one, other in told]
 
     def kind(self, kind: str, contacts: tuple[Contact, ...]) -> str:
         """What a seat is called, four contacts of which are a fixture's or what they touch."""
@@ -291,7 +291,8 @@ class Reading:
         apart = distances(configs, own, self.solver.outline.arm), np.abs(configs[:, 3] - own[3])
         is_own = (apart[0] < AGREES) & (apart[1] < AGREES) & (not mirrored)
         told = zip(
-            rows.tolist(),
+            rows[:, FORCE : FORCE + 4].tolist(),
+            self.contacts(rows),
             kinds,
             depths,
             self.poses(configs, mirrored),
@@ -302,9 +303,8 @@ class Reading:
             strict=True,
         )
         out = []
-        for row, kind, depth, pose, separation, difference, same, itself in told:
-            contacts = self.contacts(row)
-            forces = tuple(row[FORCE : FORCE + len(contacts)]) if kind in KINDS.values() else ()
+        for pressing, contacts, kind, depth, pose, separation, difference, same, itself in told:
+            forces = tuple(pressing[: len(contacts)]) if kind in KINDS.values() else ()
             kind, itself = self.kind(kind, contacts), itself and kind != "unsettled"
             if is_listed(kind, depth):
                 out.append(Seat(kind, pose, separation, difference, mirrored, same, contacts, forces, depth, itself))
@@ -354,7 +354,7 @@ class Reading:
         """A join as the fixture's pass."""
         config = join.candidate[CONFIG] + self.shift
         separation = self.pattern.door.sign * float(config[3])
-        return Pass(self.poses(config[None], False)[0], separation, self.contacts(join.candidate.tolist()))
+        return Pass(self.poses(config[None], False)[0], separation, self.contacts(join.candidate[None])[0])
 
     def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
         """Cage and placing."""

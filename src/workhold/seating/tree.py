@@ -86,7 +86,7 @@ class Tree:
         builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], strict)
         slack, rows = list[Family](), list[Array]()
         seats = np.ascontiguousarray(found.seats[strict][:, CONFIG])
-        beyond = [ends_of(family, closing.size) for family in found.loose]
+        beyond = ends_of(found.loose, closing.size)
         ended, how_ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)
         at, starts, ends, how = 0, list[Array](), list[Array](), list[NDArray[np.int8]]()
         for family, begun in zip(found.loose, beyond, strict=True):
@@ -174,22 +174,24 @@ def separations(families: Iterable[Family]) -> Array:
     return np.array([family.separation for family in families], dtype=np.float64)
 
 
-def ends_of(family: Family, size: float) -> Array:
-    """Configurations (2, 4) just beyond the ends of a loose set, or to both sides of its middle; none of a whole turn."""
-    if family.across is not None:
-        step = BESIDE * np.array([0.0, *family.across, 0.0])
-        return family.middle + np.stack([step, -step])
-    if family.is_closed or len(family.configs) < 3:
-        return np.zeros((0, 4))
-    out = []
-    # The end may be the same as the configuration before it, but not as the one before that.
-    for end, before in ((0, 2), (-1, -3)):
-        step = family.configs[end] - family.configs[before]
-        step[0] = (step[0] + pi) % tau - pi
-        length = abs(step[0]) * size + np.hypot(*step[1:3])
-        if length > 0.0:
-            out.append(family.configs[end] + BESIDE * step / length)
-    return np.array(out).reshape(-1, 4)
+def ends_of(families: list[Family], size: float) -> list[Array]:
+    """Configurations (2, 4) just beyond the ends of each loose set, or to both sides of its middle; none of a whole turn."""
+    out = [np.zeros((0, 4))] * len(families)
+    ended = [k for k, one in enumerate(families) if one.across is None and not one.is_closed and len(one.configs) >= 3]
+    if ended:
+        # The end may be the same as the configuration before it, but not as the one before that.
+        rows = np.array([families[k].configs[[0, -1, 2, -3]] for k in ended])
+        steps = rows[:, :2] - rows[:, 2:]
+        steps[:, :, 0] = (steps[:, :, 0] + pi) % tau - pi
+        lengths = np.abs(steps[:, :, 0]) * size + np.hypot(steps[:, :, 1], steps[:, :, 2])
+        leads_on, beyond = lengths > 0.0, rows[:, :2] + BESIDE * steps / np.maximum(lengths, 1e-300)[:, :, None]
+        for k, there, good in zip(ended, beyond, leads_on, strict=True):
+            out[k] = there if good.all() else there[good]
+    for k, family in enumerate(families):
+        if family.across is not None:
+            step = BESIDE * np.array([0.0, *family.across, 0.0])
+            out[k] = family.middle + np.stack([step, -step])
+    return out
 
 
 @define(eq=False, slots=False)

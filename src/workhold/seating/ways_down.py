@@ -61,8 +61,10 @@ def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
 def starts_off(rows: Array, size: float) -> tuple[Array, Array]:
     """Where ways down begin, to one and the other side of each of some passes (N, 24): configurations (2 N, 4), and how long
     their first steps are in mm (2 N,)."""
-    (steps, lengths), configs = steps_off(rows, size), rows[:, CONFIG]
-    return np.stack([configs + steps, configs - steps], axis=1).reshape(-1, 4), np.repeat(lengths / 2.0, 2)
+    (steps, lengths), configs = steps_off(rows, size), rows[:, : SEPARATION + 1]
+    starts, first = np.empty((len(rows), 2, 4)), np.empty((len(rows), 2))
+    starts[:, 0], starts[:, 1], first[:] = configs + steps, configs - steps, lengths[:, None] / 2.0
+    return starts.reshape(-1, 4), first.ravel()
 
 
 @define(eq=False)
