@@ -25,6 +25,8 @@ from typing import Any
 SOURCES = Path(__file__).resolve().parents[1] / "src"
 # The first word to a process that compiles a part.
 EMIT = "emit"
+# What a kernel is called beside the function that takes its words.
+OWN = "kernel_itself"
 # The plain processor that is compiled for; of others whatever LLVM takes for the oldest.
 PLAIN = {"x86_64": "x86-64", "AMD64": "x86-64"}
 # numba's record of an array in memory: references, two for a destructor, address, bytes, allocator.
@@ -94,6 +96,24 @@ def described(kind: Any) -> Any:
     return "bool" if kind == types.boolean else str(kind)
 
 
+def taking_words(name: str, kinds: Sequence[str], results: int) -> str:
+    """A function, in LLVM's language, that calls a kernel with what words of eight bytes say: as many as it returns are left
+    free before one for its failure, then come those of its arguments, which are of some kinds."""
+    lines = [f"declare i32 @{OWN}({', '.join(kinds)})", f"define i32 @{name}(ptr %words) {{"]
+    values = ["ptr %words", f"ptr %at{results}"]
+    lines.append(f"  %at{results} = getelementptr i64, ptr %words, i64 {results}")
+    for number, kind in enumerate(kinds[2:], results + 1):
+        lines.append(f"  %at{number} = getelementptr i64, ptr %words, i64 {number}")
+        # Truths are words, too.
+        whole = kind in ("ptr", "double", "i64")
+        lines.append(f"  %{'value' if whole else 'word'}{number} = load {kind if whole else 'i64'}, ptr %at{number}")
+        if not whole:
+            lines.append(f"  %value{number} = trunc i64 %word{number} to {kind}")
+        values.append(f"{kind} %value{number}")
+    lines += [f"  %done = call i32 @{OWN}({', '.join(values)})", "  ret i32 %done", "}"]
+    return "\n".join(lines)
+
+
 def emit(part: str, folder: Path) -> None:
     """Compile the kernels of a part and write an object file for each, and what it is called with."""
     # Before numba is imported.
@@ -103,6 +123,7 @@ def emit(part: str, folder: Path) -> None:
     import llvmlite.binding as llvm
 
     from workhold.kernels import preparing
+    from workhold.kernels.base.built import words_of
 
     machine = llvm.Target.from_default_triple().create_target_machine(
         cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
@@ -116,7 +137,11 @@ def emit(part: str, folder: Path) -> None:
             if not thing.is_declaration:
                 thing.linkage = "internal"
         own = module.get_function(compiled.fndesc.llvm_func_name)
-        own.linkage, own.name = "external", kernel.__name__
+        own.linkage, own.name = "external", OWN
+        results = words_of(described(compiled.signature.return_type))
+        kinds = [str(argument.type) for argument in own.arguments]
+        module.link_in(llvm.parse_assembly(taking_words(kernel.__name__, kinds, results)))
+        own.linkage = "internal"
         tuning = llvm.create_pipeline_tuning_options(speed_level=0)
         builder = llvm.create_pass_builder(machine, tuning)
         passes = llvm.create_new_module_pass_manager()

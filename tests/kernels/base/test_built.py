@@ -8,8 +8,10 @@ import sys
 from collections import namedtuple
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from struct import Struct
 from threading import Thread
 from typing import Any
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -123,18 +125,71 @@ def test_what_a_kernel_was_not_compiled_for_is_refused(library, arguments, words
     assert words in str(caught.value)
 
 
-def test_records_are_taken_apart_and_counted(library):
-    """A record is as many arguments as it has fields; one of another length, or of another kind, is refused."""
+def test_records_are_taken_apart_and_counted():
+    """A record is as many words as its fields are; one of another length, or of another kind, is refused."""
     pair = namedtuple("pair", "x rows")
-    taken: list[Any] = []
-    check = door(library, distance.is_inside)
     described = ["float64", {"array": "f8", "dimensions": 2}]
-    check.take("given", described, pair(2, SQUARE), taken)
-    assert len(taken) == len(built.c_types(described)) == 1 + 5 + 2 * 2
-    with pytest.raises(TypeError, match=r"given must be a record of 2, not tuple of 3"):
-        check.take("given", described, (1.0, SQUARE, SQUARE), taken)
-    with pytest.raises(TypeError, match=r"given\.rows must be"):
-        check.take("given", described, pair(2, SQUARE[0]), taken)
+    take, taken = built.taker(described), list[Any]()
+    assert take(pair(2, SQUARE), taken) and built.refusal("given", described, pair(2, SQUARE)) is None
+    assert len(taken) == len(built.letters(described)) == built.words_of(described) == 1 + 5 + 2 * 2
+    for value, words in (
+        ((1.0, SQUARE, SQUARE), "given must be a record of 2, not tuple of 3"),
+        (pair(2, SQUARE[0]), "given.rows must be a C-contiguous array of float64 with 2 dimensions"),
+        (pair("2", SQUARE), "given.x must be float64, not str"),
+    ):
+        assert not take(value, [])
+        assert built.refusal("given", described, value).startswith(words)
+
+
+@pytest.mark.parametrize(
+    "array", [SQUARE, SQUARE[:0], SQUARE[1:3], np.zeros((3, 0)), np.arange(4, dtype=np.int64), np.int8([1, 0])]
+)
+@pytest.mark.parametrize("is_written", [True, False])
+def test_arrays_are_told_by_where_they_are(array, is_written):
+    """Also those that are empty, or may not be written to."""
+    array = np.array(array) if is_written else array.view()
+    array.flags.writeable = is_written
+    taken: list[Any] = []
+    assert built.taker({"array": array.dtype.str[1:], "dimensions": array.ndim})(array, taken)
+    assert taken == [0, 0, array.size, array.itemsize, array.ctypes.data, *array.shape, *array.strides]
+
+
+def test_records_that_are_kept_are_those_that_are_handed_over():
+    """One is told by itself alone: what is made where another was, or of nearly the same, is looked at anew."""
+    described = [{"array": "f8", "dimensions": 1}, "int64"]
+    take = built.taker(described)
+    assert take is built.taker(list(described))
+    arrays = [np.full(3, float(k)) for k in range(40)]
+    for number in (*range(40), *range(39, -1, -1)):
+        for value in ((arrays[number], number), (arrays[number], number + 1)):
+            for _ in range(2):
+                taken: list[Any] = []
+                assert take(value, taken)
+                assert (taken[4], taken[-1]) == (value[0].ctypes.data, value[1])
+        assert not take((arrays[number], 0.5), [])
+    gone = [ref(array) for array in arrays]
+    del arrays, value
+    assert 0 < sum(one() is not None for one in gone) <= built.MOST_KEPT
+    large = np.zeros(built.MOST_BYTES // 8)
+    assert take((large, 1), [])
+    last = ref(large)
+    del large
+    assert last() is None
+
+
+def test_truths_and_numbers_are_words():
+    """Of numpy, too; what is true is 1."""
+    for kind, values in (
+        ("bool", (True, np.True_)),
+        ("int64", (-3, np.int64(-3))),
+        ("float64", (2, 2.5, np.float64(2), np.int64(2))),
+    ):
+        for value in values:
+            taken: list[Any] = []
+            assert built.taker(kind)(value, taken)
+            [word] = Struct(built.letters(kind)).unpack(Struct(built.letters(kind)).pack(*taken))
+            assert word == value
+    assert not built.taker("int64")(2.0, []) and not built.taker("bool")(1, [])
 
 
 def test_the_interpreter_goes_on_while_a_kernel_runs(library):

@@ -1,8 +1,9 @@
 """Kernels compiled when the package was built: one shared library that needs neither numba nor Python.
 
-The library holds each kernel under its name, in numba's calling convention with all records and arrays taken apart, and
-tells in ``DESCRIPTION`` what each is called with (written by ``building/compile_kernels.py``). It is called through ctypes,
-which releases the interpreter lock. Compiled code trusts what it is given, so every call is checked here first.
+The library holds each kernel under its name, as a function of an array of words: those of its result, one for a failure,
+and those of its arguments, with all records and arrays taken apart. It tells in ``DESCRIPTION`` what each is called with
+(written by ``building/compile_kernels.py``). It is called through ctypes, which releases the interpreter lock. Compiled code
+trusts what it is given, so every call is checked here first; both take microseconds, as seating calls small kernels often.
 
 Glossary
 --------
@@ -16,9 +17,10 @@ from __future__ import annotations
 import ctypes
 import json
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from inspect import signature
 from pathlib import Path
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,8 @@ __all__ = ["DESCRIPTION", "LIBRARY_NAME", "Door", "Library"]
 # Names that the library exports besides those of its kernels.
 DESCRIPTION, RELEASE = "workhold_description", "workhold_release"
 LIBRARY_NAME = "kernels.{platform}.so"
+# Appends the words of a value, and says whether it is taken.
+Taker = Callable[[Any, list[Any]], bool]
 # What a kernel returns: done, or done with nothing to hand back. All else means that it had no memory.
 DONE = (0, -2)
 SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
@@ -36,6 +40,8 @@ SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "bool": (ctypes.c_bool, (bool, np.bool_)),
 }
 WORD = 8
+# Records of one kind of which the words are kept, and bytes of the arrays of each.
+MOST_KEPT, MOST_BYTES = 16, 2**18
 # Words of an array before its shape: two owners, number of elements, bytes of one, address.
 ARRAY_WORDS, ADDRESS = 5, 4
 
@@ -81,66 +87,37 @@ class Door:
         self.library = library
         self.__name__, self.__doc__ = function.__name__, function.__doc__
         self.arguments = tuple(zip(signature(function).parameters, arguments, strict=True))
+        self.takers = [taker(argument) for argument in arguments]
         self.result = result
         self.code = getattr(library.code, function.__name__)
-        self.code.restype = ctypes.c_int
-        self.code.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
-        for argument in arguments:
-            self.code.argtypes += c_types(argument)
-        self.words = words_of(result)
+        self.code.restype, self.code.argtypes = ctypes.c_int, [ctypes.c_void_p]
+        # As many words as are returned, one for what failed, and those of the arguments.
+        self.before = bytes(WORD * (words_of(result) + 1))
+        self.words = Struct("=" + "".join(letters(argument) for argument in arguments))
 
     def __call__(self, *values: Any) -> Any:
-        if len(values) != len(self.arguments):
-            raise TypeError(f"{self.__name__} takes {len(self.arguments)} arguments, not {len(values)}.")
+        if len(values) != len(self.takers):
+            raise TypeError(f"{self.__name__} takes {len(self.takers)} arguments, not {len(values)}.")
         taken: list[Any] = []
-        for (name, argument), value in zip(self.arguments, values, strict=True):
-            self.take(name, argument, value, taken)
-        returned, failure = (ctypes.c_int64 * self.words)(), ctypes.c_void_p()
-        if self.code(returned, ctypes.byref(failure), *taken) not in DONE:
+        for take, value in zip(self.takers, values, strict=True):
+            if not take(value, taken):
+                raise TypeError(f"{self.__name__}: {self.refused(values)}.")
+        words = bytearray(self.before + self.words.pack(*taken))
+        if self.code(ctypes.addressof(ctypes.c_char.from_buffer(words))) not in DONE:
             raise MemoryError(f"{self.__name__} found no memory for its result.")
-        return None if self.result is None else self.handed_back(self.result, returned, 0)
+        return None if self.result is None else self.handed_back(self.result, words, 0)
 
-    def take(self, name: str, argument: Any, value: Any, taken: list[Any]) -> None:
-        """Check one argument and append what the library is called with in its place."""
-        if isinstance(argument, str):
-            if not isinstance(value, SCALARS[argument][1]):
-                raise TypeError(f"{self.__name__}: {name} must be {argument}, not {told(value)}.")
-            taken.append(value)
-        elif isinstance(argument, dict):
-            self.take_array(name, argument["array"], argument["dimensions"], value, taken)
-        else:
-            if not isinstance(value, tuple) or len(value) != len(argument):
-                raise TypeError(f"{self.__name__}: {name} must be a record of {len(argument)}, not {told(value)}.")
-            names = getattr(value, "_fields", range(len(argument)))
-            for field, part, item in zip(names, argument, value, strict=True):
-                self.take(f"{name}.{field}", part, item, taken)
+    def refused(self, values: tuple[Any, ...]) -> str:
+        """Which of the values is none that the kernel was compiled for."""
+        told = (refusal(name, kind, value) for (name, kind), value in zip(self.arguments, values, strict=True))
+        return next(words for words in told if words is not None)
 
-    def take_array(self, name: str, element: str, dimensions: int, value: Any, taken: list[Any]) -> None:
-        """Check an array and append its words."""
-        if (
-            not isinstance(value, np.ndarray)
-            or value.dtype.str[1:] != element
-            or value.ndim != dimensions
-            or not (value.flags.c_contiguous and value.flags.aligned and value.dtype.isnative)
-        ):
-            wanted = f"a C-contiguous array of {np.dtype(element)} with {dimensions} dimension{'s' * (dimensions > 1)}"
-            raise TypeError(f"{self.__name__}: {name} must be {wanted}, not {told(value)}.")
-        taken += (
-            None,
-            None,
-            value.size,
-            value.itemsize,
-            value.__array_interface__["data"][0],
-            *value.shape,
-            *value.strides,
-        )
-
-    def handed_back(self, result: Any, words: Any, start: int) -> Any:
+    def handed_back(self, result: Any, words: bytearray, start: int) -> Any:
         """The result that begins at a word of what the library returned."""
         if isinstance(result, str):
             return SCALARS[result][0].from_buffer(words, WORD * start).value
         if isinstance(result, dict):
-            return self.array(result, words, start)
+            return self.array(result, memoryview(words).cast("q"), start)
         parts = []
         for part in result:
             parts.append(self.handed_back(part, words, start))
@@ -175,14 +152,103 @@ class Made:
         self.release()
 
 
-def c_types(argument: Any) -> list[type[Any]]:
-    """The words a kernel takes for an argument."""
+def taker(argument: Any) -> Taker:
+    """What appends the words that a library takes for an argument; it says whether the value is one that it takes."""
+    return taker_told(json.dumps(argument))
+
+
+@cache
+def taker_told(text: str) -> Taker:
+    """The same of an argument in JSON, one for all kernels: what is known of a record serves them all."""
+    argument = json.loads(text)
     if isinstance(argument, str):
-        return [SCALARS[argument][0]]
+        return number_taker(SCALARS[argument][1])
     if isinstance(argument, dict):
-        numbers = [ctypes.c_int64] * (2 * argument["dimensions"])
-        return [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p, *numbers]
-    return [word for part in argument for word in c_types(part)]
+        return array_taker(np.dtype(argument["array"]), argument["dimensions"])
+    return record_taker([taker(part) for part in argument])
+
+
+def number_taker(kinds: tuple[type[Any], ...]) -> Taker:
+    """See ``taker``, of a number of some kinds."""
+
+    def take(value: Any, taken: list[Any]) -> bool:
+        # Truths are words as others are.
+        taken.append(bool(value) if bool in kinds else value)
+        return isinstance(value, kinds)
+
+    return take
+
+
+def array_taker(element: np.dtype[Any], dimensions: int) -> Taker:
+    """See ``taker``, of an array of elements in their order."""
+    width, address_of = element.itemsize, ctypes.addressof
+    first_of: Callable[[Any], ctypes.c_char] = ctypes.c_char.from_buffer
+
+    def take(value: Any, taken: list[Any]) -> bool:
+        if not isinstance(value, np.ndarray) or value.ndim != dimensions or value.dtype != element:
+            return False
+        flags, size = value.flags, value.size
+        if flags.carray and size:
+            # A tenth of the time of asking for the address.
+            address = address_of(first_of(value))
+        elif flags.c_contiguous and flags.aligned:
+            address = value.__array_interface__["data"][0]
+        else:
+            return False
+        taken += (0, 0, size, width, address, *value.shape, *value.strides)
+        return True
+
+    return take
+
+
+def record_taker(takers: list[Taker]) -> Taker:
+    """See ``taker``, of a record; the words of the last few that are small are kept with them, as one is often handed on."""
+    kept: dict[int, tuple[Any, list[Any]]] = {}
+
+    def take(value: Any, taken: list[Any]) -> bool:
+        known = kept.get(id(value))
+        if known is not None and known[0] is value:
+            taken += known[1]
+            return True
+        own: list[Any] = []
+        if not isinstance(value, tuple) or len(value) != len(takers):
+            return False
+        if not all(part(item, own) for part, item in zip(takers, value, strict=True)):
+            return False
+        taken += own
+        if sum(item.nbytes for item in value if isinstance(item, np.ndarray)) < MOST_BYTES:
+            if len(kept) >= MOST_KEPT:
+                kept.clear()
+            kept[id(value)] = value, own
+        return True
+
+    return take
+
+
+def refusal(name: str, argument: Any, value: Any) -> str | None:
+    """Why a value is not taken, in words; None where it is."""
+    if taker(argument)(value, []):
+        return None
+    if isinstance(argument, str):
+        return f"{name} must be {argument}, not {told(value)}"
+    if isinstance(argument, dict):
+        dimensions = argument["dimensions"]
+        wanted = f"{np.dtype(argument['array'])} with {dimensions} dimension{'s' * (dimensions > 1)}"
+        return f"{name} must be a C-contiguous array of {wanted}, not {told(value)}"
+    if not isinstance(value, tuple) or len(value) != len(argument):
+        return f"{name} must be a record of {len(argument)}, not {told(value)}"
+    fields = zip(getattr(value, "_fields", range(len(argument))), argument, value, strict=True)
+    words = (refusal(f"{name}.{field}", part, item) for field, part, item in fields)
+    return next(one for one in words if one is not None)
+
+
+def letters(argument: Any) -> str:
+    """The words of an argument as ``struct`` calls them."""
+    if isinstance(argument, str):
+        return "d" if argument == "float64" else "q"
+    if isinstance(argument, dict):
+        return "q" * words_of(argument)
+    return "".join(map(letters, argument))
 
 
 def words_of(result: Any) -> int:
