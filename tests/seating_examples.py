@@ -24,6 +24,8 @@ from workhold.seating.tree import CONFIG
 Array = NDArray[np.float64]
 SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]
 LEFT, RIGHT = "left", "right"
+# Two parallel faces, and two corners in which a peg has room: pairs, triples, slides and pockets.
+STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
 
 
 def held(pegs: list[tuple[str, float, float]], pose: tuple[float, float, float], separation: float) -> Fixture:

@@ -11,7 +11,8 @@ import pytest
 from attrs import evolve
 
 import workhold
-from workhold import Vise, Workpiece
+from seating_examples import STEP
+from workhold import Vise
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -34,8 +35,6 @@ from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 
-# Two parallel faces, two corners in which a peg has room, and a bore: pairs, triples, slides and pockets.
-STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 FIRST = 6
 

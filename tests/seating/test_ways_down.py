@@ -8,7 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from workhold import Fixture, Peg, Pose, Vise, Workpiece
+from seating_examples import STEP
+from workhold import Fixture, Peg, Pose, Vise
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -31,7 +32,6 @@ from workhold.seating.seating import Solver
 from workhold.seating.tree import OUTSIDE, STOP, Builder
 from workhold.seating.ways_down import CONFIG, Trodden, both_ways_down, free_ways, starts_off
 
-STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))
 

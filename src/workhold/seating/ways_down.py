@@ -50,9 +50,7 @@ def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
     motions, seconds = rows[:, MOTION : MOTION + 3], np.abs(rows[:, SECOND])
     speeds = np.abs(motions[:, 0]) * size + np.hypot(motions[:, 1], motions[:, 2])
     bent = 2.0 * MOST_BEND * speeds * speeds
-    lengths = np.where(
-        seconds * BESIDE > bent, np.maximum(bent / np.maximum(seconds, 1e-300), SHORTEST), np.full(len(rows), BESIDE)
-    )
+    lengths = np.where(seconds * BESIDE > bent, np.maximum(bent / np.maximum(seconds, 1e-300), SHORTEST), BESIDE)
     steps = np.zeros((len(rows), 4))
     steps[:, :3] = (lengths / speeds)[:, None] * motions
     return steps, lengths

@@ -189,7 +189,7 @@ def array_taker(element: np.dtype[Any], dimensions: int) -> Taker:
             return False
         flags, size = value.flags, value.size
         if flags.carray and size:
-            # A tenth of the time of asking for the address.
+            # In a sixth of the time of asking for the address.
             address = address_of(first_of(value))
         elif flags.c_contiguous and flags.aligned:
             address = value.__array_interface__["data"][0]
