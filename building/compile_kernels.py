@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -62,9 +63,43 @@ define void @NRT_MemInfo_call_dtor(ptr %made) {
   ret void
 }
 """
+# Whether an object is an array of some elements, in order and aligned, of so many dimensions, by its header.
+IS_ARRAY = """
+@{known} = external global [{count} x ptr]
+
+define internal i1 @is_array(ptr %object, i64 %element, i32 %dimensions) {{
+  %type_at = getelementptr i8, ptr %object, i64 {type}
+  %type = load ptr, ptr %type_at
+  %wanted_type = load ptr, ptr @{known}
+  %same_type = icmp eq ptr %type, %wanted_type
+  br i1 %same_type, label %array, label %none
+none:
+  ret i1 false
+array:
+  %element_at = getelementptr i8, ptr %object, i64 {elements}
+  %own_element = load ptr, ptr %element_at
+  %wanted_at = getelementptr ptr, ptr @{known}, i64 %element
+  %wanted = load ptr, ptr %wanted_at
+  %same_element = icmp eq ptr %own_element, %wanted
+  %dimensions_at = getelementptr i8, ptr %object, i64 {dimensions}
+  %own_dimensions = load i32, ptr %dimensions_at
+  %same_dimensions = icmp eq i32 %own_dimensions, %dimensions
+  %flags_at = getelementptr i8, ptr %object, i64 {flags}
+  %flags = load i32, ptr %flags_at
+  %own_order = and i32 %flags, {ordered}
+  %same_order = icmp eq i32 %own_order, {ordered}
+  %same = and i1 %same_element, %same_dimensions
+  %all = and i1 %same, %same_order
+  ret i1 %all
+}}
+"""
+# Where a header tells what, in bytes, and the flags of an array in order that is aligned (NumPy's ``ndarraytypes.h``).
+TYPE, DATA, DIMENSIONS, SHAPE, STRIDES, ELEMENT, FLAGS = 8, 16, 24, 32, 40, 56, 64
+ORDERED = 0x0001 | 0x0100
 EXPORTS = """
 declare void @free(ptr)
 @{description} = constant [{length} x i8] c"{text}"
+@{known} = global [{count} x ptr] zeroinitializer
 
 define void @{release}(ptr %made) {{
   %before = atomicrmw sub ptr %made, i64 1 seq_cst
@@ -96,22 +131,57 @@ def described(kind: Any) -> Any:
     return "bool" if kind == types.boolean else str(kind)
 
 
-def taking_words(name: str, kinds: Sequence[str], results: int) -> str:
+def taking_words(name: str, arguments: Sequence[Any], kinds: Sequence[str], results: int) -> str:
     """A function, in LLVM's language, that calls a kernel with what words of eight bytes say: as many as it returns are left
-    free before one for its failure, then come those of its arguments, which are of some kinds."""
+    free before one for its failure, then come those of its arguments, of arrays where their headers are. The kernel takes
+    values of some kinds, arrays taken apart; the function returns ``REFUSED`` for an array that is none of its own.
+    """
+    from workhold.kernels.base.built import ELEMENTS, REFUSED
+
     lines = [f"declare i32 @{OWN}({', '.join(kinds)})", f"define i32 @{name}(ptr %words) {{"]
     values = ["ptr %words", f"ptr %at{results}"]
     lines.append(f"  %at{results} = getelementptr i64, ptr %words, i64 {results}")
-    for number, kind in enumerate(kinds[2:], results + 1):
+    for number, argument in enumerate(flat(arguments), results + 1):
         lines.append(f"  %at{number} = getelementptr i64, ptr %words, i64 {number}")
-        # Truths are words, too.
-        whole = kind in ("ptr", "double", "i64")
-        lines.append(f"  %{'value' if whole else 'word'}{number} = load {kind if whole else 'i64'}, ptr %at{number}")
-        if not whole:
-            lines.append(f"  %value{number} = trunc i64 %word{number} to {kind}")
-        values.append(f"{kind} %value{number}")
-    lines += [f"  %done = call i32 @{OWN}({', '.join(values)})", "  ret i32 %done", "}"]
+        if isinstance(argument, str):
+            kind = kinds[len(values)]
+            # Truths are words, too.
+            whole = kind in ("double", "i64")
+            lines.append(
+                f"  %{'value' if whole else 'word'}{number} = load {kind if whole else 'i64'}, ptr %at{number}"
+            )
+            if not whole:
+                lines.append(f"  %value{number} = trunc i64 %word{number} to {kind}")
+            values.append(f"{kind} %value{number}")
+            continue
+        array, dimensions, element = f"%array{number}", argument["dimensions"], argument["array"]
+        lines += [
+            f"  {array} = load ptr, ptr %at{number}",
+            f"  {array}.is = call i1 @is_array(ptr {array}, i64 {1 + ELEMENTS.index(element)}, i32 {dimensions})",
+            f"  br i1 {array}.is, label %taken{number}, label %refused",
+            f"taken{number}:",
+        ]
+        for part, at in (("data", DATA), ("shape", SHAPE), ("strides", STRIDES)):
+            lines.append(f"  {array}.{part}_at = getelementptr i8, ptr {array}, i64 {at}")
+            lines.append(f"  {array}.{part} = load ptr, ptr {array}.{part}_at")
+        sizes = list[str]()
+        for part, axis in product(("shape", "strides"), range(dimensions)):
+            lines.append(f"  {array}.{part}{axis}_at = getelementptr i64, ptr {array}.{part}, i64 {axis}")
+            lines.append(f"  {array}.{part}{axis} = load i64, ptr {array}.{part}{axis}_at")
+            sizes.append(f"i64 {array}.{part}{axis}")
+        count = "1"
+        for axis in range(dimensions):
+            lines.append(f"  {array}.count{axis} = mul i64 {count}, {array}.shape{axis}")
+            count = f"{array}.count{axis}"
+        values += ["ptr null", "ptr null", f"i64 {count}", f"i64 {element[1:]}", f"ptr {array}.data", *sizes]
+    lines += [f"  %done = call i32 @{OWN}({', '.join(values)})", "  ret i32 %done"]
+    lines += ["refused:", f"  ret i32 {REFUSED}", "}"]
     return "\n".join(lines)
+
+
+def flat(arguments: Sequence[Any]) -> list[Any]:
+    """Arguments with records taken apart."""
+    return [part for one in arguments for part in (flat(one) if isinstance(one, list) else [one])]
 
 
 def emit(part: str, folder: Path) -> None:
@@ -123,7 +193,7 @@ def emit(part: str, folder: Path) -> None:
     import llvmlite.binding as llvm
 
     from workhold.kernels import preparing
-    from workhold.kernels.base.built import words_of
+    from workhold.kernels.base.built import ELEMENTS, KNOWN, words_of
 
     machine = llvm.Target.from_default_triple().create_target_machine(
         cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
@@ -139,8 +209,10 @@ def emit(part: str, folder: Path) -> None:
         own = module.get_function(compiled.fndesc.llvm_func_name)
         own.linkage, own.name = "external", OWN
         results = words_of(described(compiled.signature.return_type))
-        kinds = [str(argument.type) for argument in own.arguments]
-        module.link_in(llvm.parse_assembly(taking_words(kernel.__name__, kinds, results)))
+        kinds, arguments = [str(argument.type) for argument in own.arguments], [described(kind) for kind in signature]
+        offsets = {"type": TYPE, "elements": ELEMENT, "dimensions": DIMENSIONS, "flags": FLAGS, "ordered": ORDERED}
+        reading = IS_ARRAY.format(known=KNOWN, count=1 + len(ELEMENTS), **offsets)
+        module.link_in(llvm.parse_assembly(reading + taking_words(kernel.__name__, arguments, kinds, results)))
         own.linkage = "internal"
         tuning = llvm.create_pipeline_tuning_options(speed_level=0)
         builder = llvm.create_pass_builder(machine, tuning)
@@ -148,10 +220,7 @@ def emit(part: str, folder: Path) -> None:
         passes.add_global_dead_code_eliminate_pass()
         passes.run(module, builder)
         (folder / f"{kernel.__name__}.o").write_bytes(machine.emit_object(module))
-        told = {
-            "arguments": [described(kind) for kind in signature],
-            "result": described(compiled.signature.return_type),
-        }
+        told = {"arguments": arguments, "result": described(compiled.signature.return_type)}
         (folder / f"{kernel.__name__}.json").write_text(json.dumps(told))
 
 
@@ -165,7 +234,7 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
     """
     os.environ["WORKHOLD_KERNELS"] = "building"
     sys.path.insert(0, str(SOURCES))
-    from workhold.kernels.base.built import DESCRIPTION, RELEASE, Library
+    from workhold.kernels.base.built import Library
     from workhold.kernels.base.sources import library_name, source_hash
 
     path, wanted = folder / library_name(), source_hash()
@@ -186,7 +255,7 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
         if any(codes):
             sys.exit("The kernels could not be compiled.")
         kernels = {told.stem: json.loads(told.read_text()) for told in sorted(objects.glob("*.json"))}
-        write_exports(objects / "exports.o", {"source_hash": wanted, "kernels": kernels}, DESCRIPTION, RELEASE)
+        write_exports(objects / "exports.o", {"source_hash": wanted, "kernels": kernels})
         if sys.platform == "darwin":
             options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
         else:
@@ -199,15 +268,18 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
     return path
 
 
-def write_exports(path: Path, description: Any, name: str, release: str) -> None:
+def write_exports(path: Path, description: Any) -> None:
     """Write the object file of what the library exports besides its kernels."""
     import llvmlite.binding as llvm
+
+    from workhold.kernels.base.built import DESCRIPTION, ELEMENTS, KNOWN, RELEASE
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     content = json.dumps(description).encode() + b"\0"
     text = "".join(chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\{byte:02X}" for byte in content)
-    module = llvm.parse_assembly(EXPORTS.format(description=name, release=release, length=len(content), text=text))
+    names = {"description": DESCRIPTION, "release": RELEASE, "known": KNOWN, "count": 1 + len(ELEMENTS)}
+    module = llvm.parse_assembly(EXPORTS.format(length=len(content), text=text, **names))
     machine = llvm.Target.from_default_triple().create_target_machine(reloc="pic", codemodel="default")
     path.write_bytes(machine.emit_object(module))
 

@@ -15,11 +15,10 @@ from scipy.optimize import root
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import PEG, PIECE
+from workhold.kernels.seating.columns import CONFIG, PEG, PIECE
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG
 
 Array = NDArray[np.float64]
 SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]

@@ -13,13 +13,13 @@ from attrs import evolve
 from seating_examples import at_angle, held, solved, touching
 from workhold import Vise, load
 from workhold.kernels.seating.closing import AT_REST
-from workhold.kernels.seating.columns import CONTACTS, SECOND, SEPARATION, THETA
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, SECOND, SEPARATION, THETA
 from workhold.seating.equilibria import equilibria
 from workhold.seating.groups import groups_of
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG, Tree
+from workhold.seating.tree import Tree
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
 VISE = Vise(pitch=20, columns=2, peg_radius=3)

@@ -11,14 +11,14 @@ from scipy.optimize import nnls
 from sharpness import changed
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP, add_normal, shortest_out
-from workhold.kernels.seating.columns import SECOND, WorkSpace
+from workhold.kernels.seating.columns import CONFIG, SECOND, WorkSpace
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating.descents import DIRECTIONS
 from workhold.seating.door import Door
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG, OUTSIDE, STOP, Tree
+from workhold.seating.tree import OUTSIDE, STOP, Tree
 from workhold.seating.ways_down import steps_off
 
 NOTCH = Workpiece.from_loops(

@@ -12,7 +12,7 @@ import pytest
 from seating_examples import at_angle, held, on_pieces, touching
 from workhold import Vise, Workpiece, load
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, MOTION, PEG, PIECE, SECOND, SEPARATION
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, CONFIG, MOTION, PEG, PIECE, SECOND, SEPARATION
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.seating.alone import in_balance
 from workhold.seating.equilibria import equilibria
@@ -20,7 +20,7 @@ from workhold.seating.filled import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import CONFIG, Tree
+from workhold.seating.tree import Tree
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # A plate with a rounded end, a round notch, a slanted side and a small hole.

@@ -13,6 +13,7 @@ from workhold import Fixture, Peg, Pose, Vise
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
+    CONFIG,
     CONTACTS,
     COSINE,
     MOVED,
@@ -30,7 +31,7 @@ from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 from workhold.seating.tree import OUTSIDE, STOP, Builder
-from workhold.seating.ways_down import CONFIG, Trodden, both_ways_down, free_ways, starts_off
+from workhold.seating.ways_down import Trodden, both_ways_down, free_ways, starts_off
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))

@@ -55,7 +55,7 @@ from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lies_along, nearest_of
+from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lie_along, nearest_of
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
@@ -195,7 +195,8 @@ def seats_and_passes() -> Calls:
         np.zeros((0, RUN_LENGTH)),
     )
     yield free_runs, runs
-    yield lies_along, (0.0, 0.0, 0.0, np.zeros((0, 4)), 1.0)
+    fewest, levels = np.zeros(1, np.int64), np.zeros(0)
+    yield lie_along, (np.zeros((0, 4)), np.zeros((0, 4)), fewest, levels, 1.0, 1.0, np.zeros((0, 0), np.int8))
     yield nearest_of, (np.zeros((0, 4)), np.zeros((0, 4)), 1.0, 1.0, 1.0, none)
     yield first_of_each, (many, 1.0, 1.0, none)
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
@@ -224,7 +225,7 @@ HOLDINGS = (
     at_tangencies,
     tangent_chords,
     about_one_center,
-    lies_along,
+    lie_along,
     stationary,
     least_friction,
 )

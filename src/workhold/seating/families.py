@@ -16,13 +16,11 @@ from workhold.conventions import END_SLACK, PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
+    CONFIG,
     CONTACTS,
     PEG,
     PIECE,
-    PLACE_X,
-    PLACE_Y,
     SEPARATION,
-    THETA,
     Given,
     Obstacles,
 )
@@ -37,7 +35,7 @@ from workhold.kernels.seating.freedom import (
     RUN_WAY,
     free_ones,
     free_runs,
-    lies_along,
+    lie_along,
 )
 from workhold.kernels.seating.parallel import (
     AT_HIGH,
@@ -56,13 +54,13 @@ from workhold.seating.groups import Group
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Family", "Finder", "Way"]
+__all__ = ["Families", "Family", "Finder", "Way"]
 
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
 SLIDE_STEPS, TURN_STEPS = 144, 384
-# mm. Shorter slides are none; separations this near are one, or one where ways end.
-SHORTEST, SAME, SAME_LEVEL = 1e-6, 1e-6, 1e-3
+# mm. Shorter slides are none; separations this near are one.
+SHORTEST, SAME = 1e-6, 1e-6
 # A force's share below this is none.
 LEAST_SHARE = 1e-9
 Contact = tuple[int, int]
@@ -88,18 +86,46 @@ class Family:
     @cached_property
     def middle(self) -> Array:
         """The configuration (4,) of the candidate."""
-        return self.candidate[[THETA, PLACE_X, PLACE_Y, SEPARATION]]
+        return self.candidate[CONFIG]
 
     @property
     def separation(self) -> float:
         """S in mm."""
         return float(self.candidate[SEPARATION])
 
-    def holds(self, config: Array, arm: float) -> bool:
-        """Whether a configuration lies in the set, as far as its steps tell."""
-        if abs(config[3] - self.candidate[SEPARATION]) >= SAME_LEVEL:
-            return False
-        return bool(lies_along(float(config[0]), float(config[1]), float(config[2]), self.configs, arm))
+
+@frozen(eq=False)
+class Families:
+    """Some loose sets, to ask of all at once what lies in which.
+
+    Parameters
+    ----------
+    levels : (F,) their separations in mm.
+    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end (F + 1,).
+    """
+
+    levels: Array
+    configs: Array
+    begins: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, families: Sequence[Family]) -> Families:
+        """Those of a list."""
+        configs = np.concatenate([np.zeros((0, 4)), *(one.configs for one in families)])
+        begins = np.cumsum([0, *(len(one.configs) for one in families)])
+        return cls(np.array([one.separation for one in families], dtype=np.float64), configs, begins)
+
+    def hold(self, configs: Array, arm: float, most: float) -> NDArray[np.bool_]:
+        """Which sets each configuration (N, 4) lies in, as far as their steps tell: (N, F).
+
+        Parameters
+        ----------
+        arm : in mm, by which turns are counted.
+        most : by how much in mm the separation may differ.
+        """
+        out = np.empty((len(configs), len(self.levels)), np.int8)
+        lie_along(np.ascontiguousarray(configs), self.configs, self.begins, self.levels, arm, most, out)
+        return out.astype(np.bool_)
 
 
 @frozen(eq=False)
@@ -233,7 +259,7 @@ class Finder:
             if bits >> peg & 1
         ]
         row = np.zeros(CANDIDATE_LENGTH)
-        row[[THETA, PLACE_X, PLACE_Y, SEPARATION]] = configs[middle]
+        row[CONFIG] = configs[middle]
         row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
         for at, (peg, piece) in enumerate(told):
             row[PEG + at], row[PIECE + at] = peg, piece
@@ -358,13 +384,13 @@ class Finder:
 
     def families(self, found: list[Family]) -> list[Family]:
         """Those found, each once: the one with the most contacts of those that lie in each other."""
-        kept: list[Family] = []
-        for one in sorted(found, key=lambda family: -family.candidate[CONTACTS]):
-            middle = one.middle
-            level = float(middle[3])
-            if not any(abs(level - other.candidate[SEPARATION]) < SAME and other.holds(middle, 1.0) for other in kept):
-                kept.append(one)
-        return kept
+        every = sorted(found, key=lambda family: -family.candidate[CONTACTS])
+        middles = np.array([one.middle for one in every]).reshape(-1, 4)
+        inside, kept = Families.of(every).hold(middles, 1.0, SAME), list[int]()
+        for number, holding in enumerate(inside):
+            if not holding[kept].any():
+                kept.append(number)
+        return [every[number] for number in kept]
 
 
 def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[float, float]]:

@@ -12,14 +12,11 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
+    CONFIG,
     CONTACTS,
     FORCE,
     PEG,
     PIECE,
-    PLACE_X,
-    PLACE_Y,
-    SEPARATION,
-    THETA,
 )
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating.balance import forces_of
@@ -49,7 +46,7 @@ def as_candidate(locus: Locus, pattern: Pattern, config: Array, faces: Sequence[
     size : of the part in mm.
     """
     row, away = np.zeros(CANDIDATE_LENGTH), np.empty(1)
-    row[[THETA, PLACE_X, PLACE_Y, SEPARATION]], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = config, -1.0, -1.0
+    row[CONFIG], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = config, -1.0, -1.0
     contacts = []
     for peg, (at, side) in enumerate(zip(pattern.at(config[None])[0], pattern.right.tolist(), strict=True)):
         off = {}

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
+    CONFIG,
     CONTACTS,
     FORCE,
     PEG,
@@ -37,7 +38,7 @@ from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
 from workhold.seating.settled import is_equilibrium
 from workhold.seating.sticking import sticking_friction
-from workhold.seating.tree import CONFIG, Join, Tree, distances
+from workhold.seating.tree import Join, Tree, distances
 
 __all__ = ["Solver", "seatings"]
 

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
-from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, PEG, PIECE
 from workhold.seating.balance import contact_normals
 from workhold.seating.descents import Closing
-from workhold.seating.tree import CONFIG
 
 __all__ = ["is_equilibrium"]
 

@@ -11,7 +11,6 @@ join : a pass, with the places that both of its ways down end in.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cached_property
 from math import pi, tau
 
@@ -20,18 +19,17 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
-from workhold.kernels.seating.columns import SEPARATION
+from workhold.kernels.seating.columns import CONFIG, SEPARATION
 from workhold.kernels.seating.freedom import nearest_of
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
-from workhold.seating.families import Family
-from workhold.seating.ways_down import BESIDE, CONFIG, both_ways_down
+from workhold.seating.families import Families, Family
+from workhold.seating.ways_down import BESIDE, both_ways_down
 
-__all__ = ["CONFIG", "OUTSIDE", "STOP", "Join", "Tree"]
+__all__ = ["OUTSIDE", "STOP", "Join", "Tree"]
 
 Array = NDArray[np.float64]
-Seen = tuple[Array, int, bool, list[int], int, list[int]]
-OUTSIDE, STOP = -1, -2
+OUTSIDE, STOP, UNKNOWN = -1, -2, -3
 # mm. How long the first steps of a way down off a loose set are.
 FIRST_STEP = BESIDE / 2.0
 # mm. A way down that ends this near to a seat, with a separation this near, ended in it.
@@ -80,13 +78,14 @@ class Tree:
     @classmethod
     def of(cls, found: Equilibria, closing: Closing) -> Tree:
         """Follow the ways down of all passes and the ends of all loose sets."""
-        rested = lying_on(found.loose, found.seats[:, CONFIG], closing.size)
-        strict = np.array([number is None for number in rested], np.bool_)
+        loose = Families.of(found.loose)
+        rested = first_of(loose.hold(found.seats[:, CONFIG], closing.size, FALLS))
+        strict = rested < 0
         # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing leads on.
         builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], strict)
         slack, rows = list[Family](), list[Array]()
         seats = np.ascontiguousarray(found.seats[strict][:, CONFIG])
-        beyond = ends_of(found.loose, closing.size)
+        beyond = ends_of(found.loose, loose, closing.size)
         ended, how_ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)
         at, starts, ends, how = 0, list[Array](), list[Array](), list[NDArray[np.int8]]()
         for family, begun in zip(found.loose, beyond, strict=True):
@@ -112,12 +111,9 @@ class Tree:
         )
         made = [Join(float(row[SEPARATION]), row, (places[2 * k], places[2 * k + 1])) for k, row in enumerate(rows)]
         doubtful = np.array(builder.doubtful).reshape(-1, 4)
-        beside_loose = lying_on(builder.loose, found.seats[~strict][:, CONFIG], closing.size)
-        shared = {
-            k: len(found.seats) + number
-            for k, number in zip(np.flatnonzero(~strict).tolist(), beside_loose, strict=True)
-            if number is not None
-        }
+        beside_loose = first_of(builder.loose_sets.hold(found.seats[~strict][:, CONFIG], closing.size, FALLS))
+        lying = np.flatnonzero(~strict)[beside_loose >= 0]
+        shared = dict(zip(lying.tolist(), (len(found.seats) + beside_loose[beside_loose >= 0]).tolist(), strict=True))
         joins_made = tuple(sorted(made, key=lambda join: join.separation))
         return cls(found.seats, builder.loose, slack, doubtful, joins_made, shared)
 
@@ -152,35 +148,26 @@ class Tree:
         return None
 
 
-def lying_on(families: list[Family], configs: Array, size: float) -> list[int | None]:
-    """Of each configuration (N, 4) the number of the first loose set that it lies on, with its separation; None of none."""
-    near = numbers_of(np.abs(separations(families) - configs[:, 3:]) < FALLS)
-    return [
-        next((k for k in some if families[k].holds(config, size)), None)
-        for config, some in zip(configs, near, strict=True)
-    ]
+def first_of(told: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Of each row (N, M) the number of the first that is true; -1 where none is."""
+    if told.shape[1] == 0:
+        return np.full(len(told), -1)
+    return np.where(told.any(axis=1), told.argmax(axis=1), -1)
 
 
-def numbers_of(told: NDArray[np.bool_]) -> list[list[int]]:
-    """Of each row (N, M) the numbers of those that are true."""
-    out: list[list[int]] = [[] for _ in told]
-    for n, k in np.argwhere(told).tolist():
-        out[n].append(k)
-    return out
+def ends_of(families: list[Family], every: Families, size: float) -> list[Array]:
+    """Configurations (2, 4) just beyond the ends of each loose set, or to both sides of its middle; none of a whole turn.
 
-
-def separations(families: Iterable[Family]) -> Array:
-    """Those of loose sets, in mm."""
-    return np.array([family.separation for family in families], dtype=np.float64)
-
-
-def ends_of(families: list[Family], size: float) -> list[Array]:
-    """Configurations (2, 4) just beyond the ends of each loose set, or to both sides of its middle; none of a whole turn."""
+    Parameters
+    ----------
+    every : the same sets.
+    """
     out = [np.zeros((0, 4))] * len(families)
     ended = [k for k, one in enumerate(families) if one.across is None and not one.is_closed and len(one.configs) >= 3]
     if ended:
         # The end may be the same as the configuration before it, but not as the one before that.
-        rows = np.array([families[k].configs[[0, -1, 2, -3]] for k in ended])
+        first, end = every.begins[ended], every.begins[1:][ended]
+        rows = every.configs[np.stack([first, end - 1, first + 2, end - 3], axis=1)]
         steps = rows[:, :2] - rows[:, 2:]
         steps[:, :, 0] = (steps[:, :, 0] + pi) % tau - pi
         lengths = np.abs(steps[:, :, 0]) * size + np.hypot(steps[:, :, 1], steps[:, :, 2])
@@ -216,14 +203,46 @@ class Builder:
     fallen: dict[int, int] = field(factory=dict)
 
     def places(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[int]:
-        """The places of the ends (N, 4) of ways down that began at some configurations (N, 4)."""
-        stopped, near = how == AT_THE_STOP, self.near_seats(configs)
-        # What most are: at the stop, or in a seat that is level with nothing from which a way may lead on.
-        on_a_way = (np.abs(self.fall_levels - configs[:, 3:]) < SAME_LEVEL).any(axis=1)
-        out = np.where(stopped, np.where(self.leave(starts, configs, stopped), OUTSIDE, STOP), near)
-        left = np.flatnonzero(~stopped & ((how != AT_REST) | (near < 0) | on_a_way))
-        out[left] = [self.place(*one) for one in self.seen(starts[left], configs[left], how[left])]
-        return [int(place) for place in out.tolist()]
+        """The places of the ends (N, 4) of ways down that began at some configurations (N, 4); those that are not known are
+        added to what is not settled."""
+        falls, places = self.seen(starts, configs, how)
+        out: list[int] = places.tolist()
+        for n in np.flatnonzero((falls >= 0) | (places == UNKNOWN)).tolist():
+            out[n] = self.place_of(int(falls[n]), int(places[n]), configs[n])
+        return out
+
+    def seen(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Of each end of a way down, as of ``places``, the number of the loose set off which the way leads on, -1 where none
+        does, and its place where it does not, ``UNKNOWN`` of what is not settled."""
+        stopped, at_rest, size = how == AT_THE_STOP, how == AT_REST, self.closing.size
+        places = np.where(self.leave(starts, configs, stopped), OUTSIDE, STOP)
+        near, loose = self.near_seats(configs), first_of(self.loose_sets.hold(configs, size, SAME_LEVEL))
+        resting = np.where(near >= 0, near, np.where(loose >= 0, len(self.seats) + loose, UNKNOWN))
+        # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
+        falling = self.falling_sets
+        on = falling.hold(configs, size, SAME_LEVEL) & (configs[:, 3:] >= falling.levels - FALLS)
+        return np.where(at_rest, first_of(on), -1), np.where(stopped, places, np.where(at_rest, resting, UNKNOWN))
+
+    def place_of(self, fall: int, place: int, config: Array) -> int:
+        """The place of an end of which ``seen`` told the first two."""
+        if fall >= 0:
+            if fall not in self.fallen:
+                # Lower than the set, and so never off it again.
+                falls, places = self.below
+                self.fallen[fall] = self.place_of(int(falls[fall]), int(places[fall]), self.falling[fall][2])
+            return self.fallen[fall]
+        return self.in_doubt(config) if place == UNKNOWN else place
+
+    def in_doubt(self, config: Array) -> int:
+        """The place of what is not settled."""
+        before = len(self.seats) + len(self.loose)
+        if self.doubtful:
+            away = distances(np.array(self.doubtful), config, self.closing.size)
+            nearest = int(np.argmin(away))
+            if away[nearest] < 10.0 * AT_SEAT:
+                return before + nearest
+        self.doubtful.append(config)
+        return before + len(self.doubtful) - 1
 
     def leave(self, starts: Array, configs: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether a part can be taken away where ways ended that were stopped (N,), or where they began: what can be taken
@@ -234,24 +253,15 @@ class Builder:
         away[left] = self.closing.escape(starts[left])
         return away
 
-    def seen(self, starts: Array, configs: Array, how: NDArray[np.int8]) -> list[Seen]:
-        """What is asked of the ends of ways down, all at once; see ``place``."""
-        away = self.leave(starts, configs, how == AT_THE_STOP)
-        falls, loose = (
-            numbers_of(np.abs(levels - configs[:, 3:]) < SAME_LEVEL) for levels in (self.fall_levels, self.loose_levels)
-        )
-        near = self.near_seats(configs).tolist()
-        return list(zip(configs, how.tolist(), away.tolist(), falls, near, loose, strict=True))
+    @cached_property
+    def falling_sets(self) -> Families:
+        """The falling sets."""
+        return Families.of([family for family, *_ in self.falling])
 
     @cached_property
-    def fall_levels(self) -> Array:
-        """The separations of the falling sets, in mm."""
-        return separations(family for family, *_ in self.falling)
-
-    @cached_property
-    def loose_levels(self) -> Array:
-        """The separations of the loose sets, in mm."""
-        return separations(self.loose)
+    def loose_sets(self) -> Families:
+        """The loose sets."""
+        return Families.of(self.loose)
 
     def near_seats(self, configs: Array) -> NDArray[np.int64]:
         """The number of the strict seat that each configuration (N, 4) is in, -1 where there is none."""
@@ -268,45 +278,10 @@ class Builder:
         return np.append(numbers, -1), np.ascontiguousarray(self.seats[numbers][:, CONFIG])
 
     @cached_property
-    def below(self) -> list[Seen]:
-        """What ways off the falling sets end in."""
+    def below(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """What ways off the falling sets end in, as of ``seen``."""
         starts, ends = (np.array([falling[k] for falling in self.falling]) for k in (1, 2))
         return self.seen(starts, ends, np.array([how for *_, how in self.falling], np.int8))
-
-    def place(self, config: Array, how: int, is_away: bool, falls: list[int], near: int, loose: list[int]) -> int:
-        """The place of the end of a way down; one that is not known is added to what is not settled.
-
-        Parameters
-        ----------
-        is_away : whether the part can be taken away there.
-        falls, loose : numbers of loose sets with nearly its separation, off which a way leads, and that are rests.
-        near : number of the seat that it is in, or -1.
-        """
-        if how == AT_THE_STOP:
-            return OUTSIDE if is_away else STOP
-        size = self.closing.size
-        for k in falls:
-            family = self.falling[k][0]
-            # On flat faces no step leads down; the way goes on, lower, where the part slides off them.
-            if how == AT_REST and config[3] >= family.separation - FALLS and family.holds(config, size):
-                end = self.below[k]
-                if end[0][3] < family.separation - FALLS:
-                    if k not in self.fallen:
-                        self.fallen[k] = self.place(*end)
-                    return self.fallen[k]
-        if how == AT_REST and near >= 0:
-            return near
-        for k in loose:
-            if how == AT_REST and self.loose[k].holds(config, size):
-                return len(self.seats) + k
-        before = len(self.seats) + len(self.loose)
-        if self.doubtful:
-            away = distances(np.array(self.doubtful), config, size)
-            nearest = int(np.argmin(away))
-            if away[nearest] < 10.0 * AT_SEAT:
-                return before + nearest
-        self.doubtful.append(config)
-        return before + len(self.doubtful) - 1
 
 
 def distances(configs: Array, others: Array, size: float) -> Array:

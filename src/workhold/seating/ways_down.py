@@ -15,17 +15,14 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import (
+    CONFIG,
     CONTACTS,
     DOUBT,
     MOTION,
     NODE_LENGTH,
-    PLACE_X,
-    PLACE_Y,
     SECOND,
-    SEPARATION,
     STEP,
     STEP_ALONG,
-    THETA,
 )
 from workhold.kernels.seating.following import free_until
 from workhold.seating.descents import LONGEST_STEP, Closing
@@ -33,7 +30,7 @@ from workhold.seating.descents import LONGEST_STEP, Closing
 if TYPE_CHECKING:
     from workhold.seating.equilibria import Equilibria
 
-__all__ = ["BESIDE", "CONFIG", "Trodden", "WaysDown", "both_ways_down", "steps_off"]
+__all__ = ["BESIDE", "Trodden", "WaysDown", "both_ways_down", "steps_off"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -41,7 +38,6 @@ IntArray = NDArray[np.int64]
 # have bent there.
 BESIDE = 0.01
 SHORTEST, MOST_BEND = 1e-5, 0.1
-CONFIG = [THETA, PLACE_X, PLACE_Y, SEPARATION]
 
 
 def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
@@ -59,7 +55,7 @@ def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
 def starts_off(rows: Array, size: float) -> tuple[Array, Array]:
     """Where ways down begin, to one and the other side of each of some passes (N, 24): configurations (2 N, 4), and how long
     their first steps are in mm (2 N,)."""
-    (steps, lengths), configs = steps_off(rows, size), rows[:, : SEPARATION + 1]
+    (steps, lengths), configs = steps_off(rows, size), rows[:, CONFIG]
     starts, first = np.empty((len(rows), 2, 4)), np.empty((len(rows), 2))
     starts[:, 0], starts[:, 1], first[:] = configs + steps, configs - steps, lengths[:, None] / 2.0
     return starts.reshape(-1, 4), first.ravel()

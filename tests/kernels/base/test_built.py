@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import pickle
 import re
 import subprocess
 import sys
@@ -11,7 +13,6 @@ from pathlib import Path
 from struct import Struct
 from threading import Thread
 from typing import Any
-from weakref import ref
 
 import numpy as np
 import pytest
@@ -131,64 +132,90 @@ def test_records_are_taken_apart_and_counted():
     described = ["float64", {"array": "f8", "dimensions": 2}]
     take, taken = built.taker(described), list[Any]()
     assert take(pair(2, SQUARE), taken) and built.refusal("given", described, pair(2, SQUARE)) is None
-    assert len(taken) == len(built.letters(described)) == built.words_of(described) == 1 + 5 + 2 * 2
+    assert taken == [2, id(SQUARE)] and built.letters(described) == "dq"
+    assert built.words_of(described) == 1 + 5 + 2 * 2
     for value, words in (
         ((1.0, SQUARE, SQUARE), "given must be a record of 2, not tuple of 3"),
         (pair(2, SQUARE[0]), "given.rows must be a C-contiguous array of float64 with 2 dimensions"),
         (pair("2", SQUARE), "given.x must be float64, not str"),
     ):
-        assert not take(value, [])
         assert built.refusal("given", described, value).startswith(words)
+    for value in ((1.0, SQUARE, SQUARE), pair("2", SQUARE), [2, SQUARE]):
+        assert not take(value, [])
+    arrays = [{"array": "f8", "dimensions": 2}] * 2
+    assert not built.taker(arrays)((SQUARE,), []) and not built.taker(arrays)(None, [])
+
+
+class Own(np.ndarray):
+    """Arrays of a class of their own, as those that are mapped from a file are."""
+
+
+def read_only(array: Any) -> Any:
+    """The same that may not be written to."""
+    array = array.view()
+    array.flags.writeable = False
+    return array
 
 
 @pytest.mark.parametrize(
-    "array", [SQUARE, SQUARE[:0], SQUARE[1:3], np.zeros((3, 0)), np.arange(4, dtype=np.int64), np.int8([1, 0])]
+    "make",
+    [
+        np.array,
+        read_only,
+        lambda array: array.view(Own),
+        lambda array: array.astype(np.dtype(np.float64, metadata={"of": "its own"})),
+        lambda array: pickle.loads(pickle.dumps(array)),
+        lambda array: np.frombuffer(array.tobytes()).reshape(array.shape),
+        lambda array: np.concatenate([array, array])[4:],
+        lambda array: np.concatenate([array, array])[:4],
+    ],
+    ids=["array", "read only", "class", "element", "pickled", "of bytes", "end", "begin"],
 )
-@pytest.mark.parametrize("is_written", [True, False])
-def test_arrays_are_told_by_where_they_are(array, is_written):
-    """Also those that are empty, or may not be written to."""
-    array = np.array(array) if is_written else array.view()
-    array.flags.writeable = is_written
-    taken: list[Any] = []
-    assert built.taker({"array": array.dtype.str[1:], "dimensions": array.ndim})(array, taken)
-    assert taken == [0, 0, array.size, array.itemsize, array.ctypes.data, *array.shape, *array.strides]
+def test_arrays_are_taken_however_they_were_made(library, make):
+    """Where they are looked at, they are what they are."""
+    ours = door(library, distance.outline_distances)
+    for points, square in (
+        (POINTS, make(SQUARE)),
+        (make(np.tile(POINTS, 5))[:, :2].copy(), SQUARE),
+        (POINTS, make(SQUARE)),
+    ):
+        assert ours(points, square).tobytes() == distance.outline_distances(points, square.view(np.ndarray)).tobytes()
 
 
-def test_records_that_are_kept_are_those_that_are_handed_over():
-    """One is told by itself alone: what is made where another was, or of nearly the same, is looked at anew."""
-    described = [{"array": "f8", "dimensions": 1}, "int64"]
-    take = built.taker(described)
-    assert take is built.taker(list(described))
-    arrays = [np.full(3, float(k)) for k in range(40)]
-    for number in (*range(40), *range(39, -1, -1)):
-        for value in ((arrays[number], number), (arrays[number], number + 1)):
-            for _ in range(2):
-                taken: list[Any] = []
-                assert take(value, taken)
-                assert (taken[4], taken[-1]) == (value[0].ctypes.data, value[1])
-        assert not take((arrays[number], 0.5), [])
-    gone = [ref(array) for array in arrays]
-    del arrays, value
-    assert 0 < sum(one() is not None for one in gone) <= built.MOST_KEPT
-    large = np.zeros(built.MOST_BYTES // 8)
-    assert take((large, 1), [])
-    last = ref(large)
-    del large
-    assert last() is None
+def test_an_array_that_is_not_aligned_is_refused(library):
+    """Its numbers are between those that a kernel would read."""
+    beside = np.frombuffer(b"0" + SQUARE.tobytes(), np.float64, offset=1).reshape(SQUARE.shape)
+    with pytest.raises(TypeError, match="rows must be a C-contiguous array"):
+        door(library, distance.is_inside)(0.0, 0.0, beside)
+
+
+def test_whole_numbers_and_bytes_are_other_elements(library):
+    """Each kind of array is taken by kernels of its own: of all three elements."""
+    for number, element in enumerate(built.ELEMENTS):
+        known = (ctypes.c_void_p * (1 + len(built.ELEMENTS))).in_dll(library.code, built.KNOWN)
+        assert known[1 + number] == id(np.zeros(1, element).dtype)
+    assert known[0] == id(type(SQUARE))
+
+
+def test_another_python_is_told_apart(library, monkeypatch):
+    """One that keeps its objects elsewhere uses no library."""
+    monkeypatch.setattr(built, "BEFORE_HEADER", 32)
+    with pytest.raises(OSError, match="in another way"):
+        built.Library(Path(library.code._name))
 
 
 def test_truths_and_numbers_are_words():
     """Of numpy, too; what is true is 1."""
     for kind, values in (
-        ("bool", (True, np.True_)),
+        ("bool", (True, np.True_, False)),
         ("int64", (-3, np.int64(-3))),
         ("float64", (2, 2.5, np.float64(2), np.int64(2))),
     ):
         for value in values:
             taken: list[Any] = []
             assert built.taker(kind)(value, taken)
-            [word] = Struct(built.letters(kind)).unpack(Struct(built.letters(kind)).pack(*taken))
-            assert word == value
+            packed = Struct("=" + built.letters(kind)).pack(*taken)
+            assert Struct("=d" if kind == "float64" else "=q").unpack(packed) == (value,)
     assert not built.taker("int64")(2.0, []) and not built.taker("bool")(1, [])
 
 

@@ -1,23 +1,26 @@
 """Kernels compiled when the package was built: one shared library that needs neither numba nor Python.
 
 The library holds each kernel under its name, as a function of an array of words: those of its result, one for a failure,
-and those of its arguments, with all records and arrays taken apart. It tells in ``DESCRIPTION`` what each is called with
-(written by ``building/compile_kernels.py``). It is called through ctypes, which releases the interpreter lock. Compiled code
-trusts what it is given, so every call is checked here first; both take microseconds, as seating calls small kernels often.
+and those of its arguments, with all records taken apart. It tells in ``DESCRIPTION`` what each is called with (written by
+``building/compile_kernels.py``). It is called through ctypes, which releases the interpreter lock. Kernels trust what they
+are given, so every call is checked. The word of an array is where NumPy keeps its header, in which the library itself looks
+up and checks what it is: seating calls small kernels often, and a call takes as long as its arrays take to be told.
 
 Glossary
 --------
 door : what Python calls: a kernel of the library behind its checks.
 argument : a number, as "int64", "float64" or "bool"; an array, as its element type and how many dimensions it has; or a
     record, as the list of its fields.
+header : NumPy's record of an array in memory, of which its C interface fixes the layout (``PyArrayObject_fields``).
 """
 
 from __future__ import annotations
 
 import ctypes
 import json
-from collections.abc import Callable
-from functools import cache, partial
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
 from inspect import signature
 from pathlib import Path
 from struct import Struct
@@ -25,24 +28,27 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["DESCRIPTION", "LIBRARY_NAME", "Door", "Library"]
+__all__ = ["DESCRIPTION", "ELEMENTS", "KNOWN", "LIBRARY_NAME", "REFUSED", "RELEASE", "Door", "Library"]
 
 # Names that the library exports besides those of its kernels.
-DESCRIPTION, RELEASE = "workhold_description", "workhold_release"
+DESCRIPTION, RELEASE, KNOWN = "workhold_description", "workhold_release", "workhold_known"
+# Elements of arrays. The library has to be told where Python keeps the type of arrays and those of each of these.
+ELEMENTS = ("f8", "i8", "i1")
 LIBRARY_NAME = "kernels.{platform}.so"
 # Appends the words of a value, and says whether it is taken.
 Taker = Callable[[Any, list[Any]], bool]
-# What a kernel returns: done, or done with nothing to hand back. All else means that it had no memory.
-DONE = (0, -2)
+# What a kernel returns: done, or done with nothing to hand back; that it was called with another array than those it was
+# compiled for. All else means that it had no memory.
+DONE, REFUSED = (0, -2), -100
 SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "int64": (ctypes.c_int64, (int, np.integer)),
     "float64": (ctypes.c_double, (float, int, np.floating, np.integer)),
     "bool": (ctypes.c_bool, (bool, np.bool_)),
 }
 WORD = 8
-# Records of one kind of which the words are kept, and bytes of the arrays of each.
-MOST_KEPT, MOST_BYTES = 16, 2**18
-# Words of an array before its shape: two owners, number of elements, bytes of one, address.
+# Bytes of what Python keeps of any object, on which what the library reads of arrays follows.
+BEFORE_HEADER = 16
+# Words of an array that is handed back before its shape: two owners, number of elements, bytes of one, address.
 ARRAY_WORDS, ADDRESS = 5, 4
 
 
@@ -52,14 +58,18 @@ class Library:
     Raises
     ------
     OSError
-        When the file is missing or no library for this machine.
+        When the file is missing or no library for this machine and this Python.
     """
 
     def __init__(self, path: Path) -> None:
+        if sys.implementation.name != "cpython" or object.__basicsize__ != BEFORE_HEADER:
+            raise OSError("This Python keeps arrays in another way.")
         self.code = ctypes.CDLL(str(path))
         described: Any = json.loads(ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self.code, DESCRIPTION))))
         self.source_hash: str = described["source_hash"]
         self.kernels: dict[str, Any] = described["kernels"]
+        known = (ctypes.c_void_p * (1 + len(ELEMENTS))).in_dll(self.code, KNOWN)
+        known[:] = [id(np.ndarray), *(id(np.dtype(element)) for element in ELEMENTS)]
         self.release = getattr(self.code, RELEASE)
         self.release.argtypes, self.release.restype = [ctypes.c_void_p], None
 
@@ -96,21 +106,43 @@ class Door:
         self.words = Struct("=" + "".join(letters(argument) for argument in arguments))
 
     def __call__(self, *values: Any) -> Any:
+        words = self.called(values)
+        if words is None:
+            words = self.called(self.plain(values))
+        if words is None:
+            raise TypeError(f"{self.__name__} was called with an array that is none of NumPy's own.")
+        return None if self.result is None else self.handed_back(self.result, words, 0)
+
+    def called(self, values: Sequence[Any]) -> bytearray | None:
+        """The words after a call with some values; None where one of them is not taken."""
         if len(values) != len(self.takers):
             raise TypeError(f"{self.__name__} takes {len(self.takers)} arguments, not {len(values)}.")
         taken: list[Any] = []
         for take, value in zip(self.takers, values, strict=True):
             if not take(value, taken):
-                raise TypeError(f"{self.__name__}: {self.refused(values)}.")
+                return None
         words = bytearray(self.before + self.words.pack(*taken))
-        if self.code(ctypes.addressof(ctypes.c_char.from_buffer(words))) not in DONE:
+        done = self.code(ctypes.addressof(ctypes.c_char.from_buffer(words)))
+        if done == REFUSED:
+            return None
+        if done not in DONE:
             raise MemoryError(f"{self.__name__} found no memory for its result.")
-        return None if self.result is None else self.handed_back(self.result, words, 0)
+        return words
 
-    def refused(self, values: tuple[Any, ...]) -> str:
-        """Which of the values is none that the kernel was compiled for."""
-        told = (refusal(name, kind, value) for (name, kind), value in zip(self.arguments, values, strict=True))
-        return next(words for words in told if words is not None)
+    def plain(self, values: tuple[Any, ...]) -> list[Any]:
+        """Values of which one was not taken, with arrays as NumPy makes them: of a class of their own, say, they are not.
+
+        Raises
+        ------
+        TypeError
+            When one of the values is none that the kernel was compiled for.
+        """
+        told = zip(self.arguments, values, strict=True)
+        refused = (refusal(name, kind, value) for (name, kind), value in told)
+        words = next((words for words in refused if words is not None), None)
+        if words is not None:
+            raise TypeError(f"{self.__name__}: {words}.")
+        return [plain(kind, value) for (_, kind), value in zip(self.arguments, values, strict=True)]
 
     def handed_back(self, result: Any, words: bytearray, start: int) -> Any:
         """The result that begins at a word of what the library returned."""
@@ -153,106 +185,82 @@ class Made:
 
 
 def taker(argument: Any) -> Taker:
-    """What appends the words that a library takes for an argument; it says whether the value is one that it takes."""
-    return taker_told(json.dumps(argument))
-
-
-@cache
-def taker_told(text: str) -> Taker:
-    """The same of an argument in JSON, one for all kernels: what is known of a record serves them all."""
-    argument = json.loads(text)
+    """What appends the words that a library takes for an argument; it says whether the value is one that it takes, but of
+    arrays, of which the library says it."""
     if isinstance(argument, str):
-        return number_taker(SCALARS[argument][1])
-    if isinstance(argument, dict):
-        return array_taker(np.dtype(argument["array"]), argument["dimensions"])
-    return record_taker([taker(part) for part in argument])
+        return number_taker(argument)
+    return array_taken if isinstance(argument, dict) else record_taker(argument)
 
 
-def number_taker(kinds: tuple[type[Any], ...]) -> Taker:
-    """See ``taker``, of a number of some kinds."""
+def number_taker(argument: str) -> Taker:
+    """See ``taker``, of a number."""
+    kinds = SCALARS[argument][1]
 
     def take(value: Any, taken: list[Any]) -> bool:
-        # Truths are words as others are.
-        taken.append(bool(value) if bool in kinds else value)
+        taken.append(value)
         return isinstance(value, kinds)
 
     return take
 
 
-def array_taker(element: np.dtype[Any], dimensions: int) -> Taker:
-    """See ``taker``, of an array of elements in their order."""
-    width, address_of = element.itemsize, ctypes.addressof
-    first_of: Callable[[Any], ctypes.c_char] = ctypes.c_char.from_buffer
+def array_taken(value: Any, taken: list[Any]) -> bool:
+    """See ``taker``, of an array."""
+    # Where Python keeps it.
+    taken.append(id(value))
+    return True
+
+
+def record_taker(argument: list[Any]) -> Taker:
+    """See ``taker``, of a record."""
+    takers, are_arrays = [taker(part) for part in argument], all(isinstance(part, dict) for part in argument)
 
     def take(value: Any, taken: list[Any]) -> bool:
-        if not isinstance(value, np.ndarray) or value.ndim != dimensions or value.dtype != element:
-            return False
-        flags, size = value.flags, value.size
-        if flags.carray and size:
-            # In a sixth of the time of asking for the address.
-            address = address_of(first_of(value))
-        elif flags.c_contiguous and flags.aligned:
-            address = value.__array_interface__["data"][0]
-        else:
-            return False
-        taken += (0, 0, size, width, address, *value.shape, *value.strides)
-        return True
-
-    return take
-
-
-def record_taker(takers: list[Taker]) -> Taker:
-    """See ``taker``, of a record; the words of the last few that are small are kept with them, as one is often handed on."""
-    kept: dict[int, tuple[Any, list[Any]]] = {}
-
-    def take(value: Any, taken: list[Any]) -> bool:
-        known = kept.get(id(value))
-        if known is not None and known[0] is value:
-            taken += known[1]
-            return True
-        own: list[Any] = []
         if not isinstance(value, tuple) or len(value) != len(takers):
             return False
-        if not all(part(item, own) for part, item in zip(takers, value, strict=True)):
-            return False
-        taken += own
-        if sum(item.nbytes for item in value if isinstance(item, np.ndarray)) < MOST_BYTES:
-            if len(kept) >= MOST_KEPT:
-                kept.clear()
-            kept[id(value)] = value, own
-        return True
+        if are_arrays:
+            taken += map(id, value)
+            return True
+        return all(part(item, taken) for part, item in zip(takers, value, strict=True))
 
     return take
+
+
+def plain(argument: Any, value: Any) -> Any:
+    """A value that is taken for an argument, arrays as NumPy makes them."""
+    if isinstance(argument, dict):
+        return value.view(np.ndarray).view(np.dtype(argument["array"]))
+    if isinstance(argument, list):
+        return tuple(plain(part, item) for part, item in zip(argument, value, strict=True))
+    return value
 
 
 def refusal(name: str, argument: Any, value: Any) -> str | None:
     """Why a value is not taken, in words; None where it is."""
-    if taker(argument)(value, []):
-        return None
     if isinstance(argument, str):
-        return f"{name} must be {argument}, not {told(value)}"
+        return None if isinstance(value, SCALARS[argument][1]) else f"{name} must be {argument}, not {told(value)}"
     if isinstance(argument, dict):
-        dimensions = argument["dimensions"]
-        wanted = f"{np.dtype(argument['array'])} with {dimensions} dimension{'s' * (dimensions > 1)}"
+        element, dimensions = np.dtype(argument["array"]), argument["dimensions"]
+        is_such = isinstance(value, np.ndarray) and value.dtype == element and value.ndim == dimensions
+        if is_such and value.flags.c_contiguous and value.flags.aligned:
+            return None
+        wanted = f"{element} with {dimensions} dimension{'s' * (dimensions > 1)}"
         return f"{name} must be a C-contiguous array of {wanted}, not {told(value)}"
     if not isinstance(value, tuple) or len(value) != len(argument):
         return f"{name} must be a record of {len(argument)}, not {told(value)}"
     fields = zip(getattr(value, "_fields", range(len(argument))), argument, value, strict=True)
     words = (refusal(f"{name}.{field}", part, item) for field, part, item in fields)
-    return next(one for one in words if one is not None)
+    return next((one for one in words if one is not None), None)
 
 
 def letters(argument: Any) -> str:
     """The words of an argument as ``struct`` calls them."""
     if isinstance(argument, str):
-        return "d" if argument == "float64" else "q"
-    if isinstance(argument, dict):
-        return "q" * words_of(argument)
-    return "".join(map(letters, argument))
+        return {"float64": "d", "int64": "q", "bool": "?xxxxxxx"}[argument]
+    return "q" if isinstance(argument, dict) else "".join(map(letters, argument))
 
 
 def words_of(result: Any) -> int:
-    """How many words of eight bytes a result takes."""
+    """How many words of eight bytes a result takes, with arrays taken apart."""
     if isinstance(result, dict):
         return ARRAY_WORDS + 2 * int(result["dimensions"])
     return sum(map(words_of, result)) if isinstance(result, list) else 1

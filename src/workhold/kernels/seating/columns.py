@@ -34,6 +34,8 @@ THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS, PEG = range(6)
 PIECE, FORCE, SECOND, MOTION = 9, 13, 17, 18
 DOUBT, CLEAR, RESIDUAL = 21, 22, 23
 CANDIDATE_LENGTH = 24
+# The columns of a candidate that are its configuration.
+CONFIG = slice(THETA, SEPARATION + 1)
 STEP, STEP_ALONG, COSINE, SINE, TURNED, MOVED = range(4, 10)
 NODE_LENGTH = 10
 # Rows of the work space in which ranges wait to be looked at.

@@ -245,21 +245,43 @@ def free_runs(
 
 
 @compiled
-def lies_along(theta: float, x: float, y: float, configs: Array, arm: float) -> bool:
-    """Whether a place of the part is as near to one of some configurations (N, 4) as they are to each other.
+def lie_along(
+    configs: Array, sets: Array, begins: IntArray, levels: Array, arm: float, most: float, out: NDArray[np.int8]
+) -> None:
+    """Write whether places of the part are as near to one of a set's configurations as these are to each other.
 
     Parameters
     ----------
+    configs : (N, 4) the places.
+    sets, begins, levels : configurations (M, 4) along all sets, one after the other, where those of each begin and, last,
+        end (F + 1,), and their separations (F,) in mm.
     arm : in mm, by which turns are counted.
+    most : by how much in mm the separation of a place may differ from a set's.
+    out : (N, F) written here.
     """
-    nearest, longest = inf, 0.0
-    for n in range(configs.shape[0]):
-        turn = (configs[n, 0] - theta + pi) % (2.0 * pi) - pi
-        nearest = min(nearest, abs(turn) * arm + hypot(configs[n, 1] - x, configs[n, 2] - y))
-        if n > 0:
-            dx, dy = configs[n, 1] - configs[n - 1, 1], configs[n, 2] - configs[n - 1, 2]
-            longest = max(longest, abs(configs[n, 0] - configs[n - 1, 0]) * arm + abs(dx) + abs(dy))
-    return nearest <= longest + BESIDE
+    for k in range(levels.shape[0]):
+        longest = -1.0
+        for m in range(configs.shape[0]):
+            out[m, k] = 0
+            if not abs(configs[m, 3] - levels[k]) < most:
+                continue
+            if longest < 0.0:
+                longest = longest_step(sets, begins[k], begins[k + 1], arm)
+            nearest = inf
+            for n in range(begins[k], begins[k + 1]):
+                turn = (sets[n, 0] - configs[m, 0] + pi) % (2.0 * pi) - pi
+                nearest = min(nearest, abs(turn) * arm + hypot(sets[n, 1] - configs[m, 1], sets[n, 2] - configs[m, 2]))
+            out[m, k] = 1 if nearest <= longest + BESIDE else 0
+
+
+@inner
+def longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
+    """The longest in mm of the steps along a set."""
+    longest = 0.0
+    for n in range(begin + 1, end):
+        dx, dy = sets[n, 1] - sets[n - 1, 1], sets[n, 2] - sets[n - 1, 2]
+        longest = max(longest, abs(sets[n, 0] - sets[n - 1, 0]) * arm + abs(dx) + abs(dy))
+    return longest
 
 
 @compiled
