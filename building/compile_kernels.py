@@ -136,9 +136,11 @@ def taking_words(name: str, arguments: Sequence[Any], kinds: Sequence[str], resu
     free before one for its failure, then come those of its arguments, of arrays where their headers are. The kernel takes
     values of some kinds, arrays taken apart; the function returns ``REFUSED`` for an array that is none of its own.
     """
-    from workhold.kernels.base.built import ELEMENTS, REFUSED
+    from workhold.kernels.base.built import ELEMENTS, KNOWN, REFUSED
 
-    lines = [f"declare i32 @{OWN}({', '.join(kinds)})", f"define i32 @{name}(ptr %words) {{"]
+    offsets = {"type": TYPE, "elements": ELEMENT, "dimensions": DIMENSIONS, "flags": FLAGS, "ordered": ORDERED}
+    lines = [IS_ARRAY.format(known=KNOWN, count=1 + len(ELEMENTS), **offsets)]
+    lines += [f"declare i32 @{OWN}({', '.join(kinds)})", f"define i32 @{name}(ptr %words) {{"]
     values = ["ptr %words", f"ptr %at{results}"]
     lines.append(f"  %at{results} = getelementptr i64, ptr %words, i64 {results}")
     for number, argument in enumerate(flat(arguments), results + 1):
@@ -193,7 +195,7 @@ def emit(part: str, folder: Path) -> None:
     import llvmlite.binding as llvm
 
     from workhold.kernels import preparing
-    from workhold.kernels.base.built import ELEMENTS, KNOWN, words_of
+    from workhold.kernels.base.built import words_of
 
     machine = llvm.Target.from_default_triple().create_target_machine(
         cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
@@ -210,9 +212,7 @@ def emit(part: str, folder: Path) -> None:
         own.linkage, own.name = "external", OWN
         results = words_of(described(compiled.signature.return_type))
         kinds, arguments = [str(argument.type) for argument in own.arguments], [described(kind) for kind in signature]
-        offsets = {"type": TYPE, "elements": ELEMENT, "dimensions": DIMENSIONS, "flags": FLAGS, "ordered": ORDERED}
-        reading = IS_ARRAY.format(known=KNOWN, count=1 + len(ELEMENTS), **offsets)
-        module.link_in(llvm.parse_assembly(reading + taking_words(kernel.__name__, arguments, kinds, results)))
+        module.link_in(llvm.parse_assembly(taking_words(kernel.__name__, arguments, kinds, results)))
         own.linkage = "internal"
         tuning = llvm.create_pipeline_tuning_options(speed_level=0)
         builder = llvm.create_pass_builder(machine, tuning)

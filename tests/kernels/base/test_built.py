@@ -12,6 +12,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from struct import Struct
 from threading import Thread
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -56,11 +57,17 @@ def test_every_kernel_that_python_calls_is_compiled_ahead():
     assert decorated == {kernel.__name__ for calls in PARTS.values() for kernel, _ in calls()}
 
 
-def test_every_kernel_takes_what_a_library_can_be_handed():
-    """Those that are called from Python: whole numbers, doubles and truths, and arrays of numbers one after the other."""
+@pytest.fixture(scope="module")
+def builder() -> ModuleType:
+    """The module that builds a library."""
     spec = spec_from_file_location("compile_kernels", BUILDER)
-    builder = module_from_spec(spec)
-    spec.loader.exec_module(builder)
+    made = module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
+def test_every_kernel_takes_what_a_library_can_be_handed(builder):
+    """Those that are called from Python: whole numbers, doubles and truths, and arrays of numbers one after the other."""
 
     def can_be_handed(signature: Any) -> bool:
         try:
@@ -195,6 +202,51 @@ def test_whole_numbers_and_bytes_are_other_elements(library):
         known = (ctypes.c_void_p * (1 + len(built.ELEMENTS))).in_dll(library.code, built.KNOWN)
         assert known[1 + number] == id(np.zeros(1, element).dtype)
     assert known[0] == id(type(SQUARE))
+
+
+def test_a_kernel_is_handed_all_that_numba_knows_of_an_array(builder):
+    """A kernel that writes down what it is called with: owners, size, bytes of an element, address, shape and strides."""
+    import llvmlite.binding as llvm
+
+    element, grid, number = np.arange(7), np.zeros((3, 5), np.int8), 2.5
+    told = [
+        ({"array": "f8", "dimensions": 2}),
+        [{"array": "i8", "dimensions": 1}, "bool"],
+        {"array": "i1", "dimensions": 2},
+    ]
+    kinds = ["ptr", "ptr", "i64", "i64", "ptr", *["i64"] * 4]
+    kinds = ["ptr", "ptr", *kinds, *kinds[:7], "i1", *kinds, "double"]
+    free = len(kinds)
+    text = builder.taking_words("called", [*told, "float64"], kinds, free)
+    text = text.replace(f"declare i32 @{builder.OWN}", "declare i32 @unused").replace("external global", "global")
+    text = text.replace(f"@{built.KNOWN} = global [4 x ptr]", f"@{built.KNOWN} = global [4 x ptr] zeroinitializer")
+    lines = [f"define i32 @{builder.OWN}({', '.join(f'{kind} %v{k}' for k, kind in enumerate(kinds))}) {{"]
+    for k, kind in enumerate(kinds):
+        lines.append(f"  %at{k} = getelementptr i64, ptr %v0, i64 {k}")
+        lines += [f"  %w{k} = zext i1 %v{k} to i64", f"  store i64 %w{k}, ptr %at{k}"] if kind == "i1" else []
+        lines += [f"  store {kind} %v{k}, ptr %at{k}"] if kind != "i1" else []
+    module = llvm.parse_assembly("\n".join([text, *lines, "  ret i32 0", "}"]))
+    engine = llvm.create_mcjit_compiler(module, llvm.Target.from_default_triple().create_target_machine())
+    engine.finalize_object()
+    known = (ctypes.c_void_p * 4).from_address(engine.get_global_value_address(built.KNOWN))
+    known[:] = [id(np.ndarray), *(id(np.dtype(one)) for one in built.ELEMENTS)]
+    call = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(engine.get_function_address("called"))
+    for is_taken, values in (
+        (True, (SQUARE, element, 1, grid, number)),
+        (False, (SQUARE, element, 1, grid.astype(np.int64), number)),
+        (False, (SQUARE, element[::2], 1, grid, number)),
+        (False, (SQUARE.T, element, 1, grid, number)),
+        (False, (SQUARE, 7.0, 1, grid, number)),
+    ):
+        given = [id(value) if isinstance(value, np.ndarray) else value for value in values]
+        given[1] = id(values[1])
+        words = (ctypes.c_int64 * (free + 6))()
+        Struct("=qqqqd").pack_into(words, 8 * (free + 1), *given)
+        assert call(ctypes.addressof(words)) == (0 if is_taken else built.REFUSED)
+        if is_taken:
+            arrays = [[0, 0, a.size, a.itemsize, a.ctypes.data, *a.shape, *a.strides] for a in (SQUARE, element, grid)]
+            assert list(words[2 : free - 1]) == [*arrays[0], *arrays[1], 1, *arrays[2]]
+            assert ctypes.c_double.from_buffer(words, 8 * (free - 1)).value == number
 
 
 def test_another_python_is_told_apart(library, monkeypatch):
