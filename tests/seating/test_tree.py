@@ -53,6 +53,16 @@ def test_ways_off_a_bent_set_begin_where_its_ends_lead():
         assert step[:3] @ last[:3] > 0.99 * np.linalg.norm(step[:3]) * np.linalg.norm(last[:3])
 
 
+def test_an_end_that_stands_twice_leads_on_as_the_way_before_it():
+    """Where the part is free up to a step, the end is that step once more."""
+    configs = np.zeros((5, 4))
+    configs[:, 1] = [0.0, 0.0, 1.0, 2.0, 2.0]
+    row = np.zeros(CANDIDATE_LENGTH)
+    family = Family(row, configs, False, None)
+    [begun] = ends_of([family], Families.of([family]), 10.0)
+    assert begun[:, 1] == pytest.approx([-BESIDE, 2.0 + BESIDE])
+
+
 def straight(level: float, length: float, steps: int = 5, contacts: float = 2.0) -> Family:
     """A set along x from the origin on."""
     configs = np.zeros((steps, 4))
@@ -112,6 +122,12 @@ def test_of_sets_that_lie_in_each_other_the_one_with_the_most_contacts_is_told()
     )
     assert finder.families([two, other, three, elsewhere, same]) == [three, other, elsewhere]
     assert finder.families([two, same]) == [two]
+    # What lies only in a set that is left out itself stays.
+    beside, beyond = straight(7.0, 4.0), straight(7.0, 4.0, contacts=1.0)
+    for family, shift in ((beside, 3.0), (beyond, 6.0)):
+        family.configs[:, 1] += shift
+        family.candidate[1] = shift
+    assert finder.families([beyond, beside, three]) == [three, beyond]
     assert finder.families([]) == []
 
 
