@@ -103,6 +103,11 @@ def test_what_lies_in_a_set_is_as_near_to_its_steps_as_these_are_to_each_other()
         [0, 0, 0, 0],
     ]
     assert first_of(told).tolist() == [0, 0, 3, 2, -1, 0, 3, 0, -1]
+    # Of a set that turns in one place, a step is as long as the part turns.
+    turning = straight(7.0, 0.0, 3)
+    turning.configs[:, 0] = [0.0, 0.2, 0.4]
+    beside = np.array([[0.3, 0.9, 0.0, 7.0], [0.3, 1.1, 0.0, 7.0]])
+    assert Families.of([turning]).hold(beside, 10.0, 1e-3).tolist() == [[True], [False]]
     none = Families.of([]).hold(places, 10.0, 1e-3)
     assert none.shape == (9, 0) and first_of(none).tolist() == [-1] * 9
     assert Families.of(sets).hold(places[:0], 10.0, 1e-3).shape == (0, 4)
