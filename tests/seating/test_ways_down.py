@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from seating_examples import STEP
-from workhold import Fixture, Peg, Pose, Vise
+from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -24,6 +24,7 @@ from workhold.kernels.seating.columns import (
     SINE,
     TURNED,
 )
+from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating import alone
 from workhold.seating.descents import Closing
@@ -105,6 +106,28 @@ def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the
             assert count == len(nodes) or not free[count] or apart > 0.35
             cut, whole = cut + (0 < count < len(nodes)), whole + (count == len(nodes))
     assert cut > 20 and whole > 20
+
+
+def test_a_long_step_is_looked_at_between_its_ends():
+    """A peg that goes through a thin fin is free before and behind it; shorter steps are looked at where they end."""
+    fin = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [30.5, 20, 0], [30.5, 40, 0], [29.5, 40, 0], [29.5, 20, 0], [0, 20, 0]]
+    part, vise = Workpiece.from_loops("fin", [fin]), Vise(pitch=10, columns=2, peg_radius=0.5)
+    # Pegs far off, but for the second one, beside the fin.
+    places = [("left", -90.0, 0.0), ("left", 28.0, 30.0), ("right", 190.0, 0.0), ("right", 190.0, 40.0)]
+    pegs = tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places)
+    pattern = Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 40.0, {}), vise)
+    obstacles = Solver(part, vise).closing(pattern, False).obstacles
+    x, y = part.center
+    nodes = np.zeros((2, NODE_LENGTH))
+    nodes[:, 1:4] = [[x, y, 40.0], [x - 4.0, y, 40.0]]
+    nodes[:, COSINE], nodes[1, MOVED] = 1.0, 4.0
+    one, others = np.zeros(1, np.int64), np.ones((1, 4), np.int8)
+    for most, last in ((10.0, 1), (0.3, 0)):
+        lasts = np.empty(1, np.int64)
+        free_until(
+            one, one, nodes, np.array([0, 2]), np.zeros((1, 4)), others, most, obstacles, np.empty((4, 3)), lasts
+        )
+        assert lasts[0] == last
 
 
 def test_nodes_say_how_far_their_way_has_come(ways):
