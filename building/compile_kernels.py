@@ -76,7 +76,7 @@ define internal i1 @is_array(ptr %object, i64 %element, i32 %dimensions) {{
 none:
   ret i1 false
 array:
-  %element_at = getelementptr i8, ptr %object, i64 {elements}
+  %element_at = getelementptr i8, ptr %object, i64 {element}
   %own_element = load ptr, ptr %element_at
   %wanted_at = getelementptr ptr, ptr @{known}, i64 %element
   %wanted = load ptr, ptr %wanted_at
@@ -93,9 +93,6 @@ array:
   ret i1 %all
 }}
 """
-# Where a header tells what, in bytes, and the flags of an array in order that is aligned (NumPy's ``ndarraytypes.h``).
-TYPE, DATA, DIMENSIONS, SHAPE, STRIDES, ELEMENT, FLAGS = 8, 16, 24, 32, 40, 56, 64
-ORDERED = 0x0001 | 0x0100
 EXPORTS = """
 declare void @free(ptr)
 @{description} = constant [{length} x i8] c"{text}"
@@ -136,10 +133,9 @@ def taking_words(name: str, arguments: Sequence[Any], kinds: Sequence[str], resu
     free before one for its failure, then come those of its arguments, of arrays where their headers are. The kernel takes
     values of some kinds, arrays taken apart; the function returns ``REFUSED`` for an array that is none of its own.
     """
-    from workhold.kernels.base.built import ELEMENTS, KNOWN, REFUSED
+    from workhold.kernels.base.built import ELEMENTS, HEADER, KNOWN, ORDERED, REFUSED
 
-    offsets = {"type": TYPE, "elements": ELEMENT, "dimensions": DIMENSIONS, "flags": FLAGS, "ordered": ORDERED}
-    lines = [IS_ARRAY.format(known=KNOWN, count=1 + len(ELEMENTS), **offsets)]
+    lines = [IS_ARRAY.format(known=KNOWN, count=1 + len(ELEMENTS), ordered=ORDERED, **HEADER)]
     lines += [f"declare i32 @{OWN}({', '.join(kinds)})", f"define i32 @{name}(ptr %words) {{"]
     values = ["ptr %words", f"ptr %at{results}"]
     lines.append(f"  %at{results} = getelementptr i64, ptr %words, i64 {results}")
@@ -163,8 +159,8 @@ def taking_words(name: str, arguments: Sequence[Any], kinds: Sequence[str], resu
             f"  br i1 {array}.is, label %taken{number}, label %refused",
             f"taken{number}:",
         ]
-        for part, at in (("data", DATA), ("shape", SHAPE), ("strides", STRIDES)):
-            lines.append(f"  {array}.{part}_at = getelementptr i8, ptr {array}, i64 {at}")
+        for part in ("data", "shape", "strides"):
+            lines.append(f"  {array}.{part}_at = getelementptr i8, ptr {array}, i64 {HEADER[part]}")
             lines.append(f"  {array}.{part} = load ptr, ptr {array}.{part}_at")
         sizes = list[str]()
         for part, axis in product(("shape", "strides"), range(dimensions)):

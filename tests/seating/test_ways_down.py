@@ -25,9 +25,10 @@ from workhold.kernels.seating.columns import (
     TURNED,
 )
 from workhold.kernels.seating.following import free_until
+from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating import alone
-from workhold.seating.descents import Closing
+from workhold.seating.descents import DIRECTIONS, Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
@@ -106,6 +107,21 @@ def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the
             assert count == len(nodes) or not free[count] or apart > 0.35
             cut, whole = cut + (0 < count < len(nodes)), whole + (count == len(nodes))
     assert cut > 20 and whole > 20
+
+
+def test_a_part_is_not_taken_away_through_a_wall():
+    """Between pegs at three of its sides it leaves along the fourth, unless a wall is there; one elsewhere keeps nothing."""
+    part = Workpiece.from_loops("bar", [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [0, 20, 0]]])
+    vise = Vise(pitch=10, columns=2, peg_radius=0.5)
+    places = [("left", -0.7, 10.0), ("left", 20.0, 20.7), ("right", 60.7, 10.0), ("right", 40.0, 20.7)]
+    pegs = tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places)
+    pattern = Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 40.0, {}), vise)
+    obstacles = Solver(part, vise).closing(pattern, False).obstacles
+    lying = np.array([[0.0, *part.center, 40.0]])
+    for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
+        out = np.empty(1, np.int8)
+        leave(lying, obstacles._replace(wall=np.array(wall)), DIRECTIONS, np.empty((4, 2)), out)
+        assert out[0] == is_free
 
 
 def test_a_long_step_is_looked_at_between_its_ends():

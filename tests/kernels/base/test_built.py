@@ -12,7 +12,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from struct import Struct
 from threading import Thread
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -249,9 +249,17 @@ def test_a_kernel_is_handed_all_that_numba_knows_of_an_array(builder):
             assert ctypes.c_double.from_buffer(words, 8 * (free - 1)).value == number
 
 
-def test_another_python_is_told_apart(library, monkeypatch):
-    """One that keeps its objects elsewhere uses no library."""
-    monkeypatch.setattr(built, "BEFORE_HEADER", 32)
+@pytest.mark.parametrize("moved", sorted(built.HEADER))
+def test_another_python_or_numpy_is_told_apart(library, monkeypatch, moved):
+    """One that keeps anything of an array elsewhere uses no library, as one that is no CPython."""
+    elsewhere = {"shape": built.HEADER["strides"], "strides": built.HEADER["shape"], "type": built.HEADER["data"]}
+    monkeypatch.setitem(built.HEADER, moved, elsewhere.get(moved, built.HEADER["type"]))
+    with pytest.raises(OSError, match="in another way"):
+        built.Library(Path(library.code._name))
+
+
+def test_a_python_that_is_not_cpython_uses_no_library(library, monkeypatch):
+    monkeypatch.setattr(sys, "implementation", SimpleNamespace(name="pypy"))
     with pytest.raises(OSError, match="in another way"):
         built.Library(Path(library.code._name))
 

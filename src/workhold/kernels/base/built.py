@@ -46,8 +46,9 @@ SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "bool": (ctypes.c_bool, (bool, np.bool_)),
 }
 WORD = 8
-# Bytes of what Python keeps of any object, on which what the library reads of arrays follows.
-BEFORE_HEADER = 16
+# Where an array's header tells what, in bytes, and its flags where elements are in order and aligned (``ndarraytypes.h``).
+HEADER = {"type": 8, "data": 16, "dimensions": 24, "shape": 32, "strides": 40, "element": 56, "flags": 64}
+HEADER_BYTES, ORDERED = 68, 0x0001 | 0x0100
 # Words of an array that is handed back before its shape: two owners, number of elements, bytes of one, address.
 ARRAY_WORDS, ADDRESS = 5, 4
 
@@ -62,7 +63,7 @@ class Library:
     """
 
     def __init__(self, path: Path) -> None:
-        if sys.implementation.name != "cpython" or object.__basicsize__ != BEFORE_HEADER:
+        if sys.implementation.name != "cpython" or not are_headers_known():
             raise OSError("This Python keeps arrays in another way.")
         self.code = ctypes.CDLL(str(path))
         described: Any = json.loads(ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self.code, DESCRIPTION))))
@@ -182,6 +183,24 @@ class Made:
 
     def __del__(self) -> None:
         self.release()
+
+
+def are_headers_known() -> bool:
+    """Whether the header of an array tells what it should, where it should."""
+    array = np.zeros((2, 3), np.int8)
+    header = ctypes.string_at(id(array), HEADER_BYTES)
+
+    def word(name: str, letter: str = "q") -> int:
+        return int(Struct(f"={letter}").unpack_from(header, HEADER[name])[0])
+
+    told = word("type"), word("data"), word("dimensions", "i"), word("element"), word("flags", "i") & ORDERED
+    if told != (id(np.ndarray), array.ctypes.data, 2, id(array.dtype), ORDERED):
+        return False
+    pair = ctypes.c_int64 * 2
+    return all(
+        tuple(pair.from_address(word(name))) == known
+        for name, known in (("shape", array.shape), ("strides", array.strides))
+    )
 
 
 def taker(argument: Any) -> Taker:
