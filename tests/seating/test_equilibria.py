@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from seating_examples import moved, solved
 from workhold.kernels.seating.candidates import complete_third, complete_three
@@ -43,6 +44,10 @@ def test_pieces_left_out_have_no_roots(number):
     assert len(few) > 20
     assert np.array_equal(few, all_of_them)
     assert np.array_equal(fixed, all_fixed)
+    # Whatever the stop, what is just above it is found.
+    for stop in few[:: len(few) // 8, SEPARATION] - 1e-6:
+        above, _ = told_by(holdings, locus, evolve(pattern, stop=stop), locus.discs, stop)
+        assert np.array_equal(above, few[few[:, SEPARATION] > stop])
 
 
 def test_holdings_meet_as_of_each_cell_by_itself():
