@@ -122,9 +122,18 @@ def test_stores_are_told_by_their_urls(tmp_path: Path) -> None:
 
 
 @pytest.mark.prove
-def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(tmp_path: Path) -> None:
+@pytest.mark.parametrize("patience_of_dask", ["15s", "1ms"])
+def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, patience_of_dask: str
+) -> None:
+    """Also where Dask has no patience: it gives up workers that do not come back at once, and nobody else starts any."""
+    import dask
+
+    from workhold.batch import cluster
     from workhold.batch.cluster import ClusterWorkers
 
+    monkeypatch.setattr(cluster, "PATIENCE", 2.0)
+    monkeypatch.setitem(dask.config.config["distributed"]["deploy"], "lost-worker-timeout", patience_of_dask)
     tasks = [Fatal(f"task{n}", f"title {n}", tmp_path, times) for n, times in enumerate((0, 1, 99, 0))]
     onlooker = Onlooker()
     with ClusterWorkers(onlooker, count=2) as queue:
@@ -134,6 +143,30 @@ def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(tmp_path: P
     done = [outcome.record for name, outcome in outcomes.items() if name != "task2"]
     assert all(record is not None and "was done" in plain_record(record)["refusal"] for record in done)
     assert sum("is lost" in sentence for sentence in onlooker.sentences) >= 3
+
+
+@pytest.mark.parametrize(
+    ("address", "threads", "started", "words"),
+    [(None, 1, [2], ""), (None, 2, [], ""), (None, 0, [2], ""), ("a:1", 0, [], "no worker"), ("a:1", 1, [], "")],
+)
+def test_workers_that_stay_away_are_started_again_on_this_machine(
+    monkeypatch: pytest.MonkeyPatch, address: str | None, threads: int, started: list[int], words: str
+) -> None:
+    """Of a cluster elsewhere it is told that there is none: somebody else starts them there."""
+    from workhold.batch import cluster
+
+    now, onlooker, scaled = [100.0], Onlooker(), list[int]()
+    monkeypatch.setattr(cluster, "monotonic", lambda: now[0])
+    queue = cluster.ClusterWorkers(onlooker, address, count=2)
+    queue.client = SimpleNamespace(nthreads=lambda: {str(k): 1 for k in range(threads)})
+    queue.own = SimpleNamespace(scale=scaled.append) if address is None else None
+    queue.idle_since = 100.0
+    for now[0] in (103.0, 110.0, 119.0):
+        assert queue.count_threads() == threads
+    assert not scaled and not onlooker.sentences
+    for now[0] in (121.0, 124.0, 139.0):
+        queue.count_threads()
+    assert scaled == started and [words in sentence for sentence in onlooker.sentences] == [True] * bool(words)
 
 
 @define(eq=False)

@@ -28,7 +28,8 @@ from workhold.errors import InputError
 
 __all__ = ["ClusterWorkers"]
 
-# Seconds between looks at whether to stop, between counts of the workers, and without any worker before that is told.
+# Seconds between looks at whether to stop, between counts of the workers, and without any worker, or on this machine with
+# too few, before something is done about it.
 LOOK, COUNT, PATIENCE = 0.1, 2.0, 20.0
 # Seconds for a scheduler to answer.
 ANSWER = 20
@@ -59,6 +60,7 @@ class ClusterWorkers:
     store: Store | None = None
     gone: str = field(default="", init=False)
     client: Any = field(default=None, init=False)
+    own: Any = field(default=None, init=False)
     stack: ExitStack = field(factory=ExitStack, init=False)
     threads: int = field(default=0, init=False)
     counted_at: float = field(default=0.0, init=False)
@@ -80,7 +82,7 @@ class ClusterWorkers:
                         dashboard_address=None,
                         silence_logs=logging.CRITICAL,
                     )
-                at = self.stack.enter_context(cluster)
+                self.own = at = self.stack.enter_context(cluster)
             self.client = self.stack.enter_context(Client(at, timeout=ANSWER, set_as_default=False))
         except (OSError, RuntimeError, ValueError, TimeoutError) as error:
             self.stack.close()
@@ -159,7 +161,8 @@ class ClusterWorkers:
         return future
 
     def count_threads(self) -> int:
-        """How many threads the workers have, as counted lately; that there are none is told after a while."""
+        """How many threads the workers have, as counted lately. After a while without any that is told; on this machine what
+        is missing is started again."""
         now = monotonic()
         if now < self.counted_at + COUNT or self.gone:
             return self.threads
@@ -169,11 +172,15 @@ class ClusterWorkers:
         except Exception:
             # Whatever a client whose scheduler is going may raise.
             self.threads = 0
-        if self.threads:
+        if self.threads >= (1 if self.own is None else self.count):
             self.idle_since = now
         elif now > self.idle_since + PATIENCE:
             self.idle_since = now
-            self.watcher.told("The cluster has no worker: the run waits for one.")
+            if self.own is None:
+                self.watcher.told("The cluster has no worker: the run waits for one.")
+            else:
+                # Dask gives up a worker that takes long to come back, as one does where much else is going on.
+                self.own.scale(self.count)
         return self.threads
 
     def outcome(self, future: Any, task: Task) -> Outcome | None:
