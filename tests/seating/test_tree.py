@@ -44,8 +44,7 @@ def test_ways_off_a_bent_set_begin_where_its_ends_lead():
     row = np.zeros(CANDIDATE_LENGTH)
     bent, whole = Family(row, configs, False, None), Family(row, configs, True, None)
     gives = Family(row, configs, False, (0.0, 1.0))
-    sets = [bent, whole, gives]
-    begun, none, across = ends_of(sets, Families.of(sets), 10.0)
+    begun, none, across = ends_of(Families.of([bent, whole, gives]), 10.0)
     assert len(none) == 0 and across[:, 2].tolist() == [BESIDE, -BESIDE]
     for start, end, before in ((begun[0], configs[0], configs[1]), (begun[1], configs[-1], configs[-2])):
         step, last = start - end, end - before
@@ -59,7 +58,7 @@ def test_an_end_that_stands_twice_leads_on_as_the_way_before_it():
     configs[:, 1] = [0.0, 0.0, 1.0, 2.0, 2.0]
     row = np.zeros(CANDIDATE_LENGTH)
     family = Family(row, configs, False, None)
-    [begun] = ends_of([family], Families.of([family]), 10.0)
+    [begun] = ends_of(Families.of([family]), 10.0)
     assert begun[:, 1] == pytest.approx([-BESIDE, 2.0 + BESIDE])
 
 

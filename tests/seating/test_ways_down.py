@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from seating_examples import STEP
-from workhold import Fixture, Peg, Pose, Vise, Workpiece
+from seating_examples import STEP, held
+from workhold import Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -42,10 +42,7 @@ PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("righ
 def pattern_of(lifted: float = 0.0, wider: float = 0.0) -> Pattern:
     """Four pegs, the last one lifted by some mm, and the second one farther to the left by some."""
     places = [(jaw, x - wider * (k == 1), y + lifted * (k == 3)) for k, (jaw, x, y) in enumerate(PEGS)]
-    fixture = Fixture(
-        "I", tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places), Pose(0, 0, 0), 40.0, {}
-    )
-    return Pattern.of(fixture, VISE)
+    return Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), VISE)
 
 
 PATTERNS = [pattern_of(), pattern_of(lifted=-10.0), pattern_of(lifted=10.0, wider=10.0)]
@@ -114,8 +111,7 @@ def test_a_part_is_not_taken_away_through_a_wall():
     part = Workpiece.from_loops("bar", [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [0, 20, 0]]])
     vise = Vise(pitch=10, columns=2, peg_radius=0.5)
     places = [("left", -0.7, 10.0), ("left", 20.0, 20.7), ("right", 60.7, 10.0), ("right", 40.0, 20.7)]
-    pegs = tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places)
-    pattern = Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 40.0, {}), vise)
+    pattern = Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), vise)
     obstacles = Solver(part, vise).closing(pattern, False).obstacles
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
@@ -130,8 +126,7 @@ def test_a_long_step_is_looked_at_between_its_ends():
     part, vise = Workpiece.from_loops("fin", [fin]), Vise(pitch=10, columns=2, peg_radius=0.5)
     # Pegs far off, but for the second one, beside the fin.
     places = [("left", -90.0, 0.0), ("left", 28.0, 30.0), ("right", 190.0, 0.0), ("right", 190.0, 40.0)]
-    pegs = tuple(Peg(*place[:1], 0, 0, *place[1:], 0, 0.3) for place in places)
-    pattern = Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 40.0, {}), vise)
+    pattern = Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), vise)
     obstacles = Solver(part, vise).closing(pattern, False).obstacles
     x, y = part.center
     nodes = np.zeros((2, NODE_LENGTH))

@@ -100,10 +100,12 @@ class Families:
 
     Parameters
     ----------
+    sets : each by itself.
     levels : (F,) their separations in mm.
-    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end (F + 1,).
+    configs, begins : (M, 4) along all, and where those of each begin, as of ``one_after_other``.
     """
 
+    sets: Sequence[Family]
     levels: Array
     configs: Array
     begins: NDArray[np.int64]
@@ -111,9 +113,8 @@ class Families:
     @classmethod
     def of(cls, families: Sequence[Family]) -> Families:
         """Those of a list."""
-        configs = np.concatenate([np.zeros((0, 4)), *(one.configs for one in families)])
-        begins = np.cumsum([0, *(len(one.configs) for one in families)])
-        return cls(np.array([one.separation for one in families], dtype=np.float64), configs, begins)
+        levels = np.array([one.separation for one in families], dtype=np.float64)
+        return cls(families, levels, *one_after_other([one.configs for one in families]))
 
     def hold(self, configs: Array, arm: float, most: float) -> NDArray[np.bool_]:
         """Which sets each configuration (N, 4) lies in, as far as their steps tell: (N, F).
@@ -126,6 +127,11 @@ class Families:
         out = np.empty((len(configs), len(self.levels)), np.int8)
         lie_along(np.ascontiguousarray(configs), self.configs, self.begins, self.levels, arm, most, out)
         return out.astype(np.bool_)
+
+
+def one_after_other(parts: Sequence[Array]) -> tuple[Array, NDArray[np.int64]]:
+    """Configurations (N, 4) in one array, and where those of each part begin and, last, end."""
+    return np.concatenate([np.zeros((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])
 
 
 @frozen(eq=False)
@@ -236,8 +242,7 @@ class Finder:
         """The free runs of ways."""
         if not ways:
             return []
-        begins = np.cumsum([0, *(len(way.configs) for way in ways)])
-        configs = np.concatenate([way.configs for way in ways])
+        configs, begins = one_after_other([way.configs for way in ways])
         names, touched = np.full((len(ways), 4), -1), np.array([self.touched(way) for way in ways])
         for name, way in zip(names, ways, strict=True):
             name[: len(way.known)] = way.known

@@ -85,7 +85,7 @@ class Tree:
         builder = Builder(closing, found.seats, [], [], [row[CONFIG] for row in found.doubtful], strict)
         slack, rows = list[Family](), list[Array]()
         seats = np.ascontiguousarray(found.seats[strict][:, CONFIG])
-        beyond = ends_of(found.loose, loose, closing.size)
+        beyond = ends_of(loose, closing.size)
         ended, how_ended = closing.run(np.concatenate([np.zeros((0, 4)), *beyond]), FIRST_STEP, seats)
         at, starts, ends, how = 0, list[Array](), list[Array](), list[NDArray[np.int8]]()
         for family, begun in zip(found.loose, beyond, strict=True):
@@ -155,26 +155,22 @@ def first_of(told: NDArray[np.bool_]) -> NDArray[np.int64]:
     return np.where(told.any(axis=1), told.argmax(axis=1), -1)
 
 
-def ends_of(families: list[Family], every: Families, size: float) -> list[Array]:
-    """Configurations (2, 4) just beyond the ends of each loose set, or to both sides of its middle; none of a whole turn.
-
-    Parameters
-    ----------
-    every : the same sets.
-    """
-    out = [np.zeros((0, 4))] * len(families)
-    ended = [k for k, one in enumerate(families) if one.across is None and not one.is_closed and len(one.configs) >= 3]
+def ends_of(families: Families, size: float) -> list[Array]:
+    """Configurations (2, 4) just beyond the ends of each loose set, or to both sides of its middle; none of a whole turn."""
+    sets = families.sets
+    out = [np.zeros((0, 4))] * len(sets)
+    ended = [k for k, one in enumerate(sets) if one.across is None and not one.is_closed and len(one.configs) >= 3]
     if ended:
         # The end may be the same as the configuration before it, but not as the one before that.
-        first, end = every.begins[ended], every.begins[1:][ended]
-        rows = every.configs[np.stack([first, end - 1, first + 2, end - 3], axis=1)]
+        first, end = families.begins[ended], families.begins[1:][ended]
+        rows = families.configs[np.stack([first, end - 1, first + 2, end - 3], axis=1)]
         steps = rows[:, :2] - rows[:, 2:]
         steps[:, :, 0] = (steps[:, :, 0] + pi) % tau - pi
         lengths = np.abs(steps[:, :, 0]) * size + np.hypot(steps[:, :, 1], steps[:, :, 2])
         leads_on, beyond = lengths > 0.0, rows[:, :2] + BESIDE * steps / np.maximum(lengths, 1e-300)[:, :, None]
         for k, there, good in zip(ended, beyond, leads_on, strict=True):
             out[k] = there if good.all() else there[good]
-    for k, family in enumerate(families):
+    for k, family in enumerate(sets):
         if family.across is not None:
             step = BESIDE * np.array([0.0, *family.across, 0.0])
             out[k] = family.middle + np.stack([step, -step])
