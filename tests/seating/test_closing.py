@@ -13,12 +13,13 @@ from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP, add_normal, shortest_out
 from workhold.kernels.seating.columns import CONFIG, SECOND, WorkSpace
 from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.places import OUTSIDE, STOP
 from workhold.seating.descents import DIRECTIONS
 from workhold.seating.door import Door
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import OUTSIDE, STOP, Tree
+from workhold.seating.tree import Tree
 from workhold.seating.ways_down import steps_off
 
 NOTCH = Workpiece.from_loops(
@@ -145,8 +146,8 @@ def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
 def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
     seen = set()
     for closing, _, tree in ways:
-        joins = [join for join in tree.joins if join.candidate[SECOND] < 0.0]
-        rows = np.array([join.candidate for join in joins])
+        off_passes = np.flatnonzero(tree.passes[:, SECOND] < 0.0)
+        rows, joined = tree.passes[off_passes], tree.joined[off_passes]
         steps, lengths = steps_off(rows, closing.size)
         for sign, side in ((1.0, 0), (-1.0, 1)):
             starts = rows[:, CONFIG] + sign * steps
@@ -154,17 +155,17 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
                 ends, how = closing.run(starts[k : k + 1], 0.005, np.ascontiguousarray(tree.seats[:, CONFIG]))
                 at_end, at_start = closing.escape(np.concatenate([ends, starts[k : k + 1]])).tolist()
                 if how[0] == AT_THE_STOP:
-                    assert joins[k].places[side] == (OUTSIDE if at_end or at_start else STOP)
+                    assert joined[k, side] == (OUTSIDE if at_end or at_start else STOP)
                     seen.add((at_end, at_start))
     assert (False, False) in seen and len(seen) > 1, seen
 
 
 def test_a_seat_joins_at_the_lowest_pass_that_leads_elsewhere(ways):
     for _, _, tree in ways:
+        joins = [tree.join(number) for number in range(len(tree.passes))]
         for place in range(len(tree.seats) + len(tree.loose)):
-            known = tree.shared.get(place, place)
-            out = [join for join in tree.joins if known in join.places and join.places[0] != join.places[1]]
-            assert tree.join_of(place) is (min(out, key=lambda join: join.separation) if out else None)
+            out = [join for join in joins if tree.own[place] in join.places and join.places[0] != join.places[1]]
+            assert tree.join_of(place) == (min(out, key=lambda join: join.separation) if out else None)
 
 
 def test_a_door_leads_back():

@@ -249,19 +249,19 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.Mon
     solver, fixture, _ = solved(1)
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, False)
-    for join in solver.trees(pattern)[0].joins:
-        assert is_equilibrium(join.candidate, closing)
+    for row in solver.trees(pattern)[0].passes:
+        assert is_equilibrium(row, closing)
         for column in (THETA, PLACE_X, SEPARATION):
-            beside = join.candidate.copy()
+            beside = row.copy()
             beside[column] += 1e-6
             assert not is_equilibrium(beside, closing)
-        other = join.candidate.copy()
+        other = row.copy()
         other[[PEG, PEG + 1]] = other[[PEG + 1, PEG]]
         assert not is_equilibrium(other, closing)
         # The same places with the jaws exchanged: what moves would have to pull.
-        there = pattern.pegs + join.separation * np.stack([pattern.right, 0 * pattern.right], axis=1)
+        there = pattern.pegs + row[SEPARATION] * np.stack([pattern.right, 0 * pattern.right], axis=1)
         pulling = attrs.evolve(closing, pattern=attrs.evolve(pattern, pegs=there, right=1 - pattern.right))
-        still = join.candidate.copy()
+        still = row.copy()
         still[SEPARATION] = 0.0
         assert not is_equilibrium(still, pulling)
         assert is_equilibrium(still, attrs.evolve(closing, pattern=attrs.evolve(pattern, pegs=there)))

@@ -72,9 +72,8 @@ def test_passes_and_seats_are_equilibria(number):
         assert forces.sum() == pytest.approx(row[13:17].sum(), abs=1e-6)
     assert {int(row[4]) for row in found.passes} <= {2, 3}
     tree = Tree.of(found, closing)
-    for join in tree.joins:
-        below = [tree.seats[place, 3] for place in join.places if 0 <= place < len(tree.seats)]
-        assert all(join.separation > level for level in below)
+    for row, places in zip(tree.passes, tree.joined.tolist(), strict=True):
+        assert all(row[3] > tree.seats[place, 3] for place in places if 0 <= place < len(tree.seats))
 
 
 def nonnegative(matrix, target):
@@ -150,8 +149,8 @@ def test_beyond_the_pass_lies_another_place(number):
     assert join.separation == pytest.approx(told.lowest_pass.jaw_separation, abs=1e-12)
     assert place in join.places and len(set(join.places)) == 2
     # No pass below it leads from the seat to elsewhere.
-    lower = [one for one in tree.joins if one.separation < join.separation and place in one.places]
-    assert all(one.places == (place, place) for one in lower)
+    lower = tree.joined[tree.passes[:, 3] < join.separation]
+    assert all(one == [place, place] for one in lower.tolist() if place in one)
 
 
 @pytest.mark.parametrize(
@@ -218,7 +217,7 @@ def test_a_disc_is_nowhere_located():
     assert len(tree.loose) > 0
     # Between two and two pegs, its centre midway in height and 15 + 3 from all four.
     apart = 2.0 * sqrt(18.0**2 - 10.0**2)
-    assert any(family.middle[3] == pytest.approx(apart - 10.0, abs=1e-9) for family in tree.loose)
+    assert any(row[3] == pytest.approx(apart - 10.0, abs=1e-9) for row in tree.loose)
 
 
 def test_a_rectangle_on_level_pegs_slides():
@@ -227,10 +226,10 @@ def test_a_rectangle_on_level_pegs_slides():
     solver = Solver(plate, Vise(10, 2, 3))
     pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), solver.toolkit)
     tree = solver.trees(pattern)[0]
-    square = [family for family in (*tree.loose, *tree.slack) if abs(family.middle[3] - 36.0) < 1e-9]
+    square = [row for row in (*tree.loose, *tree.slack) if abs(row[3] - 36.0) < 1e-9]
     # Both ways up: the part is its own half turn. All four pegs touch.
-    assert sorted(round(degrees(family.middle[0])) % 360 for family in square) == [0, 180]
-    assert all(family.candidate[4] == 4.0 for family in square)
+    assert sorted(round(degrees(row[0])) % 360 for row in square) == [0, 180]
+    assert all(row[4] == 4.0 for row in square)
 
 
 def pinwheel(size: float = 30.0, arm: float = 12.0) -> Workpiece:

@@ -13,15 +13,18 @@ import workhold
 from seating_examples import Obstacle, closed
 from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
 from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.balance import contact_normals
 from workhold.seating.door import Door
+from workhold.seating.equilibria import equilibria
 from workhold.seating.fence import Fence as OnFence
 from workhold.seating.pattern import Pattern
 from workhold.seating.playing import play
 from workhold.seating.seating import Solver
+from workhold.seating.tree import Tree
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 HOLED = Workpiece.from_loops(
@@ -224,10 +227,8 @@ def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
         for one, other in zip(solver.trees(opening), solver.trees(closing), strict=True):
             assert len(one.seats) > 0
             assert one.seats[:, 3] == pytest.approx(other.seats[:, 3], abs=1e-8)
-            assert [join.separation for join in one.joins] == pytest.approx(
-                [j.separation for j in other.joins], abs=1e-8
-            )
-            assert [join.places for join in one.joins if len(set(join.places)) == 2]
+            assert one.passes[:, SEPARATION] == pytest.approx(other.passes[:, SEPARATION], abs=1e-8)
+            assert (one.joined[:, 0] != one.joined[:, 1]).any()
 
 
 def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
@@ -265,7 +266,7 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
     tree = Solver(disc, plate).trees(Pattern.of(fixture, plate))[0]
     assert len(tree.seats) == 0
     # Between two locators, its centre 15 + 3 from both; the tip 15 + 5 from it.
-    assert any(family.middle[3] == pytest.approx(np.sqrt(18.0**2 - 10.0**2) + 20.0 - 40.0) for family in tree.loose)
+    assert any(row[SEPARATION] == pytest.approx(np.sqrt(18.0**2 - 10.0**2) + 20.0 - 40.0) for row in tree.loose)
 
 
 @pytest.mark.parametrize(
@@ -305,13 +306,20 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     fence = Fence(**DOWN)
     at = (("plate", -100.0, 10.0), ("wall", 0.0, 0.0), ("wall", 1.0, 0.0), ("clamp -y", 0.0, 40.0))
     fixture = Fixture("edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
-    tree = Solver(plate, fence).trees(Pattern.of(fixture, fence))[0]
+    pattern = Pattern.of(fixture, fence)
+    closing = Solver(plate, fence).closing(pattern, False)
+    found = equilibria(closing.locus, pattern, closing.size)
+    tree = Tree.of(found, closing)
     assert len(tree.seats) == 0
-    flat = [family for family in (*tree.loose, *tree.slack) if family.candidate[4] >= 3.0]
+    flat = [row for row in (*tree.loose, *tree.slack) if row[CONTACTS] >= 3.0]
     # On each of its four sides, as high as the part; the tip goes from one end of the edge to the other.
-    levels = sorted(round(family.middle[3], 6) for family in flat)
-    assert levels == [-7.0, -7.0, 23.0, 23.0]
-    assert all(np.ptp(family.configs[:, 2]) == pytest.approx(60.0 if family.middle[3] < 0 else 30.0) for family in flat)
+    assert sorted(round(row[SEPARATION], 6) for row in flat) == [-7.0, -7.0, 23.0, 23.0]
+    every = np.split(found.loose.configs, found.loose.begins[1:-1])
+    spans = [
+        (row[3], np.ptp(configs[:, 2])) for row, configs in zip(found.loose.rows, every, strict=True) if row[4] >= 3.0
+    ]
+    assert len(spans) == 4
+    assert all(span == pytest.approx(60.0 if level < 0 else 30.0) for level, span in spans)
 
 
 @pytest.mark.parametrize("direction", ["-x", "-y"])
@@ -326,7 +334,7 @@ def test_a_disc_turns_on_a_fence(direction):
     ahead = np.sqrt(18.0**2 - 5.0**2)
     # Its centre 15 above the fence and 18 from the locator; the tip straight ahead, or above and to one side.
     expected = ahead + 18.0 - 40.0 if direction == "-x" else 15.0 + np.sqrt(18.0**2 - (20.0 - ahead) ** 2) - 40.0
-    assert any(family.middle[3] == pytest.approx(expected) for family in tree.loose)
+    assert any(row[SEPARATION] == pytest.approx(expected) for row in tree.loose)
 
 
 def test_pegs_pressed_apart_in_a_slot_rest_at_its_ends():

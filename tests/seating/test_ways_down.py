@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import pi
 
 import numpy as np
 import pytest
@@ -12,15 +11,12 @@ from seating_examples import STEP, held
 from workhold import Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
-    CANDIDATE_LENGTH,
     CONFIG,
-    CONTACTS,
     COSINE,
     MOVED,
     NODE_LENGTH,
     PEG,
     PIECE,
-    SEPARATION,
     SINE,
     TURNED,
 )
@@ -32,7 +28,6 @@ from workhold.seating.descents import DIRECTIONS, Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import OUTSIDE, STOP, Builder
 from workhold.seating.ways_down import Trodden, both_ways_down, free_ways, starts_off
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -115,7 +110,7 @@ def test_a_part_is_not_taken_away_through_a_wall():
     obstacles = Solver(part, vise).closing(pattern, False).obstacles
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
-        out = np.empty(1, np.int8)
+        out = np.ones(1, np.int8)
         leave(lying, obstacles._replace(wall=np.array(wall)), DIRECTIONS, np.empty((4, 2)), out)
         assert out[0] == is_free
 
@@ -208,27 +203,17 @@ def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
             assert there[:13] == pytest.approx(row[:13], abs=1e-9)
 
 
-def test_of_two_seats_in_one_pose_the_level_one_is_the_nearest():
-    """The jaw may press from within and from without: then only S tells them apart."""
-    rows = np.zeros((3, CANDIDATE_LENGTH))
-    rows[:, CONTACTS], rows[:, SEPARATION] = 4.0, [5.0, 9.0, 9.0]
-    rows[2, 0] = pi
-    builder = Builder(type("Jaws", (), {"size": 10.0})(), rows, [], [], [], np.array([True, True, False]))
-    configs = np.zeros((5, 4))
-    configs[:, 3] = [9.0, 5.0004, 7.0, 9.0, 9.0]
-    configs[3:, 0] = [pi, 0.004]
-    assert builder.near_seats(configs).tolist() == [1, 0, -1, -1, 1]
-
-
-def test_what_leaves_where_a_way_began_or_ended_is_outside():
-    """Jaws from which a part can be taken away at x above 0."""
-    escape = staticmethod(lambda configs: configs[:, 1] > 0.0)
-    none = np.zeros((0, CANDIDATE_LENGTH))
-    builder = Builder(type("Jaws", (), {"size": 10.0, "escape": escape})(), none, [], [], [], np.ones(0, np.bool_))
-    starts, ends = np.zeros((4, 4)), np.zeros((4, 4))
-    starts[[0, 1], 1], ends[[1, 2], 1] = 1.0, 1.0
-    how = np.full(4, AT_THE_STOP, np.int8)
-    assert builder.places(starts, ends, how) == [OUTSIDE, OUTSIDE, OUTSIDE, STOP]
+def test_what_leaves_where_a_way_began_or_ended_is_outside(ways):
+    """And what was not stopped, or leaves from neither, is not."""
+    closing, _, _, (starts, ends, how) = ways[0]
+    every = np.concatenate([starts, ends[how == AT_THE_STOP]])
+    away = closing.escape(every)
+    free, held_there = every[away], every[~away]
+    assert len(free) > 1 and len(held_there) > 1
+    one = np.stack([free[0], free[1], held_there[0], held_there[1], free[0]])
+    two = np.stack([free[1], held_there[0], free[0], held_there[0], free[1]])
+    assert closing.leaves(one, two, np.arange(5) < 4).tolist() == [True, True, True, False, False]
+    assert closing.leaves(one, two, np.zeros(5, np.bool_)).tolist() == [False] * 5
 
 
 def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):
@@ -236,18 +221,20 @@ def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):
     touch with as many pegs as anywhere."""
     count, ended = 0, np.zeros(2)
     for closing, found, _, _ in ways:
-        for family in found.loose:
-            every = [clearance(closing, family.configs, [peg]) for peg in range(4)]
+        loose = found.loose
+        whole = np.split(loose.configs, loose.begins[1:-1]) if len(loose.rows) else []
+        for candidate, configs, is_closed in zip(loose.rows, whole, loose.closed != 0, strict=True):
+            every = [clearance(closing, configs, [peg]) for peg in range(4)]
             assert np.min(every) > -1e-6
-            middle = [float(clearance(closing, family.middle[None], [peg])[0]) for peg in range(4)]
-            told = {int(peg) for peg in family.candidate[PEG:PIECE] if peg >= 0}
+            middle = [float(clearance(closing, candidate[None, CONFIG], [peg])[0]) for peg in range(4)]
+            told = {int(peg) for peg in candidate[PEG:PIECE] if peg >= 0}
             assert told == {peg for peg in range(4) if abs(middle[peg]) < 1e-7}
             touching = np.sum(np.abs(every) < 1e-7, axis=0)
-            inner = touching if family.is_closed else touching[1:-1]
-            most = np.flatnonzero(inner == inner.max()) + (not family.is_closed)
-            assert np.array_equal(family.configs[most[len(most) // 2]], family.middle)
+            inner = touching if is_closed else touching[1:-1]
+            most = np.flatnonzero(inner == inner.max()) + (not is_closed)
+            assert np.array_equal(configs[most[len(most) // 2]], candidate[CONFIG])
             # Where another peg ends a run, it goes on from the last step by a part of one.
-            steps = np.abs(np.diff(family.configs, axis=0)).sum(axis=1)
+            steps = np.abs(np.diff(configs, axis=0)).sum(axis=1)
             ended += (steps[[0, -1]] > 0.0) & (steps[[0, -1]] < 0.99 * steps[1])
             count += 1
     assert count > 5 and ended.min() > 0

@@ -47,20 +47,24 @@ from workhold.kernels.seating.columns import (
     DEPTH,
     HOLDING_LENGTH,
     NODE_LENGTH,
+    Families,
     Given,
     Obstacles,
+    Ways,
     WorkSpace,
 )
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
-from workhold.kernels.seating.freedom import RUN_LENGTH, first_of_each, free_ones, free_runs, lie_along, nearest_of
+from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
+from workhold.kernels.seating.loose import first_sets, write_beyond, write_each_once
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
 from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.places import leads_out, write_places
 from workhold.kernels.seating.pocketed import tip_in_pocket
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
 from workhold.kernels.seating.standing import Stood, stationary
@@ -178,26 +182,15 @@ def seats_and_passes() -> Calls:
     yield tangent_chords, (rows, 0, 0, 1.0, np.zeros((0, ALPHA + 1)))
     yield about_one_center, (given, 0.0, 0.0, many)
     yield on_three_faces, (slides, given, 0.0, 0.0, np.zeros((0, THREE_FACES)))
-    touched, seen, clear = np.zeros(4, np.int64), np.zeros((4, 3)), np.zeros((0, 4))
-    yield free_ones, (np.zeros((0, 4)), touched, obstacles, seen, clear, np.zeros(0, np.int8))
-    whole, fours, known = np.zeros((0, 4), np.int64), np.zeros((0, 4)), np.zeros(0, np.int8)
-    runs = (
-        fours,
-        np.zeros(1, np.int64),
-        known,
-        whole,
-        whole,
-        fours,
-        obstacles,
-        fours,
-        seen,
-        pegs,
-        np.zeros((0, RUN_LENGTH)),
-    )
-    yield free_runs, runs
-    fewest, levels = np.zeros(1, np.int64), np.zeros(0)
-    yield lie_along, (np.zeros((0, 4)), np.zeros((0, 4)), fewest, levels, 1.0, 1.0, np.zeros((0, 0), np.int8))
-    yield nearest_of, (np.zeros((0, 4)), np.zeros((0, 4)), 1.0, 1.0, 1.0, none)
+    seen, fours, known = np.zeros((4, 3)), np.zeros((0, 4)), np.zeros(0, np.int8)
+    along, loose = Ways.room(0, 0), Families.room(0, 0)
+    yield keep_free, (along, obstacles, seen)
+    yield free_runs, (along, 0.0, 0.0, obstacles, fours, seen, none, pegs, loose)
+    yield first_sets, (fours, loose, none, 1.0, 1.0, none)
+    yield write_each_once, (loose, 1.0, 1.0, loose)
+    yield write_beyond, (loose, 1.0, 1.0, fours, none)
+    yield write_places, (fours, known, known, loose, none, none, fours, none, 0, 1.0, fours, 0, none, none)
+    yield leads_out, (pockets, 0, np.zeros(2, np.int64))
     yield first_of_each, (many, 1.0, 1.0, none)
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
     yield stationary, (stood, np.zeros((0, SHAPE_LENGTH)), stack, many)
@@ -225,7 +218,6 @@ HOLDINGS = (
     at_tangencies,
     tangent_chords,
     about_one_center,
-    lie_along,
     stationary,
     least_friction,
 )

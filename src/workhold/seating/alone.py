@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
@@ -18,6 +16,7 @@ from workhold.kernels.seating.columns import (
     RESIDUAL,
     SEPARATION,
     Given,
+    Ways,
 )
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.four_contacts import third_of_jaw
@@ -25,7 +24,7 @@ from workhold.kernels.seating.slides import slides_squared, slides_stopped
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.common_normals import squeezed
 from workhold.seating.descents import Closing
-from workhold.seating.families import Finder, Way
+from workhold.seating.families import NO_WAYS, Finder
 from workhold.seating.filled import filled
 from workhold.seating.groups import Group
 from workhold.seating.holdings import Holdings
@@ -43,10 +42,10 @@ MOST_KEPT, MOST_NODES = 1024, 600_000
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
 NONE = np.zeros((0, CANDIDATE_LENGTH))
 # Of a group its candidates, what fixes the part and the ways, as of ``Alone``.
-Told = tuple[Array, Array, tuple[Way, ...]]
+Told = tuple[Array, Array, Ways]
 
 
-@frozen(eq=False, slots=False)
+@frozen(eq=False)
 class Alone:
     """What a group of pegs does, in its own frame.
 
@@ -60,13 +59,8 @@ class Alone:
 
     candidates: Array
     fixed: Array
-    ways: tuple[Way, ...]
+    ways: Ways
     down: WaysDown
-
-    @cached_property
-    def levels(self) -> Array:
-        """The separations (W,) of the ways in mm."""
-        return np.array([way.configs[0, 3] for way in self.ways], dtype=np.float64)
 
 
 @define(eq=False)
@@ -138,7 +132,7 @@ def jaw_alone(locus: Locus, pattern: Pattern, _: float) -> Told:
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, holdings.given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_stopped, holdings.slides, holdings.given),
     ]
-    return NONE, np.concatenate(fixed), ()
+    return NONE, np.concatenate(fixed), NO_WAYS
 
 
 def settled(candidates: Array, given: Given, size: float) -> Array:

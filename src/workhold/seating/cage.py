@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.fibres import MOST_CROSSINGS, MOST_INTERVALS, free_poses
+from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
 from workhold.seating.descents import Closing
-from workhold.seating.tree import AT_SEAT, SAME_LEVEL, distances
+from workhold.seating.tree import distances
 
 __all__ = ["Surroundings"]
 

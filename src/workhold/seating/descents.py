@@ -89,10 +89,16 @@ class Closing:
         close_jaws(configs, lengths, most, obstacles, known, work, ends, begins, nodes)
         return ends, begins, nodes
 
-    def escape(self, configs: Array) -> NDArray[np.bool_]:
+    def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
         """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of
-        many directions."""
-        out = np.empty(len(configs), np.int8)
-        if len(out):
+        many directions; false of those that are not asked for (N,)."""
+        out = np.ones(len(configs), np.int8) if asked is None else asked.astype(np.int8)
+        if out.any():
             leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, np.empty((4, 2)), out)
         return out.astype(np.bool_)
+
+    def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether a part can be taken away where ways ended that were stopped (N,), or where they began: what can be taken
+        away at first can be, wherever closing the jaws leads."""
+        away = self.escape(ends, stopped)
+        return np.asarray(away | self.escape(starts, stopped & ~away))

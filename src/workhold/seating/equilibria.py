@@ -8,7 +8,16 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_POSE
 from workhold.kernels.seating.candidates import complete_two, fourths
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, CONTACTS, DEPTH, FORCE, SECOND, SEPARATION
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CLEAR,
+    CONTACTS,
+    DEPTH,
+    FORCE,
+    SECOND,
+    SEPARATION,
+    Families,
+)
 from workhold.kernels.seating.four_contacts import two_holdings
 from workhold.kernels.seating.freedom import first_of_each
 from workhold.kernels.seating.slides import slides_held
@@ -16,8 +25,7 @@ from workhold.kernels.seating.three_contacts import ROOT_LENGTH
 from workhold.seating.alone import Kept, alone, balanced, settled
 from workhold.seating.balance import settle_on_wall
 from workhold.seating.common_normals import squeezed
-from workhold.seating.families import SAME as SAME_LEVEL
-from workhold.seating.families import Family, Finder
+from workhold.seating.families import Finder, joined, of_pattern
 from workhold.seating.fence import fence_candidates
 from workhold.seating.filled import filled
 from workhold.seating.groups import Group, groups_of
@@ -56,7 +64,7 @@ class Equilibria:
 
     seats: Array
     passes: Array
-    loose: list[Family]
+    loose: Families
     doubtful: Array
     origins: NDArray[np.int64]
     groups: tuple[tuple[Group, WaysDown], ...] = ()
@@ -84,13 +92,12 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
             jaw, fixed = group.sides[0], group.candidates(own.fixed)
             candidates.append(filled(CANDIDATE_LENGTH, 4 * len(fixed) + 64, fourths, fixed, jaw, given))
             origins.append(nowhere(len(candidates[-1])))
-        levels = own.levels + group.shift[3]
-        ways += [own.ways[k].moved(group) for k in np.flatnonzero(pattern.reaches(levels, SAME_LEVEL)).tolist()]
+        ways.append((group, own.ways))
     candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets))
     every, whose = np.concatenate(candidates), np.concatenate([*origins, nowhere(len(candidates[-1]))])
     reached = pattern.reaches(every[:, SEPARATION])
     every = settled(every[reached], given, size)
-    return sorted_out(every, finder.families(finder.cut(ways)), whose[reached], tuple(groups))
+    return sorted_out(every, finder.families(finder.cut(of_pattern(ways))), whose[reached], tuple(groups))
 
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
@@ -99,8 +106,8 @@ def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     candidates = np.concatenate([pressed, fence_candidates(locus, pattern)])
     settle_on_wall(candidates, locus, pattern, size)
     finder = Finder(locus, pattern)
-    loose = finder.families(finder.cut_all(finder.on_one_line()) + on_wall(finder))
-    return sorted_out(candidates, loose, nowhere(len(candidates)))
+    loose = joined([finder.cut(finder.free(finder.on_one_line())), *on_wall(finder)])
+    return sorted_out(candidates, finder.families(loose), nowhere(len(candidates)))
 
 
 def nowhere(count: int) -> NDArray[np.int64]:
@@ -109,7 +116,7 @@ def nowhere(count: int) -> NDArray[np.int64]:
 
 
 def sorted_out(
-    candidates: Array, loose: list[Family], origins: NDArray[np.int64], groups: tuple[tuple[Group, WaysDown], ...] = ()
+    candidates: Array, loose: Families, origins: NDArray[np.int64], groups: tuple[tuple[Group, WaysDown], ...] = ()
 ) -> Equilibria:
     """Candidates whose forces are known as seats and passes, beside what is loose; where they are from as of Equilibria."""
     sure, rest = balanced(candidates)

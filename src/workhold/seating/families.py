@@ -6,37 +6,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations, product
-from math import asin, atan2, cos, hypot, pi, sin, sqrt, tau
+from math import asin, atan2, cos, hypot, nan, sin, sqrt, tau
 
 import numpy as np
-from attrs import define, evolve, frozen
+from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import END_SLACK, PARALLEL
+from workhold.conventions import PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import (
-    CANDIDATE_LENGTH,
-    CONFIG,
-    CONTACTS,
-    PEG,
-    PIECE,
-    SEPARATION,
-    Given,
-    Obstacles,
-)
-from workhold.kernels.seating.freedom import (
-    RUN_COUNT,
-    RUN_END,
-    RUN_FIRST,
-    RUN_LENGTH,
-    RUN_MIDDLE,
-    RUN_START,
-    RUN_TOUCHES,
-    RUN_WAY,
-    free_ones,
-    free_runs,
-    lie_along,
-)
+from workhold.kernels.seating.columns import Families, Given, Obstacles, Ways
+from workhold.kernels.seating.freedom import free_runs, keep_free
+from workhold.kernels.seating.loose import write_each_once
 from workhold.kernels.seating.parallel import (
     AT_HIGH,
     AT_LOW,
@@ -54,7 +34,7 @@ from workhold.seating.groups import Group
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Families", "Family", "Finder", "Way"]
+__all__ = ["Finder", "Way", "joined", "of_pattern"]
 
 Array = NDArray[np.float64]
 # Configurations by which a slide is told, and a turn.
@@ -64,74 +44,8 @@ SHORTEST, SAME = 1e-6, 1e-6
 # A force's share below this is none.
 LEAST_SHARE = 1e-9
 Contact = tuple[int, int]
-
-
-@define(frozen=True, eq=False, slots=False)
-class Family:
-    """A connected set of equilibria with one separation.
-
-    Parameters
-    ----------
-    candidate : the middle of where the most pegs touch, and what they touch.
-    configs : (N, 4) along it.
-    is_closed : whether it is a whole turn, which has no ends.
-    across : (2,) direction in which the part gives way to both sides, or None where it does not.
-    """
-
-    candidate: Array
-    configs: Array
-    is_closed: bool
-    across: tuple[float, float] | None
-
-    @cached_property
-    def middle(self) -> Array:
-        """The configuration (4,) of the candidate."""
-        return self.candidate[CONFIG]
-
-    @property
-    def separation(self) -> float:
-        """S in mm."""
-        return float(self.candidate[SEPARATION])
-
-
-@frozen(eq=False)
-class Families:
-    """Some loose sets, to ask of all at once what lies in which.
-
-    Parameters
-    ----------
-    sets : each by itself.
-    levels : (F,) their separations in mm.
-    configs, begins : (M, 4) along all, and where those of each begin, as of ``one_after_other``.
-    """
-
-    sets: Sequence[Family]
-    levels: Array
-    configs: Array
-    begins: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, families: Sequence[Family]) -> Families:
-        """Those of a list."""
-        levels = np.array([one.separation for one in families], dtype=np.float64)
-        return cls(families, levels, *one_after_other([one.configs for one in families]))
-
-    def hold(self, configs: Array, arm: float, most: float) -> NDArray[np.bool_]:
-        """Which sets each configuration (N, 4) lies in, as far as their steps tell: (N, F).
-
-        Parameters
-        ----------
-        arm : in mm, by which turns are counted.
-        most : by how much in mm the separation may differ.
-        """
-        out = np.empty((len(configs), len(self.levels)), np.int8)
-        lie_along(np.ascontiguousarray(configs), self.configs, self.begins, self.levels, arm, most, out)
-        return out.astype(np.bool_)
-
-
-def one_after_other(parts: Sequence[Array]) -> tuple[Array, NDArray[np.int64]]:
-    """Configurations (N, 4) in one array, and where those of each part begin and, last, end."""
-    return np.concatenate([np.zeros((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])
+NO_FAMILIES = Families.room(0, 0)
+NO_WAYS = Ways.room(0, 0)
 
 
 @frozen(eq=False)
@@ -143,24 +57,32 @@ class Way:
     configs : (N, 4) along it.
     contacts : pegs and the pieces that they touch all along.
     is_closed : whether the last one is beside the first.
-    across : see ``Family``.
-    known, clear : pegs whose clearances are known, and these (N, 4) in mm, -inf first where one of them hinders.
+    across : (2,) direction in which the part gives way to both sides, or None where it does not.
     """
 
     configs: Array
     contacts: list[Contact]
     is_closed: bool
     across: tuple[float, float] | None
-    known: tuple[int, ...] = ()
-    clear: Array | None = None
 
-    def moved(self, group: Group) -> Way:
-        """The way of a group of pegs as one of its pattern."""
-        contacts = [(group.numbers[peg], piece) for peg, piece in self.contacts]
-        configs = self.configs + group.shift
-        return Way(
-            configs, contacts, self.is_closed, self.across, tuple(group.numbers[k] for k in self.known), self.clear
-        )
+
+def of_pattern(told: Sequence[tuple[Group, Ways]]) -> Ways:
+    """The ways of groups of pegs as those of their pattern."""
+    some = [(group, ways) for group, ways in told if len(ways.counts)]
+    if not some:
+        return NO_WAYS
+    out = Ways(*(np.concatenate(same) for same in zip(*(ways for _, ways in some), strict=True)))
+    shifts = np.repeat([group.shift for group, _ in some], [len(ways.configs) for _, ways in some], axis=0)
+    np.add(out.configs, shifts, out=out.configs)
+    numbers = [[*group.numbers, -1, -1][:4] for group, _ in some]
+    return out._replace(pegs=np.repeat(numbers, [len(ways.counts) for _, ways in some], axis=0))
+
+
+def joined(parts: Sequence[Families]) -> Families:
+    """Loose sets, one after the other."""
+    rows, configs, _, closed, across = (np.concatenate(same) for same in zip(NO_FAMILIES, *parts, strict=True))
+    counts = [np.diff(part.begins) for part in parts]
+    return Families(rows, configs, np.cumsum(np.concatenate([np.zeros(1, np.int64), *counts])), closed, across)
 
 
 @define(frozen=True, eq=False, slots=False)
@@ -196,83 +118,35 @@ class Finder:
         """How many pegs and walls there are."""
         return len(self.pattern.pegs) + (self.pattern.wall is not None)
 
-    def touched(self, way: Way) -> NDArray[np.int64]:
-        """The piece (K,) that each peg has to touch, -1 where none."""
-        out = np.full(len(self.pattern.pegs), -1)
-        for peg, piece in way.contacts:
-            if peg < len(out):
-                out[peg] = piece
-        return out
-
-    def freedom(self, way: Way) -> tuple[Array, NDArray[np.bool_]]:
-        """Clearances (N, 4) in mm of pegs along a way, told where the part is free and touches what it has to, and where it
-        does."""
-        clear, good = np.empty((len(way.configs), 4)), np.empty(len(way.configs), np.int8)
-        seen = np.empty((len(self.pattern.pegs), 3))
-        free_ones(way.configs, self.touched(way), self.around, seen, clear, good)
-        return clear, good != 0
-
-    def free(self, ways: list[Way]) -> tuple[Way, ...]:
+    def free(self, ways: Sequence[Way]) -> Ways:
         """The ways along which the part is free somewhere, with what is known of it."""
-        out = []
-        for way in ways:
-            clear, good = self.freedom(way)
-            if good.any():
-                clear[~good] = -np.inf
-                out.append(evolve(way, known=tuple(range(self.obstacles)), clear=clear))
-        return tuple(out)
-
-    def nearest(self, peg: int, config: Array) -> int:
-        """Number of the piece that a peg, or a wall, touches in a configuration."""
-        if peg < len(self.pattern.pegs):
-            return nearest(self.locus, int(self.pattern.right[peg]), *self.pattern.at(config[None])[0, peg])
-        assert self.pattern.wall is not None
-        angle = atan2(-self.pattern.wall[1], -self.pattern.wall[0]) - config[0]
-        return len(self.rows) + int(self.locus.hull.reach(np.array([angle]))[0].argmax())
+        every = Ways.room(len(ways), sum(len(way.configs) for way in ways))
+        if not ways:
+            return every
+        np.concatenate([way.configs for way in ways], out=every.configs)
+        every.pegs[:, : self.obstacles] = np.arange(self.obstacles)
+        for k, way in enumerate(ways):
+            every.counts[k], every.closed[k], every.across[k] = len(way.configs), way.is_closed, way.across or nan
+            for peg, piece in way.contacts:
+                every.pieces[k, peg] = piece
+        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs), 3)))
+        return every.first(count)
 
     def touch(self, contacts: list[Contact]) -> bool:
         """Whether pegs can touch the pieces that they are said to touch."""
         return all(self.locus.fits(self.pattern.right[peg], piece) for peg, piece in contacts)
 
-    def cut_all(self, ways: Sequence[Way]) -> list[Family]:
+    def cut(self, ways: Ways) -> Families:
         """The free runs of ways at separations that are reached."""
-        return self.cut([way for way in ways if self.pattern.reaches(way.configs[0, 3], SAME)])
-
-    def cut(self, ways: Sequence[Way]) -> list[Family]:
-        """The free runs of ways."""
-        if not ways:
-            return []
-        configs, begins = one_after_other([way.configs for way in ways])
-        names, touched = np.full((len(ways), 4), -1), np.array([self.touched(way) for way in ways])
-        for name, way in zip(names, ways, strict=True):
-            name[: len(way.known)] = way.known
-        known = np.concatenate([np.zeros((len(way.configs), 4)) if way.clear is None else way.clear for way in ways])
-        closed, clear = np.array([way.is_closed for way in ways], np.int8), np.empty((len(configs), self.obstacles))
-        work = clear, np.empty((len(self.pattern.pegs), 3)), np.empty((4, max(4, self.obstacles)))
-        given = configs, begins, closed, touched, names, known, self.around
-        runs = filled(RUN_LENGTH, 2 * len(ways) + 64, free_runs, *given, *work)
-        return [self.family(ways[int(run[RUN_WAY])], run, configs, begins) for run in runs]
-
-    def family(self, way: Way, run: Array, configs: Array, begins: NDArray[np.int64]) -> Family:
-        """A free run of a way."""
-        begin, count = int(begins[int(run[RUN_WAY])]), int(run[RUN_COUNT])
-        first, middle, bits = (int(run[k]) for k in (RUN_FIRST, RUN_MIDDLE, RUN_TOUCHES))
-        known = dict(way.contacts)
-        told = [
-            (peg, known[peg] if peg in known else self.nearest(peg, configs[middle]))
-            for peg in range(self.obstacles)
-            if bits >> peg & 1
-        ]
-        row = np.zeros(CANDIDATE_LENGTH)
-        row[CONFIG] = configs[middle]
-        row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(told), -1.0, -1.0
-        for at, (peg, piece) in enumerate(told):
-            row[PEG + at], row[PIECE + at] = peg, piece
-        if way.is_closed:
-            along = way.configs[(first - begin + np.arange(count)) % len(way.configs)]
-            return Family(row, along, count == len(way.configs), way.across)
-        ends = run[RUN_START:RUN_END], run[RUN_END:RUN_LENGTH]
-        return Family(row, np.concatenate([ends[:1], configs[first : first + count], ends[1:]]), False, way.across)
+        if not len(ways.counts):
+            return NO_FAMILIES
+        # At least every second configuration hinders between runs; each has two ends besides.
+        most, pegs = len(ways.configs) // 2 + len(ways.counts), len(self.pattern.pegs)
+        out = Families.room(most, len(ways.configs) + 2 * most)
+        low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
+        clear, seen = np.empty((len(ways.configs), self.obstacles)), np.empty((pegs, 3))
+        touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
+        return out.first(free_runs(ways, low, high, self.around, clear, seen, touched, work, out))
 
     def sliding(
         self, theta: float, start: Array, line: Array, low: float, high: float, s: float, contacts: list[Contact]
@@ -387,15 +261,12 @@ class Finder:
             return False
         return bool((np.linalg.solve(matrix, [0.0, 0.0, 1.0]) > LEAST_SHARE).all())
 
-    def families(self, found: list[Family]) -> list[Family]:
+    def families(self, found: Families) -> Families:
         """Those found, each once: the one with the most contacts of those that lie in each other."""
-        every = sorted(found, key=lambda family: -family.candidate[CONTACTS])
-        middles = np.array([one.middle for one in every]).reshape(-1, 4)
-        inside, kept = Families.of(every).hold(middles, 1.0, SAME), list[int]()
-        for number, holding in enumerate(inside):
-            if not holding[kept].any():
-                kept.append(number)
-        return [every[number] for number in kept]
+        if not len(found.rows):
+            return found
+        out = Families.room(len(found.rows), len(found.configs))
+        return out.first(write_each_once(found, 1.0, SAME, out))
 
 
 def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[float, float]]:
@@ -408,17 +279,3 @@ def circles_meet(one: Array, r1: float, two: Array, r2: float) -> list[tuple[flo
     ex, ey = (two - one) / d
     half = sqrt(square)
     return [(one[0] + along * ex - t * half * ey, one[1] + along * ey + t * half * ex) for t in (1.0, -1.0)]
-
-
-def nearest(locus: Locus, side: int, x: float, y: float) -> int:
-    """Number of the piece that a peg that stands still (0), or moves (1), touches at a point of its boundary."""
-    first, end = locus.parts[side].tolist()
-    rows = locus.rows[first:end]
-    is_arc, dx, dy = rows[:, IS_ARC] != 0.0, x - rows[:, X], y - rows[:, Y]
-    forth, beside = dx * rows[:, AXIS_X] + dy * rows[:, AXIS_Y], dx * rows[:, AXIS_Y] - dy * rows[:, AXIS_X]
-    away = np.abs(np.where(is_arc, np.hypot(dx, dy) - rows[:, RADIUS], beside))
-    # As of ``contains``, of all at once.
-    along = np.abs(np.where(is_arc, np.arctan2(-beside, forth), forth))
-    on = along <= rows[:, HALF_EXTENT] + END_SLACK / np.where(is_arc, rows[:, RADIUS], 1.0)
-    on |= is_arc & (rows[:, HALF_EXTENT] >= pi)
-    return int(first + np.argmin(np.where(on, away, np.inf)))

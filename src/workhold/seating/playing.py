@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
+from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.seating import Seat
 from workhold.seating.descents import Closing
 from workhold.seating.door import Door
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.tree import AT_SEAT, SAME_LEVEL, distances
+from workhold.seating.tree import distances
 
 __all__ = ["ENDINGS", "Played", "play"]
 

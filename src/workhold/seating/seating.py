@@ -276,10 +276,10 @@ class Reading:
 
     def side(self, tree: Tree, mirrored: bool) -> list[Seat]:
         """The seats of the part as drawn, or turned over."""
-        flat, slack = ([family.candidate for family in families] for families in (tree.loose, tree.slack))
+        flat, slack = tree.loose, tree.slack
         unknown = np.zeros((len(tree.doubtful), CANDIDATE_LENGTH))
         unknown[:, CONFIG] = tree.doubtful
-        rows = np.concatenate([tree.seats, np.array([*flat, *slack]).reshape(-1, CANDIDATE_LENGTH), unknown])
+        rows = np.concatenate([tree.seats, flat, slack, unknown])
         kinds = [KINDS[int(count)] for count in tree.seats[:, CONTACTS]]
         kinds += ["loose"] * (len(flat) + len(slack)) + ["unsettled"] * len(unknown)
         joins = [tree.join_of(place) for place in range(len(tree.seats) + len(flat))]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SAME_CENTER
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE
-from workhold.seating.families import SHORTEST, SLIDE_STEPS, Family, Finder, Way
+from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE, Families
+from workhold.seating.families import SHORTEST, SLIDE_STEPS, Finder, Way
 from workhold.seating.fence import LOCATOR, ON_WALL, TIP, Fence
 from workhold.seating.hull import HullSide
 
@@ -20,13 +20,13 @@ __all__ = ["on_wall"]
 Array = NDArray[np.float64]
 
 
-def on_wall(finder: Finder) -> list[Family]:
+def on_wall(finder: Finder) -> list[Families]:
     """All of them."""
     fence = Fence(finder.locus, finder.pattern)
     return sliding_on_wall(finder, fence) + turning_on_wall(finder, fence)
 
 
-def sliding_on_wall(finder: Finder, fence: Fence) -> list[Family]:
+def sliding_on_wall(finder: Finder, fence: Fence) -> list[Families]:
     """A hull edge on the wall and the tip on a face parallel to it, between the ends of the edge."""
     if fence.wall[0] <= 0.0:
         return []
@@ -49,9 +49,10 @@ def sliding_on_wall(finder: Finder, fence: Fence) -> list[Family]:
             configs = np.stack(
                 [theta * every, known * every, np.linspace(low, high, SLIDE_STEPS), separation * every], axis=1
             )
-            for family in finder.cut([Way(configs, [(TIP, number)], False, None)]):
-                with_both_ends(family.candidate, fence, side)
-                out.append(family)
+            families = finder.cut(finder.free([Way(configs, [(TIP, number)], False, None)]))
+            for candidate in families.rows:
+                with_both_ends(candidate, fence, side)
+            out.append(families)
     return out
 
 
@@ -65,9 +66,9 @@ def with_both_ends(row: Array, fence: Fence, side: HullSide) -> None:
         row[CONTACTS] = count + 1
 
 
-def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
+def turning_on_wall(finder: Finder, fence: Fence) -> list[Families]:
     """Arcs of one centre on the wall and on the tip, and on the locator where the tip is not square to the wall."""
-    out, (ux, uy, off) = list[Family](), fence.wall
+    out, (ux, uy, off) = list[Families](), fence.wall
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.locus.hull.rows
     for group, piece in product(finder.locus.concentric, range(len(hull))):
@@ -79,7 +80,8 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
             signed = float(finder.rows[tip, SIGN] * finder.rows[tip, RADIUS])
             if ux > 0.0:
                 across = (0.0, 1.0) if signed > 0.0 else None
-                out += finder.cut_all(finder.turning(first, (known, ty), known + signed - tx, [(TIP, tip)], across))
+                ways = finder.turning(first, (known, ty), known + signed - tx, [(TIP, tip)], across)
+                out.append(finder.cut(finder.free(ways)))
             for locator in (k for k in group if finder.locus.fits(0, k)):
                 radius = float(finder.rows[locator, RADIUS])
                 square = radius**2 - ((known - lx) if ux else (known - ly)) ** 2
@@ -93,7 +95,7 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Family]:
                     pressed = presses(fence, finder, center, (lx, ly), (tx + separation, ty), (locator, tip))
                     if pressed:
                         contacts = [(LOCATOR, locator), (TIP, tip)]
-                        out += finder.cut_all(finder.turning(first, center, separation, contacts, None))
+                        out.append(finder.cut(finder.free(finder.turning(first, center, separation, contacts, None))))
     return out
 
 

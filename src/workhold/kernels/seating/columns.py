@@ -92,6 +92,73 @@ class Obstacles(NamedTuple):
     wall: NDArray[np.float64]
 
 
+class Ways(NamedTuple):
+    """Ways that a part can go with one separation while some contacts stay, one after the other.
+
+    Parameters
+    ----------
+    configs, counts : (M, 4) along all, and how many of them are of each: (W,).
+    closed : (W,) 1 where the last one is beside the first.
+    across : see ``Families``.
+    pegs, pieces : (W, 4) numbers of the pegs between which they lead, of which a wall is the last, and the piece that each
+        has to touch; -1 of none.
+    clear : (M, 4) clearances of these pegs in mm, -inf first where one of them hinders.
+    """
+
+    configs: NDArray[np.float64]
+    counts: NDArray[np.int64]
+    closed: NDArray[np.int8]
+    across: NDArray[np.float64]
+    pegs: NDArray[np.int64]
+    pieces: NDArray[np.int64]
+    clear: NDArray[np.float64]
+
+    @classmethod
+    def room(cls, count: int, configs: int) -> Ways:
+        """Room for so many, and for so many configurations along them; of nothing is known whose it is."""
+        numbers = np.full((2, count, 4), -1)
+        made = np.empty((configs, 4)), np.zeros(count, np.int64), np.zeros(count, np.int8), np.empty((count, 2))
+        return cls(*made, numbers[0], numbers[1], np.zeros((configs, 4)))
+
+    def first(self, count: int) -> Ways:
+        """The first ones, in arrays of their own."""
+        along = int(self.counts[:count].sum())
+        configs, clear = np.array(self.configs[:along]), np.array(self.clear[:along])
+        whole = np.array(self.counts[:count]), np.array(self.closed[:count]), np.array(self.across[:count])
+        return Ways(configs, *whole, np.array(self.pegs[:count]), np.array(self.pieces[:count]), clear)
+
+
+class Families(NamedTuple):
+    """Loose sets: connected sets of equilibria with one separation.
+
+    Parameters
+    ----------
+    rows : (F, 24) candidates: of each the middle of where the most pegs touch, and what they touch.
+    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end: (F + 1,).
+    closed : (F,) 1 for a whole turn, which has no ends.
+    across : (F, 2) direction in which the part gives way to both sides, NaN where it does not.
+    """
+
+    rows: NDArray[np.float64]
+    configs: NDArray[np.float64]
+    begins: NDArray[np.int64]
+    closed: NDArray[np.int8]
+    across: NDArray[np.float64]
+
+    @classmethod
+    def room(cls, count: int, configs: int) -> Families:
+        """Room for so many, and for so many configurations along them."""
+        begins = np.zeros(count + 1, np.int64)
+        made = np.empty((count, CANDIDATE_LENGTH)), np.empty((configs, 4)), begins
+        return cls(*made, np.empty(count, np.int8), np.empty((count, 2)))
+
+    def first(self, count: int) -> Families:
+        """The first ones."""
+        begins = self.begins[: count + 1]
+        kept = self.rows[:count], self.configs[: begins[-1]], begins
+        return Families(*kept, self.closed[:count], self.across[:count])
+
+
 class WorkSpace(NamedTuple):
     """Room for the linear programs of a step.
 

@@ -9,24 +9,29 @@ from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.seating.columns import CONTACTS, PLACE_X, PLACE_Y, SEPARATION, THETA, Obstacles
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.kernels.seating.columns import (
+    CONTACTS,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SEPARATION,
+    THETA,
+    Families,
+    Obstacles,
+    Ways,
+)
 from workhold.kernels.seating.pieces import clearance, on_piece, place_on_part
-from workhold.kernels.seating.walls import SUPPORTS, off_wall
+from workhold.kernels.seating.walls import SUPPORTS, beside_wall, off_wall
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# A run of configurations of a way, in columns: number of the way, of the first configuration among those of all ways, how
-# many there are, the middle of those with the most contacts, a bit for each peg (and last a wall) that touches there, and,
-# of what is not closed, the last free configurations at both ends.
-RUN_WAY, RUN_FIRST, RUN_COUNT, RUN_MIDDLE, RUN_TOUCHES, RUN_START = range(6)
-RUN_END, RUN_LENGTH = 9, 13
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7
 # mm. By this much more than a peg moved it was clear, or in the part, where it surely still is.
 SURELY = 1e-6
-# mm. How much farther than to the next of its steps a place may be from a way on which it lies.
-BESIDE = 0.02
 # How often, and into how many parts, a step is cut to find where freedom ends.
 EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
@@ -75,20 +80,37 @@ def nothing_seen(seen: Array) -> None:
 
 
 @compiled
-def free_ones(
-    configs: Array, touched: IntArray, around: Obstacles, seen: Array, clear: Array, good: NDArray[np.int8]
-) -> None:
-    """Write to ``good`` (N,) whether a part is free in configurations (N, 4), and the clearances (N, K) where it is, or less
-    where they are large.
+def keep_free(ways: Ways, around: Obstacles, seen: Array) -> int:
+    """Write the clearances of all pegs along ways, or less where they are large; move those along which a part is free
+    somewhere to the front, and return how many they are.
 
     Parameters
     ----------
-    touched : (K,) piece that each peg has to touch, -1 where none.
-    seen : (K, 3) work space.
+    seen : (P, 3) work space, of so many pegs.
     """
-    nothing_seen(seen)
-    for n in range(configs.shape[0]):
-        good[n] = 1 if write_clearances(configs[n], touched, 0, around, seen, clear[n]) else 0
+    count, begin, at = 0, 0, 0
+    for w in range(ways.counts.shape[0]):
+        nothing_seen(seen)
+        length, good = ways.counts[w], 0
+        for n in range(begin, begin + length):
+            if write_clearances(ways.configs[n], ways.pieces[w], 0, around, seen, ways.clear[n]):
+                good += 1
+            else:
+                ways.clear[n, 0] = -inf
+        if good > 0:
+            for n in range(length):
+                for j in range(4):
+                    ways.configs[at + n, j], ways.clear[at + n, j] = (
+                        ways.configs[begin + n, j],
+                        ways.clear[begin + n, j],
+                    )
+            for j in range(4):
+                ways.pegs[count, j], ways.pieces[count, j] = ways.pegs[w, j], ways.pieces[w, j]
+            ways.across[count, 0], ways.across[count, 1] = ways.across[w, 0], ways.across[w, 1]
+            ways.counts[count], ways.closed[count] = length, ways.closed[w]
+            count, at = count + 1, at + length
+        begin += length
+    return count
 
 
 @inner
@@ -128,26 +150,63 @@ def touching(clear: Array) -> int:
 
 
 @inner
-def write_run(clear: Array, begin: int, end: int, first: int, count: int, out: Array) -> None:
-    """Write a run of a way from ``begin`` to ``end``: RUN_FIRST, RUN_COUNT, RUN_MIDDLE and RUN_TOUCHES."""
+def middle_of(clear: Array, begin: int, length: int, first: int, count: int) -> int:
+    """The middle of those configurations of a run at which the most pegs touch.
+
+    Parameters
+    ----------
+    clear : (M, K) clearances along all ways.
+    begin, length : of the way.
+    first, count : of the run; it goes on from the last configuration to the first.
+    """
     most, number = 0, 0
     for i in range(count):
-        touches = touching(clear[begin + (first - begin + i) % (end - begin)])
+        touches = touching(clear[begin + (first - begin + i) % length])
         if touches > most or number == 0:
             most, number = touches, 0
         number += touches == most
-    middle, seen = first, 0
+    seen = 0
     for i in range(count):
-        at = begin + (first - begin + i) % (end - begin)
+        at = begin + (first - begin + i) % length
         if touching(clear[at]) == most:
             if seen == number // 2:
-                middle = at
+                return at
             seen += 1
-    bits = 0
-    for k in range(clear.shape[1]):
-        if abs(clear[middle, k]) < TOUCHES:
-            bits |= 1 << k
-    out[RUN_FIRST], out[RUN_COUNT], out[RUN_MIDDLE], out[RUN_TOUCHES] = first, count, middle, bits
+    return first
+
+
+@inner
+def nearest_piece(config: Array, peg: int, around: Obstacles) -> int:
+    """Number of the piece that a peg, or after them the wall, touches in a configuration (4,)."""
+    if peg == around.pegs.shape[0]:
+        return around.rows.shape[0] + beside_wall(config, around, SUPPORTS)[1]
+    x, y = place_on_part(config, around, peg)
+    side = around.right[peg]
+    nearest, best = around.parts[side, 0], inf
+    for k in range(around.parts[side, 0], around.parts[side, 1]):
+        row = around.rows[k]
+        dx, dy = x - row[X], y - row[Y]
+        away = abs(dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else hypot(dx, dy) - row[RADIUS])
+        if away < best and on_piece(row, x, y, END_SLACK):
+            nearest, best = k, away
+    return nearest
+
+
+@inner
+def write_touching(config: Array, clear: Array, touched: IntArray, around: Obstacles, row: Array) -> None:
+    """Write a configuration as a candidate (24,), with the pegs, and last a wall, whose clearances (K,) are none, and the
+    pieces that they have to touch (P,), or that are nearest."""
+    for j in range(row.shape[0]):
+        row[j] = config[j] if j < CONTACTS else 0.0
+    for j in range(4):
+        row[PEG + j] = row[PIECE + j] = -1.0
+    count = 0
+    for peg in range(clear.shape[0]):
+        if abs(clear[peg]) < TOUCHES:
+            known = touched[peg] if peg < touched.shape[0] else -1
+            row[PEG + count], row[PIECE + count] = peg, known if known >= 0 else nearest_piece(config, peg, around)
+            count += 1
+    row[CONTACTS] = count
 
 
 @inner
@@ -175,141 +234,109 @@ def write_edge(
         out[j] = work[0, j]
 
 
-@compiled
-def free_runs(
-    configs: Array,
-    begins: IntArray,
-    closed: NDArray[np.int8],
-    touched: IntArray,
-    names: IntArray,
-    known: Array,
-    around: Obstacles,
-    clear: Array,
-    seen: Array,
-    work: Array,
-    out: Array,
-) -> int:
-    """Write the runs of ways in which a part is free, and return how many there are, or -1 where they do not fit.
-
-    Parameters
-    ----------
-    configs, begins : (M, 4) of all ways, one after the other, and (W + 1,) where each begins.
-    closed : (W,) 1 for those of which the last configuration is beside the first.
-    touched : (W, P) piece that each peg has to touch, -1 where none.
-    names : (W, 4) pegs whose clearances are known, -1 of none.
-    known : (M, 4) their clearances in mm, -inf first where one of them hinders.
-    clear, seen, work : (M, K), (P, 3) and (4, 4) work space.
-    out : (N, 13) runs, see above, written here.
-    """
-    count = 0
-    for w in range(begins.shape[0] - 1):
-        begin, end, bits = begins[w], begins[w + 1], 0
-        for j in range(names.shape[1]):
-            bits |= 1 << names[w, j] if names[w, j] >= 0 else 0
-        nothing_seen(seen)
-        bad, good = -1, 0
-        for n in range(begin, end):
-            free = bits == 0 or known[n, 0] != -inf
-            if free:
-                for j in range(names.shape[1]):
-                    if names[w, j] >= 0:
-                        clear[n, names[w, j]] = known[n, j]
-                free = write_clearances(configs[n], touched[w], bits, around, seen, clear[n])
-            if not free:
-                clear[n, 0] = -inf
-                bad = n if bad < 0 else bad
-            good += free
-        start, length = begin, 0
-        # Of what is closed the last and the first are neighbours.
-        shift = bad - begin if closed[w] != 0 and bad >= 0 else 0
-        for i in range(end - begin + 1):
-            n = begin + (i + shift) % (end - begin)
-            free = i < end - begin and clear[n, 0] != -inf
-            if free:
-                start = n if length == 0 else start
-                length += 1
-            elif length > 0:
-                if count >= out.shape[0]:
-                    return -1
-                row = out[count]
-                row[RUN_WAY] = w
-                write_run(clear, begin, end, start, length, row)
-                if closed[w] == 0:
-                    last, room = start + length - 1, work[3]
-                    write_edge(
-                        configs, start, start - 1, begin, end, touched[w], around, work, seen, room, row[RUN_START:]
-                    )
-                    write_edge(configs, last, last + 1, begin, end, touched[w], around, work, seen, room, row[RUN_END:])
-                count, length = count + 1, 0
-    return count
-
-
-@compiled
-def lie_along(
-    configs: Array, sets: Array, begins: IntArray, levels: Array, arm: float, most: float, out: NDArray[np.int8]
-) -> None:
-    """Write whether places of the part are as near to one of a set's configurations as these are to each other.
-
-    Parameters
-    ----------
-    configs : (N, 4) the places.
-    sets, begins, levels : configurations (M, 4) along all sets, one after the other, where those of each begin and, last,
-        end (F + 1,), and their separations (F,) in mm.
-    arm : in mm, by which turns are counted.
-    most : by how much in mm the separation of a place may differ from a set's.
-    out : (N, F) written here.
-    """
-    for k in range(levels.shape[0]):
-        longest = -1.0
-        for m in range(configs.shape[0]):
-            out[m, k] = 0
-            if not abs(configs[m, 3] - levels[k]) < most:
-                continue
-            if longest < 0.0:
-                longest = longest_step(sets, begins[k], begins[k + 1], arm)
-            nearest = inf
-            for n in range(begins[k], begins[k + 1]):
-                turn = (sets[n, 0] - configs[m, 0] + pi) % (2.0 * pi) - pi
-                nearest = min(nearest, abs(turn) * arm + hypot(sets[n, 1] - configs[m, 1], sets[n, 2] - configs[m, 2]))
-            out[m, k] = 1 if nearest <= longest + BESIDE else 0
+@inner
+def write_clear(
+    ways: Ways, w: int, begin: int, touched: IntArray, around: Obstacles, seen: Array, clear: Array
+) -> tuple[int, int]:
+    """Write the clearances (M, K) of all pegs along a way, -inf first where the part is not free, and the pieces (P,) that
+    they have to touch; how many configurations are free, and the first that is not, -1 where none is."""
+    bits, bad, good = 0, -1, 0
+    for peg in range(touched.shape[0]):
+        touched[peg] = -1
+    for j in range(4):
+        peg = ways.pegs[w, j]
+        if peg >= 0:
+            bits |= 1 << peg
+            if peg < touched.shape[0]:
+                touched[peg] = ways.pieces[w, j]
+    nothing_seen(seen)
+    for n in range(begin, begin + ways.counts[w]):
+        free = ways.clear[n, 0] != -inf
+        if free:
+            for j in range(4):
+                if ways.pegs[w, j] >= 0:
+                    clear[n, ways.pegs[w, j]] = ways.clear[n, j]
+            free = write_clearances(ways.configs[n], touched, bits, around, seen, clear[n])
+        if free:
+            good += 1
+        else:
+            clear[n, 0] = -inf
+            bad = n if bad < 0 else bad
+    return (good, bad)
 
 
 @inner
-def longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
-    """The longest in mm of the steps along a set."""
-    longest = 0.0
-    for n in range(begin + 1, end):
-        dx, dy = sets[n, 1] - sets[n - 1, 1], sets[n, 2] - sets[n - 1, 2]
-        longest = max(longest, abs(sets[n, 0] - sets[n - 1, 0]) * arm + abs(dx) + abs(dy))
-    return longest
+def write_along(
+    ways: Ways,
+    w: int,
+    begin: int,
+    first: int,
+    count: int,
+    touched: IntArray,
+    around: Obstacles,
+    work: Array,
+    seen: Array,
+    out: Families,
+    number: int,
+) -> None:
+    """Write the configurations along a run of a way, and those of its ends."""
+    at, length = out.begins[number], ways.counts[w]
+    end, is_closed = begin + length, ways.closed[w] != 0
+    if not is_closed:
+        write_edge(ways.configs, first, first - 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        at += 1
+    for i in range(count):
+        for j in range(4):
+            out.configs[at, j] = ways.configs[begin + (first - begin + i) % length, j]
+        at += 1
+    if not is_closed:
+        last = first + count - 1
+        write_edge(ways.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        at += 1
+    out.begins[number + 1], out.closed[number] = at, 1 if is_closed and count == length else 0
 
 
 @compiled
-def nearest_of(configs: Array, others: Array, arm: float, most: float, level: float, out: IntArray) -> None:
-    """Write the number of the nearest of some configurations (M, 4), ordered by S, to each of others (N, 4); -1 where there
-    is none.
+def free_runs(
+    ways: Ways,
+    low: float,
+    high: float,
+    around: Obstacles,
+    clear: Array,
+    seen: Array,
+    touched: IntArray,
+    work: Array,
+    out: Families,
+) -> int:
+    """Write the runs of ways in which a part is free, and return how many there are.
 
     Parameters
     ----------
-    arm : in mm, by which turns are counted.
-    most, level : how far in mm it may be at most, and how much its S may differ, in mm.
-    out : (N,) written here.
+    low, high : in mm, between which the separations of ways are that count.
+    clear, seen, touched, work : (M, K), (P, 3), (P,) and (4, 4) work space, of so many pegs and, last, a wall.
+    out : with room for all, written here.
     """
-    for n in range(configs.shape[0]):
-        config, nearest, low, high = configs[n], most, 0, others.shape[0]
-        out[n] = -1
-        while low < high:
-            middle = (low + high) // 2
-            if others[middle, 3] < config[3] - level:
-                low = middle + 1
-            else:
-                high = middle
-        while low < others.shape[0] and others[low, 3] < config[3] + level:
-            turn = abs((config[0] - others[low, 0] + pi) % (2.0 * pi) - pi)
-            away = turn * arm + hypot(config[1] - others[low, 1], config[2] - others[low, 2])
-            if away < nearest:
-                nearest, out[n] = away, low
-            low += 1
+    count, begin = 0, 0
+    for w in range(ways.counts.shape[0]):
+        size = ways.counts[w]
+        if low < ways.configs[begin, 3] < high:
+            good, bad = write_clear(ways, w, begin, touched, around, seen, clear)
+            start, length = begin, 0
+            # Of what is closed the last and the first are neighbours.
+            shift = bad - begin if ways.closed[w] != 0 and bad >= 0 else 0
+            for i in range(size + 1 if good > 0 else 0):
+                n = begin + (i + shift) % size
+                if i < size and clear[n, 0] != -inf:
+                    start = n if length == 0 else start
+                    length += 1
+                elif length > 0:
+                    middle = middle_of(clear, begin, size, start, length)
+                    write_touching(ways.configs[middle], clear[middle], touched, around, out.rows[count])
+                    write_along(ways, w, begin, start, length, touched, around, work, seen, out, count)
+                    out.across[count, 0], out.across[count, 1] = ways.across[w, 0], ways.across[w, 1]
+                    count, length = count + 1, 0
+        begin += size
+    return count
 
 
 @compiled

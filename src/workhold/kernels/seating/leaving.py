@@ -89,11 +89,13 @@ def leads_away(config: Array, obstacles: Obstacles, ways: int, places: Array) ->
 @compiled
 def leave(configs: Array, obstacles: Obstacles, ways: int, places: Array, out: NDArray[np.int8]) -> None:
     """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
-    and without coming nearer to a wall; written to ``out`` (N,).
+    and without coming nearer to a wall.
 
     Parameters
     ----------
     places : (K, 2) work space.
+    out : (N,) 1 where it is asked; 0 is written where they cannot.
     """
     for n in range(configs.shape[0]):
-        out[n] = 1 if leads_away(configs[n], obstacles, ways, places) else 0
+        if out[n] != 0 and not leads_away(configs[n], obstacles, ways, places):
+            out[n] = 0

@@ -43,11 +43,12 @@ def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, cou
 
 
 @inner
-def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
-    """Distance in mm of the part from the wall, infinite where there is none; what supports may fall short by a slack."""
-    best = inf
+def beside_wall(config: Array, obstacles: Obstacles, slack: float) -> tuple[float, int]:
+    """Distance in mm of the part from the wall, infinite where there is none, and the number of what is nearest to it; what
+    supports may fall short by a slack."""
+    best, nearest = inf, -1
     if obstacles.hull.shape[0] == 0:
-        return best
+        return (best, nearest)
     cosine, sine = cos(config[0]), sin(config[0])
     ux, uy = obstacles.wall[0], obstacles.wall[1]
     px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
@@ -55,8 +56,16 @@ def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
         row = obstacles.hull[k]
         if -(px * row[3] + py * row[4]) >= row[5] - slack:
             wx, wy = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
-            best = min(best, ux * (wx + config[1]) + uy * (wy + config[2]) - row[2] - obstacles.wall[2])
-    return best
+            off = ux * (wx + config[1]) + uy * (wy + config[2]) - row[2] - obstacles.wall[2]
+            if off < best:
+                best, nearest = off, k
+    return (best, nearest)
+
+
+@inner
+def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
+    """The distance of ``beside_wall``."""
+    return beside_wall(config, obstacles, slack)[0]
 
 
 @inner
