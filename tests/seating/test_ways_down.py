@@ -24,7 +24,7 @@ from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating import alone
-from workhold.seating.descents import DIRECTIONS, Closing
+from workhold.seating.descents import WAYS, Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
@@ -111,7 +111,7 @@ def test_a_part_is_not_taken_away_through_a_wall():
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
         out = np.ones(1, np.int8)
-        leave(lying, obstacles._replace(wall=np.array(wall)), DIRECTIONS, np.empty((4, 2)), out)
+        leave(lying, obstacles._replace(wall=np.array(wall)), WAYS, np.empty((4, 2)), out)
         assert out[0] == is_free
 
 

@@ -204,7 +204,7 @@ def seats_and_passes() -> Calls:
     yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
-    yield leave, (ways, obstacles, 1, points, np.zeros(0, np.int8))
+    yield leave, (ways, obstacles, points, points, np.zeros(0, np.int8))
 
 
 # Kernels of seating of which many call the same ones: half of the work.
@@ -218,6 +218,9 @@ HOLDINGS = (
     at_tangencies,
     tangent_chords,
     about_one_center,
+    first_sets,
+    write_each_once,
+    write_places,
     stationary,
     least_friction,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from math import cos, pi, sin
 
 import numpy as np
 from attrs import define
@@ -21,6 +22,7 @@ Array = NDArray[np.float64]
 LONGEST_STEP = 0.35
 # Directions in which a part may be taken away.
 DIRECTIONS = 48
+WAYS = np.array([[cos(2.0 * pi * k / DIRECTIONS), sin(2.0 * pi * k / DIRECTIONS)] for k in range(DIRECTIONS)])
 NO_SEATS = np.zeros((0, 4))
 # Nodes that a way down has as a rule.
 USUAL = 128
@@ -94,7 +96,7 @@ class Closing:
         many directions; false of those that are not asked for (N,)."""
         out = np.ones(len(configs), np.int8) if asked is None else asked.astype(np.int8)
         if out.any():
-            leave(np.ascontiguousarray(configs), self.obstacles, DIRECTIONS, np.empty((4, 2)), out)
+            leave(np.ascontiguousarray(configs), self.obstacles, WAYS, np.empty((4, 2)), out)
         return out.astype(np.bool_)
 
     def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:

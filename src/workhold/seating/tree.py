@@ -146,6 +146,8 @@ class SlidingOff:
     @classmethod
     def of(cls, loose: Families, closing: Closing, seats: Array) -> SlidingOff:
         """Follow the ways down off some sets; ``seats`` (M, 4) as of ``Closing.run``."""
+        if not len(loose.rows):
+            return NOTHING
         starts, whose = np.empty((2 * len(loose.rows), 4)), np.empty(2 * len(loose.rows), np.int64)
         count = write_beyond(loose, closing.size, BESIDE, starts, whose)
         starts, whose = starts[:count], whose[:count]
@@ -164,6 +166,10 @@ class SlidingOff:
             (starts[both], ends[both], how[both]),
             (starts[first], ends[first], how[first]),
         )
+
+
+NUMBERS, WAYS = np.zeros(0, np.int64), (np.zeros((0, 4)), np.zeros((0, 4)), np.zeros(0, np.int8))
+NOTHING = SlidingOff(NUMBERS, NUMBERS, NUMBERS, NUMBERS, WAYS, WAYS)
 
 
 def sets_at(configs: Array, loose: Families, asked: IntArray, size: float) -> IntArray:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, sin, sqrt
+from math import cos, hypot, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.pieces import normal_at, on_piece, place_on_part
 
@@ -23,19 +23,21 @@ END = 1e-9
 def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
     """Whether a point moved along a direction enters the part through a piece, be it at once."""
     dx, dy = x - row[X], y - row[Y]
-    nx, ny = normal_at(row, x, y)
-    entering, size = wx * nx + wy * ny, hypot(dx, dy)
-    off = dx * nx + dy * ny if row[IS_ARC] == 0.0 else row[SIGN] * (size - row[RADIUS])
-    # Along a concave arc there is no way.
-    level = -LEVEL if row[IS_ARC] == 0.0 or row[SIGN] > 0.0 else TOUCHED
-    if abs(off) < TOUCHED and entering < level and on_piece(row, x, y, TOUCHED):
-        return True
-    least = TOUCHED
     if row[IS_ARC] == 0.0:
-        if entering > -LEVEL:
+        entering, off = wx * row[AXIS_Y] - wy * row[AXIS_X], dx * row[AXIS_Y] - dy * row[AXIS_X]
+        if not entering < -LEVEL:
             return False
-        t = -off / entering
+        if abs(off) < TOUCHED and on_piece(row, x, y, TOUCHED):
+            return True
+        t, least = -off / entering, TOUCHED
     else:
+        size = hypot(dx, dy)
+        if abs(size - row[RADIUS]) < TOUCHED:
+            nx, ny = normal_at(row, x, y)
+            # Along a concave arc there is no way.
+            level = -LEVEL if row[SIGN] > 0.0 else TOUCHED
+            if wx * nx + wy * ny < level and on_piece(row, x, y, TOUCHED):
+                return True
         middle = wx * dx + wy * dy
         square = middle * middle - (size - row[RADIUS]) * (size + row[RADIUS])
         if square <= 0.0:
@@ -70,14 +72,14 @@ def first_met(obstacles: Obstacles, wx: float, wy: float, places: Array, last: i
 
 
 @inner
-def leads_away(config: Array, obstacles: Obstacles, ways: int, places: Array) -> bool:
+def leads_away(config: Array, obstacles: Obstacles, ways: Array, places: Array) -> bool:
     """See ``leave``, of one configuration."""
     cosine, sine = cos(config[0]), sin(config[0])
     for peg in range(obstacles.pegs.shape[0]):
         places[peg, 0], places[peg, 1] = place_on_part(config, obstacles, peg)
     met = -1
-    for k in range(ways):
-        wx, wy = cos(2.0 * pi * k / ways), sin(2.0 * pi * k / ways)
+    for k in range(ways.shape[0]):
+        wx, wy = ways[k, 0], ways[k, 1]
         vx, vy = cosine * wx - sine * wy, sine * wx + cosine * wy
         if vx * obstacles.wall[0] + vy * obstacles.wall[1] <= LEVEL:
             met = first_met(obstacles, wx, wy, places, met)
@@ -87,12 +89,13 @@ def leads_away(config: Array, obstacles: Obstacles, ways: int, places: Array) ->
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, ways: int, places: Array, out: NDArray[np.int8]) -> None:
+def leave(configs: Array, obstacles: Obstacles, ways: Array, places: Array, out: NDArray[np.int8]) -> None:
     """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
     and without coming nearer to a wall.
 
     Parameters
     ----------
+    ways : (D, 2) unit vectors of the directions.
     places : (K, 2) work space.
     out : (N,) 1 where it is asked; 0 is written where they cannot.
     """

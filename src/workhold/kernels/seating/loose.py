@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION, Families
+from workhold.kernels.seating.pieces import length
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -44,7 +45,7 @@ def lies_in(config: Array, families: Families, number: int, arm: float, most: fl
     begin, end = families.begins[number], families.begins[number + 1]
     for n in range(begin, end):
         turn = (sets[n, 0] - config[0] + pi) % (2.0 * pi) - pi
-        nearest = min(nearest, abs(turn) * arm + hypot(sets[n, 1] - config[1], sets[n, 2] - config[2]))
+        nearest = min(nearest, abs(turn) * arm + length(sets[n, 1] - config[1], sets[n, 2] - config[2]))
     return nearest <= BESIDE or nearest <= longest_step(sets, begin, end, arm) + BESIDE
 
 
@@ -126,18 +127,18 @@ def write_beyond(families: Families, arm: float, step: float, configs: Array, wh
             turn = (families.configs[at, 0] - families.configs[before, 0] + pi) % (2.0 * pi) - pi
             dx = families.configs[at, 1] - families.configs[before, 1]
             dy = families.configs[at, 2] - families.configs[before, 2]
-            length = abs(turn) * arm + hypot(dx, dy)
+            away = abs(turn) * arm + hypot(dx, dy)
             for j in range(4):
                 config[j] = families.rows[number, j] if gives else families.configs[at, j]
             if gives:
                 sign = 1.0 if side == 0 else -1.0
                 config[1] += sign * (step * families.across[number, 0])
                 config[2] += sign * (step * families.across[number, 1])
-            elif length > 0.0:
-                config[0] += step * turn / length
-                config[1] += step * dx / length
-                config[2] += step * dy / length
-            if gives or length > 0.0:
+            elif away > 0.0:
+                config[0] += step * turn / away
+                config[1] += step * dx / away
+                config[2] += step * dy / away
+            if gives or away > 0.0:
                 whose[count] = number
                 count += 1
     return count
