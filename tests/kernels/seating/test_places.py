@@ -78,6 +78,10 @@ def test_all_that_fall_on_one_way_end_where_it_ends():
     ends = np.array([at(3.0, level) for level in (9.0, 8.0, 7.0)])
     places, doubtful = told(ends, [AT_REST] * 3, families, falling)
     assert places == [0, 0, 0] and doubtful[:, 1].tolist() == [50.0]
+    # As they did before, though what is not settled is found nearer to there.
+    nearer = np.array([at(3.0, 9.0), at(49.8, 6.0), at(3.0, 8.0), at(3.0, 9.0)])
+    places, doubtful = told(nearer, [AT_REST] * 4, families, falling, NO_SEATS, (), None, np.array([at(50.4, 6.0)]))
+    assert places == [0, 1, 0, 0] and doubtful[:, 1].tolist() == [50.4, 49.8]
 
 
 def test_of_two_seats_in_one_pose_the_level_one_is_the_nearest():
