@@ -13,6 +13,7 @@ from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CONFIG,
     COSINE,
+    FORCE,
     MOVED,
     NODE_LENGTH,
     PEG,
@@ -229,6 +230,12 @@ def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):
             middle = [float(clearance(closing, candidate[None, CONFIG], [peg])[0]) for peg in range(4)]
             told = {int(peg) for peg in candidate[PEG:PIECE] if peg >= 0}
             assert told == {peg for peg in range(4) if abs(middle[peg]) < 1e-7}
+            places = closing.pattern.at(candidate[None, CONFIG])
+            for peg, piece in zip(*candidate[PEG:FORCE].astype(np.int64).reshape(2, 4), strict=True):
+                off = np.zeros(1)
+                if peg >= 0:
+                    clearances(np.ascontiguousarray(places[:, peg]), closing.locus.rows, piece, piece + 1, off)
+                assert abs(off[0]) < 1e-6
             touching = np.sum(np.abs(every) < 1e-7, axis=0)
             inner = touching if is_closed else touching[1:-1]
             most = np.flatnonzero(inner == inner.max()) + (not is_closed)
