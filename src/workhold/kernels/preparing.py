@@ -66,6 +66,7 @@ from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies,
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.places import leads_out, write_places
 from workhold.kernels.seating.pocketed import tip_in_pocket
+from workhold.kernels.seating.silhouettes import cover_same
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
 from workhold.kernels.seating.standing import Stood, stationary
 from workhold.kernels.seating.sticking import least_friction
@@ -157,6 +158,8 @@ def seats_and_passes() -> Calls:
     """The kernels of seating, which no search needs."""
     one, points, many = np.zeros(CONFIGURATION), np.zeros((0, 2)), np.zeros((0, CANDIDATE_LENGTH))
     rows, pegs, sides = np.zeros((0, SEGMENT_LENGTH)), np.zeros((4, 2)), np.zeros(4, np.int64)
+    outline = np.zeros((0, SEGMENT_LENGTH))
+    outline.setflags(write=False)
     curves = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
     parts = np.zeros((2, 2), np.int64)
     given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides, parts)
@@ -205,6 +208,7 @@ def seats_and_passes() -> Calls:
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
     yield leave, (ways, obstacles, points, points, np.zeros(0, np.int8))
+    yield cover_same, (one, ways, known, outline, points, 0.0, np.zeros(0, np.int8))
 
 
 # Kernels of seating of which many call the same ones: half of the work.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.candidates import MISFIT
-from workhold.kernels.seating.columns import CLEAR, CONTACTS, FORCE, PEG, PIECE, RESIDUAL, SEPARATION
+from workhold.kernels.seating.columns import CLEAR, CONFIG, CONTACTS, FORCE, PEG, PIECE, RESIDUAL, SEPARATION, THETA
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
@@ -21,13 +21,11 @@ Array = NDArray[np.float64]
 def contact_normals(locus: Locus, pattern: Pattern, row: Array) -> tuple[Array, Array, Array]:
     """Places (n, 2) of the contacts of a candidate on the part, outward normals (n, 2) and 1 where what touches moves (n,),
     in the frame of seating, places from the part's."""
-    config = row[[0, 1, 2, 3]]
-    c, s = cos(config[0]), sin(config[0])
-    pegs = pattern.at(config[None])[0]
+    c, s, count = cos(row[THETA]), sin(row[THETA]), int(row[CONTACTS])
+    pegs, right = pattern.at(row[CONFIG][None])[0].tolist(), pattern.right.tolist()
+    touching, touched = (row[at : at + count].astype(int).tolist() for at in (PEG, PIECE))
     places, normals, moves = [], [], []
-    for peg, piece in (
-        row[[*range(PEG, PEG + 4), *range(PIECE, PIECE + 4)]].reshape(2, 4).T.astype(int)[: int(row[CONTACTS])]
-    ):
+    for peg, piece in zip(touching, touched, strict=True):
         if peg >= len(pegs):
             assert pattern.wall is not None
             hull, (ux, uy, _) = locus.hull.rows[piece - len(locus.rows)], pattern.wall
@@ -35,11 +33,12 @@ def contact_normals(locus: Locus, pattern: Pattern, row: Array) -> tuple[Array, 
             normals.append((-ux, -uy))
             moves.append(0)
             continue
-        nx, ny = locus.normal(piece, *pegs[peg])
-        x, y = pegs[peg] - pattern.radii[pattern.right[peg]] * np.array([nx, ny])
+        (x, y), radius = pegs[peg], pattern.radii[right[peg]]
+        nx, ny = locus.normal(piece, x, y)
+        x, y = x - radius * nx, y - radius * ny
         places.append((c * x - s * y, s * x + c * y))
         normals.append((c * nx - s * ny, s * nx + c * ny))
-        moves.append(int(pattern.right[peg]))
+        moves.append(right[peg])
     return np.array(places), np.array(normals), np.array(moves, dtype=np.float64)
 
 

@@ -150,16 +150,37 @@ class Locus:
         return groups
 
     @cached_property
+    def all_touches(self) -> tuple[Touch, ...]:
+        """What a peg on each piece touches and, after them, what may touch a wall."""
+        return self.touches + self.hull.touches
+
+    @cached_property
+    def corners(self) -> NDArray[np.bool_]:
+        """Which of these are corners."""
+        return np.array([touch.corner for touch in self.all_touches])
+
+    @cached_property
     def contacts(self) -> dict[int, tuple[Contact, ...]]:
-        """Those of pegs by their numbers, as far as they have been asked for."""
+        """Those that have been asked for, see ``contacts_of``."""
         return {}
 
-    def contacts_of(self, peg: int) -> tuple[Contact, ...]:
-        """What a peg of a fixture may touch, by the numbers of the pieces and, after them, of what may touch a wall."""
-        if peg not in self.contacts:
-            touches = self.touches + self.hull.touches
-            self.contacts[peg] = tuple([Contact(peg, touch.face, touch.corner) for touch in touches])
-        return self.contacts[peg]
+    def contacts_of(self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]) -> list[tuple[Contact, ...]]:
+        """What pegs of a fixture touch, told by their numbers and those of ``all_touches``: (N, 4) of both, -1 for no peg.
+
+        Many seats have the same, which are told once.
+        """
+        count = len(self.all_touches)
+        codes = np.where(pegs < 0, 0, 1 + pegs * count + pieces)
+        keys: list[int] = (codes @ (1 + 4 * count) ** np.arange(4)).tolist()
+        for k, key in enumerate(keys):
+            if key not in self.contacts:
+                told = (
+                    (peg, self.all_touches[at])
+                    for peg, at in zip(pegs[k].tolist(), pieces[k].tolist(), strict=True)
+                    if peg >= 0
+                )
+                self.contacts[key] = tuple([Contact(peg, touch.face, touch.corner) for peg, touch in told])
+        return [self.contacts[key] for key in keys]
 
     @cached_property
     def tables(self) -> dict[tuple[float, int], CurveTable]:
@@ -199,9 +220,9 @@ class Locus:
 
     def normal(self, number: int, x: float, y: float) -> tuple[float, float]:
         """Outward unit normal of a piece at a point on it."""
-        row = self.rows[number]
+        row = self.rows[number].tolist()
         if row[IS_ARC] == 0.0:
-            return float(row[AXIS_Y]), float(-row[AXIS_X])
+            return row[AXIS_Y], -row[AXIS_X]
         dx, dy = row[SIGN] * (x - row[X]) / row[RADIUS], row[SIGN] * (y - row[Y]) / row[RADIUS]
         return float(dx), float(dy)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import inf, sqrt
 from typing import Any
 
@@ -125,19 +126,24 @@ class Pattern:
         left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
         return max(self.stop, float(left.min() - right.max()) - diameter - sum(self.radii) - BEYOND)
 
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """(4,) the pegs from left to right, those that stand still before those that move."""
+        return np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
+
     def key(self) -> tuple[object, ...]:
         """What patterns share that differ by a shift of all pegs and by their order."""
-        order = np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
-        moved = self.pegs[order] - self.pegs[order[0]]
+        moved = self.pegs[self.order] - self.pegs[self.order[0]]
         # Where separations are counted from is of no account.
-        apart = moved[self.right[order] == 1, 0].min()
-        moved[self.right[order] == 1, 0] -= apart
+        first = -int(self.right.sum())
+        apart = moved[first, 0]
+        moved[first:, 0] -= apart
         ends = [self.stop + apart, self.widest + apart]
         if self.wall is not None:
             ux, uy, off = self.wall
-            ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - float(self.pegs[order[0]] @ [ux, uy])]
-        told = np.rint(np.array([*ends, *moved.ravel()]) / SAME_PATTERN) + 0.0
-        return (*self.radii, *self.right[order].tolist(), *told.tolist())
+            ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - float(self.pegs[self.order[0]] @ [ux, uy])]
+        told = np.rint(np.array(ends + moved.ravel().tolist()) / SAME_PATTERN) + 0.0
+        return (*self.radii, *self.right[self.order].tolist(), *told.tolist())
 
     def reaches(self, separation: Any, slack: float = 0.0) -> Any:
         """Whether separations, a number or many, are between the stop and the widest."""
@@ -148,7 +154,9 @@ class Pattern:
         x = self.pegs[:, 0] + self.right * configs[:, 3:4] - configs[:, 1:2]
         y = self.pegs[:, 1] - configs[:, 2:3]
         cosine, sine = np.cos(configs[:, :1]), np.sin(configs[:, :1])
-        return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=2)
+        out = np.empty((*x.shape, 2))
+        out[:, :, 0], out[:, :, 1] = cosine * x + sine * y, cosine * y - sine * x
+        return out
 
 
 def refuse_unseated(toolkit: Toolkit, fixture: Fixture | None = None) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import centered
 from workhold.geometry.segment import segment_rows
-from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.seating.silhouettes import cover_same
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Silhouette"]
@@ -48,23 +48,9 @@ class Silhouette:
         """Largest distance in mm of one of its points from the centre."""
         return float(np.hypot(*self.points.T).max())
 
-    def cover_same(self, one: Array, others: Array, turned_over: bool) -> NDArray[np.bool_]:
-        """Whether a part covers in configurations (N, 4), where it may be turned over, the place that it covers in one."""
-        points = self.points * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
-        out = np.ones(len(others), np.bool_)
-        # One point tells of most that they do not.
-        for some in (points[:1], points):
-            moved = seen_from(one, others[out], some)
-            away = outline_distances(moved.reshape(-1, 2), self.rows).reshape(-1, len(some))
-            out[out] = away.max(axis=1, initial=0.0) <= SAME_PLACE
-        return out
-
-
-def seen_from(one: Array, others: Array, points: Array) -> Array:
-    """Points (M, 2) of the part in configurations (N, 4) as they lie on the part in one configuration: (N, M, 2)."""
-    turn = others[:, :1] - one[0]
-    c, s = np.cos(turn), np.sin(turn)
-    x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]
-    c, s = np.cos(one[0]), np.sin(one[0])
-    dx, dy = others[:, 1:2] - one[1], others[:, 2:3] - one[2]
-    return np.stack([x + c * dx + s * dy, y + c * dy - s * dx], axis=2)
+    def cover_same(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether a part covers in configurations (N, 4), where it may be turned over (N,), the place that it covers in
+        one."""
+        out = np.empty(len(others), np.int8)
+        cover_same(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
+        return out.astype(np.bool_)

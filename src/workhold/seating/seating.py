@@ -6,22 +6,14 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cached_property
 from itertools import product
-from math import isfinite, pi, radians, tau
+from math import inf, isfinite, pi, radians, tau
 from threading import Event
 
 import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.columns import (
-    CANDIDATE_LENGTH,
-    CONFIG,
-    CONTACTS,
-    FORCE,
-    PEG,
-    PIECE,
-    SEPARATION,
-)
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
 from workhold.limits import thread_count
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
@@ -36,6 +28,7 @@ from workhold.seating.locus import Locus
 from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND, as_candidate
 from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
+from workhold.seating.rests import KINDS, LOOSE, UNSETTLED, Rests
 from workhold.seating.settled import is_equilibrium
 from workhold.seating.sticking import sticking_friction
 from workhold.seating.tree import Join, Tree, distances
@@ -45,14 +38,9 @@ __all__ = ["Solver", "seatings"]
 Array = NDArray[np.float64]
 # mm. A fixture is found among the seats of its pegs when both pose and separation agree to this.
 AGREES = 1e-5
-# mm. Seats from which a part is out again with less are not listed: they may be or not.
-SHALLOW = 1e-3
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
 NO_PASS = "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
-# Those that are listed all the same: nothing is known of their depth, or they are fixtures of a complete list.
-ALWAYS = ("fixture", "loose", "unsettled")
-KINDS = {2: "curved", 3: "curved", 4: "fixture"}
 
 
 @define(eq=False)
@@ -114,7 +102,7 @@ class Solver:
         if key not in self.solved:
             self.solved[key] = pattern, self.trees(pattern), ()
         reading = Reading(self, fixture, pattern, *self.solved[key])
-        if reading.nearest(reading.trees[0].seats) is not None:
+        if reading.place is not None:
             return reading
         missed = (*reading.missed, reading.as_candidate())
         self.solved[key] = reading.known, self.trees(reading.known, missed), missed
@@ -207,18 +195,16 @@ class Reading:
     @cached_property
     def shift(self) -> Array:
         """(4,) by which configurations of the solved pattern become the fixture's."""
-        here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right))[0] for p in (self.pattern, self.known))
-        right = np.lexsort((self.pattern.pegs[:, 1], self.pattern.pegs[:, 0], -self.pattern.right))[0]
-        other = np.lexsort((self.known.pegs[:, 1], self.known.pegs[:, 0], -self.known.right))[0]
-        dx, dy = self.pattern.pegs[here] - self.known.pegs[there]
-        return np.array([0.0, dx, dy, dx - (self.pattern.pegs[right, 0] - self.known.pegs[other, 0])])
+        # Of the pegs that stand still, and of those that move, the first.
+        (still, moving), (there, then) = (p.pegs[p.order[[0, -int(p.right.sum())]]] for p in (self.pattern, self.known))
+        dx, dy = still - there
+        return np.array([0.0, dx, dy, dx - (moving[0] - then[0])])
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
         """(K,) number of each solved peg among the fixture's."""
-        here, there = (np.lexsort((p.pegs[:, 1], p.pegs[:, 0], p.right)) for p in (self.pattern, self.known))
-        out = np.empty(len(there), np.int64)
-        out[there] = np.array(self.pattern.numbers)[here]
+        out = np.empty(len(self.known.pegs), np.int64)
+        out[self.known.order] = np.array(self.pattern.numbers)[self.pattern.order]
         return out
 
     @cached_property
@@ -227,6 +213,11 @@ class Reading:
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
         return self.pattern.door.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation]))
+
+    @cached_property
+    def place(self) -> int | None:
+        """Which of the strict seats is the fixture; None if none is."""
+        return self.nearest(self.trees[0].seats)
 
     def nearest(self, rows: Array) -> int | None:
         """Which of some candidates (N, 24) is the fixture; None if none is."""
@@ -240,86 +231,59 @@ class Reading:
         touched = [faces[number] for number in self.order]
         return as_candidate(closing.locus, self.known, self.own - self.shift, touched, closing.size)
 
-    def poses(self, configs: Array, mirrored: bool) -> list[Pose]:
-        """The poses of configurations (N, 4), in the toolkit's frame."""
+    def poses(self, configs: Array, turned_over: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
+        """The poses of configurations (N, 4), in the toolkit's frame: theta in degrees, x and y, of the part turned over
+        where it is (N,)."""
         x, y = self.solver.workpiece.center
-        x = -x if mirrored else x
+        across = np.where(turned_over, -x, x)
         left = self.pattern.door.leave(configs)
         theta = left[:, 0] % tau
         c, s = np.cos(theta), np.sin(theta)
-        told = theta * 180.0 / pi, left[:, 1] - (c * x - s * y), left[:, 2] - (s * x + c * y)
-        return [Pose(*one) for one in zip(*(values.tolist() for values in told), strict=True)]
-
-    @cached_property
-    def every_contact(self) -> list[tuple[Contact, ...]]:
-        """All that the fixture's pegs may touch, by the numbers of pegs and pieces in candidates."""
-        locus = self.solver.closing(self.known, False).locus
-        # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
-        pegs = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
-        return [locus.contacts_of(peg) for peg in pegs]
+        return theta * 180.0 / pi, left[:, 1] - (c * across - s * y), left[:, 2] - (s * across + c * y)
 
     def contacts(self, rows: Array) -> list[tuple[Contact, ...]]:
         """What touches in each of some candidates (N, 24)."""
-        every = self.every_contact
-        pegs, pieces = (rows[:, at : at + 4].astype(np.int64).tolist() for at in (PEG, PIECE))
-        told = zip(rows[:, CONTACTS].astype(np.int64).tolist(), pegs, pieces, strict=True)
-        return [tuple([every[p][q] for p, q in zip(one[:n], other[:n], strict=True)]) for n, one, other in told]
-
-    def kind(self, kind: str, contacts: tuple[Contact, ...]) -> str:
-        """What a seat is called, four contacts of which are a fixture's or what they touch."""
-        if kind != "fixture":
-            return kind
-        if len({contact.peg for contact in contacts}) < 4:
-            return "pocket"
-        pegs = self.fixture.pegs
-        return "corner" if any(one.corner and not pegs[one.peg].is_on_wall for one in contacts) else kind
-
-    def side(self, tree: Tree, mirrored: bool) -> list[Seat]:
-        """The seats of the part as drawn, or turned over."""
-        flat, slack = tree.loose, tree.slack
-        unknown = np.zeros((len(tree.doubtful), CANDIDATE_LENGTH))
-        unknown[:, CONFIG] = tree.doubtful
-        rows = np.concatenate([tree.seats, flat, slack, unknown])
-        kinds = [KINDS[int(count)] for count in tree.seats[:, CONTACTS]]
-        kinds += ["loose"] * (len(flat) + len(slack)) + ["unsettled"] * len(unknown)
-        joins = [tree.join_of(place) for place in range(len(tree.seats) + len(flat))]
-        levels = rows[:, SEPARATION].tolist()
-        depths = [None if join is None else join.separation - level for join, level in zip(joins, levels, strict=False)]
-        depths += [0.0] * len(slack) + [None] * len(unknown)
-        kept = [k for k, (kind, depth) in enumerate(zip(kinds, depths, strict=True)) if is_listed(kind, depth)]
-        rows, kinds, depths = rows[kept], [kinds[k] for k in kept], [depths[k] for k in kept]
-        configs, own, sign = rows[:, CONFIG] + self.shift, self.own, self.pattern.door.sign
-        apart = distances(configs, own, self.solver.outline.arm), np.abs(configs[:, 3] - own[3])
-        is_own = (apart[0] < AGREES) & (apart[1] < AGREES) & (not mirrored)
-        told = zip(
-            rows[:, FORCE : FORCE + 4].tolist(),
-            self.contacts(rows),
-            kinds,
-            depths,
-            self.poses(configs, mirrored),
-            (sign * configs[:, 3]).tolist(),
-            (sign * (configs[:, 3] - own[3])).tolist(),
-            self.solver.outline.cover_same(own, configs, mirrored).tolist(),
-            is_own.tolist(),
-            strict=True,
-        )
-        out = []
-        for pressing, contacts, kind, depth, pose, separation, difference, same, itself in told:
-            forces = tuple(pressing[: len(contacts)]) if kind in KINDS.values() else ()
-            kind, itself = self.kind(kind, contacts), itself and kind != "unsettled"
-            if is_listed(kind, depth):
-                out.append(Seat(kind, pose, separation, difference, mirrored, same, contacts, forces, depth, itself))
-        return out
+        # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
+        numbers = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
+        pegs, pieces = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
+        pegs = np.where(np.arange(4) < rows[:, CONTACTS, None], np.array(numbers)[pegs], -1)
+        return self.solver.closing(self.known, False).locus.contacts_of(pegs, pieces)
 
     def seats(self) -> tuple[Seat, ...]:
         """All seats, by their separations."""
-        one, two = (self.side(tree, mirrored) for mirrored, tree in zip((False, True), self.trees, strict=True))
-        return tuple(sorted(one + two, key=lambda seat: (seat.jaw_separation, seat.mirrored, seat.pose.theta_deg)))
+        rests = Rests.of(self.trees, self.solver.closing(self.known, False).locus, len(self.known.pegs))
+        rows, kinds, own, sign = rests.rows, rests.kinds, self.own, self.pattern.door.sign
+        configs = rows[:, CONFIG] + self.shift
+        away, rise = distances(configs, own, self.solver.outline.arm), configs[:, 3] - own[3]
+        is_own = (away < AGREES) & (np.abs(rise) < AGREES) & ~(rests.turned_over | (kinds == UNSETTLED))
+        same = self.solver.outline.cover_same(own, configs, rests.turned_over)
+        poses, separations = self.poses(configs, rests.turned_over), sign * configs[:, 3]
+        # What is loose is not pressed by certain forces.
+        ends = (
+            np.arange(0, 4 * len(rows), 4) + np.where(kinds < LOOSE, rows[:, CONTACTS], 0.0).astype(np.int64)
+        ).tolist()
+        forces = rows[:, FORCE : FORCE + 4].ravel().tolist()
+        seats = list(
+            map(
+                Seat,
+                [KINDS[kind] for kind in kinds.tolist()],
+                map(Pose, *(values.tolist() for values in poses)),
+                separations.tolist(),
+                (sign * rise).tolist(),
+                rests.turned_over.tolist(),
+                same.tolist(),
+                self.contacts(rows),
+                [tuple(forces[4 * k : end]) for k, end in enumerate(ends)],
+                [None if depth == inf else depth for depth in rests.depths.tolist()],
+                is_own.tolist(),
+            )
+        )
+        return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
     def seating(self, with_cage: bool) -> Seating:
         """The seating of the fixture."""
         tree = self.trees[0]
-        place = self.nearest(tree.seats)
+        place = self.place
         assert place is not None
         row, join = tree.seats[place], tree.join_of(place)
         way_out = tree.way_out(place)
@@ -355,7 +319,8 @@ class Reading:
         """A join as the fixture's pass."""
         config = join.candidate[CONFIG] + self.shift
         separation = self.pattern.door.sign * float(config[3])
-        return Pass(self.poses(config[None], False)[0], separation, self.contacts(join.candidate[None])[0])
+        pose = Pose(*(float(value[0]) for value in self.poses(config[None], np.zeros(1, np.bool_))))
+        return Pass(pose, separation, self.contacts(join.candidate[None])[0])
 
     def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
         """Cage and placing."""
@@ -382,11 +347,6 @@ def unsettled_words(count: int) -> tuple[str, ...]:
     if count == 0:
         return ()
     return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
-
-
-def is_listed(kind: str, depth: float | None) -> bool:
-    """Whether a seat is listed: because of its kind, or as a part does not get out of it with next to nothing."""
-    return kind in ALWAYS or depth is None or depth >= SHALLOW
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Seating]:

@@ -5,7 +5,10 @@ It is asked of a pass before a capture opening is told, with nothing of what the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
+from math import hypot
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +29,7 @@ PULLS = 1e-9
 
 def is_equilibrium(row: Array, closing: Closing) -> bool:
     """Whether a candidate (24,) is an equilibrium of its contacts, or of two or three of them."""
-    pegs = closing.pattern.at(row[CONFIG][None])[0]
+    pegs = closing.pattern.at(row[CONFIG][None])[0].tolist()
     for k in range(int(row[CONTACTS])):
         peg, piece = int(row[PEG + k]), int(row[PIECE + k])
         # Where a wall is touched follows from the pose.
@@ -34,20 +37,41 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
             return False
     places, normals, moves = contact_normals(closing.locus, closing.pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / closing.size
-    wrenches = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves])
+    wrenches = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves], axis=1).tolist()
     # Loose rest may touch with more than three: some of them do.
-    for count in (3, 2):
-        for chosen in combinations(range(wrenches.shape[1]), count):
-            some, target = wrenches[:, chosen], np.array([0.0, 0.0, 0.0, 1.0])
-            forces = np.linalg.lstsq(some, target, rcond=None)[0]
-            if forces.min() > -PULLS and np.abs(some @ forces - target).max() < SETTLED * (1.0 + np.abs(forces).sum()):
-                return True
-    return False
+    return any(map(balance, combinations(wrenches, 3))) or any(map(balance, combinations(wrenches, 2)))
+
+
+def balance(wrenches: Sequence[Sequence[float]]) -> bool:
+    """Whether three wrenches (4,) of force, moment and force on the jaw, or two, balance 1 on the jaw while none pulls."""
+    across, along, moments, on_jaw = zip(*wrenches, strict=True)
+    equations = across, along, moments
+    # Two that balance are the same but for their sense; three are square to the equations, of which two tell most.
+    forces: tuple[float, ...] = (1.0, 1.0)
+    if len(wrenches) == 3:
+        forces = max((cross(*two) for two in combinations(equations, 2)), key=largest)
+    jaw = sum(map(mul, forces, on_jaw))
+    if abs(jaw) <= PULLS * largest(forces):
+        return False
+    forces = tuple(force / jaw for force in forces)
+    most = SETTLED * (1.0 + sum(map(abs, forces)))
+    return min(forces) > -PULLS and all(abs(sum(map(mul, forces, one))) < most for one in equations)
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
+    """The vector square to two."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def largest(vector: Sequence[float]) -> float:
+    """The largest component, whatever its sign."""
+    return max(map(abs, vector))
 
 
 def beside(row: Array, x: float, y: float) -> float:
     """How far in mm a point is from the carrier of a piece."""
-    dx, dy = x - row[X], y - row[Y]
-    if row[IS_ARC] == 0.0:
-        return float(dx * row[AXIS_Y] - dy * row[AXIS_X])
-    return float(np.hypot(dx, dy) - row[RADIUS])
+    piece = row.tolist()
+    dx, dy = x - piece[X], y - piece[Y]
+    if piece[IS_ARC] == 0.0:
+        return float(dx * piece[AXIS_Y] - dy * piece[AXIS_X])
+    return float(hypot(dx, dy) - piece[RADIUS])

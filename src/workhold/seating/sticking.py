@@ -30,6 +30,10 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     normals : (4, 2) outward unit normals there.
     right : (4,) 1 for contacts of the right jaw's pegs, 0 for others.
     """
-    size = max(float(np.ptp(points, axis=0).max()), SMALLEST)
-    told = (points - points.mean(axis=0)) / size, np.ascontiguousarray(normals), np.asarray(right, dtype=np.int64)
+    size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
+    told = (
+        (points - points.sum(axis=0) / len(points)) / size,
+        np.ascontiguousarray(normals),
+        np.asarray(right, dtype=np.int64),
+    )
     return float(least_friction(*told, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4))))

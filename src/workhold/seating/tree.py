@@ -12,7 +12,7 @@ join : a pass, with the places that both of its ways down end in.
 from __future__ import annotations
 
 from functools import cached_property
-from math import pi, tau
+from math import inf, pi, tau
 
 import numpy as np
 from attrs import define, field, frozen
@@ -115,6 +115,11 @@ class Tree:
         """The first pass at which the cage of a place joins another; None where it never does."""
         number = int(self.first_joins[self.own[place]])
         return None if number < 0 else self.join(number)
+
+    @property
+    def tops(self) -> Array:
+        """(N + L,) the separations of these passes, of seats and then of loose sets; infinite where it never does."""
+        return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
     def way_out(self, place: int) -> float | None:
         """The separation from which on a part can get from a place to the outside; None where it never can."""
