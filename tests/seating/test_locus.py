@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import cos, pi, sin
 
 import numpy as np
 import pytest
 
 import workhold
-from seating_examples import solved
+from seating_examples import STEP, solved
 from workhold import Workpiece
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
+from workhold.model.seating import Contact
 from workhold.seating.locus import Locus
 
 OCTAGON = Workpiece.from_points("octagon", [(30 * cos(k * pi / 4), 30 * sin(k * pi / 4)) for k in range(8)])
@@ -41,3 +43,16 @@ def test_rolled_corners_make_up_a_turn():
         assert outer == pytest.approx(around + 2.0 * pi * 2.5, abs=1e-9)
     corners = [row[HALF_EXTENT] for row in Locus.of(OCTAGON, (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
     assert corners == pytest.approx([pi / 8.0] * 8)
+
+
+def test_contacts_are_told_by_their_pegs_and_pieces() -> None:
+    """Whatever pairs of pegs and pieces, or none, come before others: no two are taken for one another."""
+    locus = Locus.of(STEP, (3.0, 3.0))
+    touches, every = locus.all_touches, [(-1, -1), *product(range(4), range(len(locus.all_touches)))]
+    pairs = np.array(list(product(every, repeat=2)))
+    none = np.full((len(pairs), 2), -1)
+    told = locus.contacts_of(*(np.concatenate([pairs[:, :, k], none], axis=1) for k in range(2)))
+    for contacts, pair in zip(told, pairs.tolist(), strict=True):
+        right = [Contact(peg, touches[at].face, touches[at].corner) for peg, at in pair if peg >= 0]
+        assert list(contacts) == right
+    assert locus.corners.tolist() == [touch.corner for touch in touches]

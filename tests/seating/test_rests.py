@@ -12,11 +12,11 @@ from attrs import evolve
 import workhold
 from seating_examples import STEP, solved
 from workhold import Fence, Fixture, Vise
-from workhold.kernels.seating.columns import CONFIG, CONTACTS, PEG, PIECE, SEPARATION
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONFIG, CONTACTS, PEG, PIECE, SEPARATION
 from workhold.model.seating import Contact
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
-from workhold.seating.rests import FIXTURE, KINDS, LOOSE, SHALLOW, UNSETTLED, Rests
+from workhold.seating.rests import FIXTURE, KINDS, LOOSE, SHALLOW, UNSETTLED, Rests, kinds_of
 from workhold.seating.seating import Solver
 from workhold.seating.tree import Tree
 
@@ -80,6 +80,20 @@ def test_what_is_listed_is_what_the_trees_tell(name: str) -> None:
         assert told == right[0] + right[1]
         assert rests.turned_over.tolist() == [False] * len(right[0]) + [True] * len(right[1])
     assert KINDS[FIXTURE] == "fixture" and (KINDS[LOOSE], KINDS[UNSETTLED]) == ("loose", "unsettled")
+
+
+def test_a_peg_that_touches_twice_is_in_a_pocket_whatever_else_touches_a_corner() -> None:
+    solver, fixture = example("step")
+    locus = solver.closing(Pattern.of(fixture, solver.toolkit), False).locus
+    corner, face = (
+        next(k for k, touch in enumerate(locus.touches) if touch.corner == is_one) for is_one in (True, False)
+    )
+    rows = np.zeros((4, CANDIDATE_LENGTH))
+    rows[:, CONTACTS], rows[:, PEG : PEG + 4], rows[:, PIECE : PIECE + 4] = 4.0, [2, 0, 3, 1], face
+    rows[0, PIECE + 2] = rows[1, PIECE + 3] = corner
+    rows[1, PEG + 1] = 1.0
+    rows[3, CONTACTS] = 3.0
+    assert [KINDS[kind] for kind in kinds_of(rows, locus, 4)] == ["corner", "pocket", "fixture", "curved"]
 
 
 def test_all_kinds_are_among_the_examples() -> None:
