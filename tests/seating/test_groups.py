@@ -163,7 +163,9 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     held = holdings.Holdings.of(locus, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_stopped, held.slides, held.given)
     assert len(stopped) > 2
-    every, told = np.split(alone.alone(alone.Kept(), locus, group, size).fixed, [-len(stopped)])
+    kept = alone.Kept()
+    own = alone.alone(kept, locus, group, size)
+    every, told = np.split(kept.candidates[own.first : own.end], [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:
         touch(row, group.pattern, locus)

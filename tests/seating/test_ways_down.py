@@ -12,6 +12,7 @@ from workhold import Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
     CONFIG,
+    CONTACTS,
     COSINE,
     FORCE,
     MOVED,
@@ -200,8 +201,10 @@ def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
     for _, found, _, _ in ways:
         for row, (number, own) in zip(found.passes, found.origins.tolist(), strict=True):
             group, down = found.groups[number]
-            there = group.candidates(down.candidates[[own - down.first]])[0]
-            assert there[:13] == pytest.approx(row[:13], abs=1e-9)
+            there = down.candidates[own - down.first]
+            assert there[CONFIG] + group.shift == pytest.approx(row[CONFIG], abs=1e-9)
+            assert row[PEG:PIECE].tolist() == group.names[there[PEG:PIECE].astype(int)].tolist()
+            assert row[[CONTACTS, *range(PIECE, FORCE)]].tolist() == there[[CONTACTS, *range(PIECE, FORCE)]].tolist()
 
 
 def test_what_leaves_where_a_way_began_or_ended_is_outside(ways):

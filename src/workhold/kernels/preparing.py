@@ -39,7 +39,14 @@ from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS, SLIDING
 from workhold.kernels.curves.table import tail_curves
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import certified
-from workhold.kernels.seating.candidates import complete_third, complete_three, complete_two, fourths, settle
+from workhold.kernels.seating.candidates import (
+    complete_third,
+    complete_three,
+    complete_two,
+    fourths,
+    settle,
+    tell_balance,
+)
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -58,6 +65,7 @@ from workhold.kernels.seating.fibres import free_poses
 from workhold.kernels.seating.following import free_until
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP_LENGTH, gathered
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
 from workhold.kernels.seating.loose import first_sets, write_beyond, write_each_once
@@ -177,6 +185,8 @@ def seats_and_passes() -> Calls:
     for complete in (complete_three, complete_two, complete_third):
         yield complete, (roots, given, pockets, many)
     yield fourths, (many, 0, given, many)
+    gathering = 0.0, 0.0, given, np.zeros(CANDIDATE_LENGTH), np.zeros((0, GATHERED_LENGTH))
+    yield gathered, (np.zeros((0, GROUP_LENGTH)), many, many, many, *gathering)
     slides = np.zeros((0, SLIDE_LENGTH))
     for slid in (slides_squared, slides_stopped):
         yield slid, (slides, given, many)
@@ -198,6 +208,7 @@ def seats_and_passes() -> Calls:
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
     yield stationary, (stood, np.zeros((0, SHAPE_LENGTH)), stack, many)
     yield tip_in_pocket, (stood, points, pockets, stack, points, many)
+    yield tell_balance, (many, 0.0, 0.0, np.zeros(0, np.int8))
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
     begins, nodes = np.zeros(1, np.int64), np.zeros((0, NODE_LENGTH))

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from math import inf
+from threading import Lock
+
 import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.candidates import complete_third, complete_three, settle
+from workhold.kernels.seating.candidates import NO_BALANCE, complete_third, complete_three, settle, tell_balance
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
-    CONTACTS,
     DEPTH,
-    DOUBT,
-    FORCE,
-    RESIDUAL,
     SEPARATION,
     Given,
     Ways,
@@ -29,20 +28,18 @@ from workhold.seating.filled import filled
 from workhold.seating.groups import Group
 from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
-from workhold.seating.pattern import Pattern
+from workhold.seating.loose_ways import on_one_center, on_one_line, on_parallel_lines
 from workhold.seating.tangent import tangent
-from workhold.seating.ways_down import Trodden, WaysDown
+from workhold.seating.ways_down import Trodden, WaysDown, with_room
 
 __all__ = ["Alone", "Kept", "alone", "balanced", "settled"]
 
 Array = NDArray[np.float64]
 # Groups of which something is kept, and nodes of their ways down, of 80 bytes; beyond, all are forgotten.
 MOST_KEPT, MOST_NODES = 1024, 600_000
-# No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
-BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
 NONE = np.zeros((0, CANDIDATE_LENGTH))
-# Of a group its candidates, what fixes the part and the ways, as of ``Alone``.
-Told = tuple[Array, Array, Ways]
+# Of a group its candidates and the ways, as of ``Alone``.
+Told = tuple[Array, Ways]
 
 
 @frozen(eq=False)
@@ -51,14 +48,14 @@ class Alone:
 
     Parameters
     ----------
-    candidates : (N, 24) those of two or three contacts in which forces balance.
-    fixed : (N, 24) of pegs of one jaw: where they touch in three places, the part's place that at separation 0.
+    first, end : of its candidates among all that are kept. They are those of two or three contacts in which forces balance,
+        or of pegs of one jaw those in which three contacts fix the part: its place that at separation 0.
     ways : that the part can go between the pegs with one separation.
     down : off the candidates, as far as they were followed.
     """
 
-    candidates: Array
-    fixed: Array
+    first: int
+    end: int
     ways: Ways
     down: WaysDown
 
@@ -71,10 +68,24 @@ class Kept:
     ----------
     found : what each does, by how its pegs stand.
     trodden : their ways down.
+    candidates : (C, 24) of all groups; there is room for more. What was written stays where it is.
+    count : how many there are.
     """
 
     found: dict[tuple[object, ...], Alone] = field(factory=dict)
     trodden: Trodden = field(factory=Trodden)
+    candidates: Array = field(factory=lambda: NONE)
+    count: int = 0
+    lock: Lock = field(factory=Lock)
+
+    def with_candidates(self, rows: Array) -> int:
+        """The number of the first of some further candidates (N, 24)."""
+        with self.lock:
+            first = self.count
+            self.candidates = with_room(self.candidates, first, len(rows))
+            self.candidates[first : first + len(rows)] = rows
+            self.count += len(rows)
+        return first
 
     @classmethod
     def on(cls, locus: Locus) -> Kept:
@@ -87,52 +98,55 @@ class Kept:
 
 def alone(kept: Kept, locus: Locus, group: Group, size: float) -> Alone:
     """What a group does; ``size`` in mm as of ``equilibria``."""
-    key = size, *group.key
+    key = size, group.key
     found = kept.found.get(key)
     if found is None:
         kind = jaw_alone if group.is_of_a_jaw else two_alone if len(group.sides) == 2 else three_alone
-        candidates, fixed, ways = kind(locus, group.pattern, size)
-        closing = Closing(locus, group.pattern, size)
-        found = kept.found[key] = Alone(candidates, fixed, ways, WaysDown(closing, candidates, kept.trodden))
+        candidates, ways = kind(locus, group, size)
+        down = WaysDown(Closing(locus, group.pattern, size), NONE if group.is_of_a_jaw else candidates, kept.trodden)
+        first = kept.with_candidates(candidates)
+        found = kept.found[key] = Alone(first, first + len(candidates), ways, down)
     return found
 
 
-def two_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
+def two_alone(locus: Locus, group: Group, size: float) -> Told:
     """Of a peg of each jaw: on common normals, and on parallel faces or arcs of one centre."""
-    given, finder = Holdings.of(locus, pattern).given, Finder(locus, pattern)
+    pattern, given = group.pattern, Holdings.of_jaw_alone(locus, group).given
     candidates = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
-    return in_balance(candidates, given, size), NONE, finder.free(finder.on_one_line())
+    return in_balance(candidates, given, size), Finder(locus, pattern).free(on_one_line(locus, pattern))
 
 
-def three_alone(locus: Locus, pattern: Pattern, size: float) -> Told:
+def three_alone(locus: Locus, group: Group, size: float) -> Told:
     """Of two pegs of a jaw and one of the other."""
-    holdings, finder = Holdings.of(locus, pattern), Finder(locus, pattern)
-    given, sought = holdings.given, holdings.sought
-    # Of the jaw of two; the other's only peg holds the part in pockets alone.
-    cells = holdings.by_holding(int(pattern.right.sum() == 2))
+    # The only peg of the other jaw holds the part in pockets alone.
+    pattern, holdings = group.pattern, Holdings.of_jaw_alone(locus, group)
+    given, slides = holdings.given, holdings.slides
+    [(known, _, _)] = holdings.jaws.values()
     work = np.empty((DEPTH, 2)), np.empty((5, len(locus.discs)))
-    roots = filled(ROOT_LENGTH, 1024, three_contacts, *cells, sought, locus.discs, pattern.stop, *work)
+    sought = known.cells, known.middles, holdings.sought, locus.discs, pattern.stop
+    roots = filled(ROOT_LENGTH, 1024, three_contacts, *sought, *work)
     candidates = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, locus.pocket_pieces),
-        filled(CANDIDATE_LENGTH, 256, slides_squared, holdings.slides, given),
+        *([filled(CANDIDATE_LENGTH, 256, slides_squared, slides, given)] if len(slides) else []),
         *tangent(locus, pattern, given),
         filled(CANDIDATE_LENGTH, 64, about_one_center, given, pattern.stop, pattern.widest),
     ]
-    ways = [*finder.on_parallel_lines(holdings.slides, given), *finder.on_one_center()]
     every = np.concatenate(candidates)
-    return in_balance(every[pattern.reaches(every[:, SEPARATION])], given, size), NONE, finder.free(ways)
+    ways = [*on_parallel_lines(locus, pattern, slides, given), *on_one_center(locus, pattern)]
+    reached = every[pattern.reaches(every[:, SEPARATION])]
+    return in_balance(reached, given, size), Finder(locus, pattern).free(ways)
 
 
-def jaw_alone(locus: Locus, pattern: Pattern, _: float) -> Told:
+def jaw_alone(locus: Locus, group: Group, _: float) -> Told:
     """Of pegs of one jaw that touch in three places: three, or two of which one is in a pocket."""
-    holdings, stack = Holdings.of(locus, pattern), np.empty((DEPTH, 2))
-    cells = holdings.by_holding(int(pattern.right[0]))
-    roots = filled(ROOT_LENGTH, 1024, third_of_jaw, *cells, holdings.sought, locus.discs, stack)
+    holdings, stack = Holdings.of_jaw_alone(locus, group), np.empty((DEPTH, 2))
+    [(known, _, _)] = holdings.jaws.values()
+    roots = filled(ROOT_LENGTH, 1024, third_of_jaw, known.cells, known.middles, holdings.sought, locus.discs, stack)
     fixed = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, holdings.given, locus.pocket_pieces),
         filled(CANDIDATE_LENGTH, 256, slides_stopped, holdings.slides, holdings.given),
     ]
-    return NONE, np.concatenate(fixed), NO_WAYS
+    return np.concatenate(fixed), NO_WAYS
 
 
 def settled(candidates: Array, given: Given, size: float) -> Array:
@@ -141,16 +155,13 @@ def settled(candidates: Array, given: Given, size: float) -> Array:
     return candidates
 
 
-def balanced(candidates: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """In which settled candidates (N, 24) all contacts press and forces balance: for certain, and of those in doubt."""
-    used = np.arange(4) < candidates[:, CONTACTS, None]
-    forces = np.where(used, candidates[:, FORCE : FORCE + 4], np.inf)
-    pressed, doubt = forces.min(axis=1, initial=np.inf) > LEAST_FORCE, candidates[:, DOUBT] != 0.0
-    off = candidates[:, RESIDUAL]
-    return pressed & ~doubt & (off < BALANCED), pressed & doubt & (off < BALANCED_IN_DOUBT)
+def balanced(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[np.int8]:
+    """Whether all contacts of settled candidates (N, 24) press and forces balance: ``kernels.seating.candidates``."""
+    told = np.empty(len(candidates), np.int8)
+    tell_balance(candidates, slack, slack_in_doubt, told)
+    return told
 
 
 def in_balance(candidates: Array, given: Given, size: float) -> Array:
     """Candidates of a group, those that may be equilibria."""
-    sure, doubtful = balanced(settled(candidates, given, size))
-    return np.array(candidates[sure | doubtful])
+    return np.asarray(candidates[balanced(settled(candidates, given, size), inf, inf) != NO_BALANCE])

@@ -176,11 +176,14 @@ def between(x: float, y: float) -> list[tuple[float, float]]:
 def squeezed(pattern: Pattern, normals: list[CommonNormal]) -> list[Array]:
     """Candidates of a left and a right peg on a common normal, with the direction in which the separation falls, if there is
     one; where there are two, the second derivative is not told."""
-    out = []
-    for i, j in product(np.flatnonzero(pattern.right == 0).tolist(), np.flatnonzero(pattern.right == 1).tolist()):
-        run, rise = pattern.pegs[j] - pattern.pegs[i]
+    out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
+    for i, j in product(range(len(pegs)), repeat=2):
+        if not right[i] < right[j]:
+            continue
+        run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
+        least = abs(rise) * (1.0 + 1e-12)
         for normal in normals:
-            if abs(normal.length) <= abs(rise) * (1.0 + 1e-12):
+            if abs(normal.length) <= least:
                 continue
             omega = asin(rise / normal.length)
             separation = normal.length * cos(omega) - run

@@ -7,19 +7,20 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_POSE
-from workhold.kernels.seating.candidates import complete_two, fourths
+from workhold.kernels.seating.candidates import DOUBTFUL, IN_BALANCE, complete_two
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
-    CLEAR,
     CONTACTS,
     DEPTH,
     FORCE,
     SECOND,
     SEPARATION,
     Families,
+    Ways,
 )
 from workhold.kernels.seating.four_contacts import two_holdings
 from workhold.kernels.seating.freedom import first_of_each
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP, gathered
 from workhold.kernels.seating.slides import slides_held
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH
 from workhold.seating.alone import Kept, alone, balanced, settled
@@ -31,6 +32,7 @@ from workhold.seating.filled import filled
 from workhold.seating.groups import Group, groups_of
 from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
+from workhold.seating.loose_ways import on_one_line
 from workhold.seating.pattern import Pattern
 from workhold.seating.wall_families import on_wall
 from workhold.seating.ways_down import WaysDown
@@ -78,26 +80,21 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     given, jaws, pockets = holdings.given, (holdings.of_jaw(0), holdings.of_jaw(1)), locus.pocket_pieces
     work = np.empty((DEPTH, 2)), np.empty(len(jaws[1]), np.int64)
     roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, *work)
-    candidates = [filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)]
-    groups, ways, origins = list[tuple[Group, WaysDown]](), [], [nowhere(len(candidates[0]))]
-    kept = Kept.on(locus)
+    two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
+    slid = filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets)
+    kept, ends, told = Kept.on(locus), (pattern.stop, pattern.widest), list[tuple[float, ...]]()
+    groups, ways = list[tuple[Group, WaysDown]](), list[tuple[Group, Ways]]()
     for group in groups_of(pattern):
         own = alone(kept, locus, group, size)
-        candidates.append(group.candidates(own.candidates))
-        rows = np.empty((len(own.candidates), 2), np.int64)
-        rows[:, 0], rows[:, 1] = len(groups), own.down.first + np.arange(len(rows))
-        origins.append(rows)
+        told.append((own.first, own.end, own.down.first, *group.told))
         groups.append((group, own.down))
-        if len(own.fixed):
-            jaw, fixed = group.sides[0], group.candidates(own.fixed)
-            candidates.append(filled(CANDIDATE_LENGTH, 4 * len(fixed) + 64, fourths, fixed, jaw, given))
-            origins.append(nowhere(len(candidates[-1])))
         ways.append((group, own.ways))
-    candidates.append(filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets))
-    every, whose = np.concatenate(candidates), np.concatenate([*origins, nowhere(len(candidates[-1]))])
-    reached = pattern.reaches(every[:, SEPARATION])
-    every = settled(every[reached], given, size)
-    return sorted_out(every, finder.families(finder.cut(of_pattern(ways))), whose[reached], tuple(groups))
+    room = len(two) + len(slid) + sum(int(end - first) for first, end, *_ in told) + 256
+    among = np.array(told, dtype=np.float64), kept.candidates, two, slid, *ends, given, np.empty(CANDIDATE_LENGTH)
+    found = filled(GATHERED_LENGTH, room, gathered, *among)
+    every = settled(np.ascontiguousarray(found[:, :GROUP]), given, size)
+    loose = finder.families(finder.cut(of_pattern(ways)))
+    return sorted_out(every, loose, found[:, GROUP:].astype(np.int64), tuple(groups))
 
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
@@ -106,37 +103,27 @@ def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     candidates = np.concatenate([pressed, fence_candidates(locus, pattern)])
     settle_on_wall(candidates, locus, pattern, size)
     finder = Finder(locus, pattern)
-    loose = joined([finder.cut(finder.free(finder.on_one_line())), *on_wall(finder)])
-    return sorted_out(candidates, finder.families(loose), nowhere(len(candidates)))
-
-
-def nowhere(count: int) -> NDArray[np.int64]:
-    """The origins (N, 2) of so many candidates that are of no group."""
-    return np.full((count, 2), -1)
+    loose = joined([finder.cut(finder.free(on_one_line(locus, pattern))), *on_wall(finder)])
+    return sorted_out(candidates, finder.families(loose), np.full((len(candidates), 2), -1))
 
 
 def sorted_out(
     candidates: Array, loose: Families, origins: NDArray[np.int64], groups: tuple[tuple[Group, WaysDown], ...] = ()
 ) -> Equilibria:
     """Candidates whose forces are known as seats and passes, beside what is loose; where they are from as of Equilibria."""
-    sure, rest = balanced(candidates)
-    sure &= candidates[:, CLEAR] > -CLEAR_SLACK
-    rest &= candidates[:, CLEAR] > -CLEAR_IN_DOUBT
+    told = balanced(candidates, CLEAR_SLACK, CLEAR_IN_DOUBT)
+    sure = told == IN_BALANCE
     found = candidates[sure]
     order = once(found, SAME_POSE, SAME)
     found, whose = found[order], origins[sure][order]
     four = found[:, CONTACTS] == 4.0
     is_pass = ~four & (found[:, SECOND] < 0.0)
-    doubtful = candidates[rest]
-    doubtful = doubtful[np.argsort(-doubtful[:, FORCE : FORCE + 4].sum(axis=1), kind="stable")]
-    return Equilibria(
-        found[four | (found[:, SECOND] > 0.0)],
-        found[is_pass],
-        loose,
-        doubtful[once(doubtful, SAME_DOUBT, SAME_DOUBT)],
-        whose[is_pass],
-        groups,
-    )
+    doubtful = candidates[told == DOUBTFUL]
+    if len(doubtful):
+        doubtful = doubtful[np.argsort(-doubtful[:, FORCE : FORCE + 4].sum(axis=1), kind="stable")]
+        doubtful = doubtful[once(doubtful, SAME_DOUBT, SAME_DOUBT)]
+    seats, passes = found[four | (found[:, SECOND] > 0.0)], found[is_pass]
+    return Equilibria(seats, passes, loose, doubtful, whose[is_pass], groups)
 
 
 def once(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:

@@ -15,7 +15,6 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION
 from workhold.seating.pattern import Pattern
 
 __all__ = ["Group", "groups_of", "jaw_groups"]
@@ -50,26 +49,21 @@ class Group:
     @classmethod
     def of(cls, pattern: Pattern, numbers: Sequence[int]) -> Group:
         """Some pegs of a pattern, by their numbers."""
-        pegs, right = pattern.pegs.tolist(), pattern.right.tolist()
+        pegs, right, beside = pattern.pegs.tolist(), pattern.right.tolist(), distances(pattern)
         # Pegs of each jaw from left to right, those that stand still before those that move.
-        start = {right[k]: pegs[k] for k in reversed(numbers)}
-        told = sorted(
-            (right[k], rounded(pegs[k][0] - start[right[k]][0]), rounded(pegs[k][1] - start[right[k]][1]), k)
-            for k in numbers
-        )
-        order = tuple(k for *_, k in told)
-        first = {right[k]: pegs[k] for k in reversed(order)}
-        low = pegs[order[0]]
-        places = tuple((rounded(pegs[k][0] - first[right[k]][0]), rounded(pegs[k][1] - low[1])) for k in order)
-        apart = low[0] - first[1][0] if len(first) > 1 else 0.0
-        return cls(pattern, order, tuple(right[k] for k in order), places, np.array([0.0, low[0], low[1], apart]))
+        start = {right[k]: k for k in reversed(numbers)}
+        order = tuple(k for *_, k in sorted((right[k], *beside[start[right[k]]][k], k) for k in numbers))
+        first, low = {right[k]: k for k in reversed(order)}, order[0]
+        places = tuple((beside[first[right[k]]][k][0], beside[low][k][1]) for k in order)
+        (x, y), apart = pegs[low], pegs[low][0] - pegs[first[1]][0] if len(first) > 1 else 0.0
+        return cls(pattern, order, tuple(right[k] for k in order), places, np.array([0.0, x, y, apart]))
 
     @property
     def is_of_a_jaw(self) -> bool:
         """Whether all pegs move, or none."""
         return self.sides[0] == self.sides[-1]
 
-    @property
+    @cached_property
     def key(self) -> tuple[object, ...]:
         """What groups share that stand alike: all that their own pattern is made from."""
         return self.whole.radii, self.whole.door.sign, self.whole.gap, self.sides, self.places
@@ -84,18 +78,29 @@ class Group:
         stop, widest = made.gap_kept(whole.gap)
         return evolve(made, stop=stop - SLACK, widest=widest + SLACK)
 
-    def candidates(self, rows: Array) -> Array:
-        """Candidates (N, 24) of the pegs alone as those of the pattern."""
-        out = np.array(rows)
-        # Of all four the first is a turn, and stays as it is.
-        out[:, PLACE_X : SEPARATION + 1] += self.shift[1:]
-        out[:, PEG : PEG + 4] = self.names[out[:, PEG : PEG + 4].astype(np.int64)]
-        return out
+    def of_jaw(self, side: int) -> Group:
+        """Its pegs that stand still (0), or that move (1), as a group of its own pattern."""
+        return Group.of(self.pattern, [k for k, own in enumerate(self.sides) if own == side])
+
+    @cached_property
+    def told(self) -> tuple[float, ...]:
+        """The jaw, the names and the shift, as of ``kernels.seating.gathering``."""
+        jaw = self.sides[0] if self.is_of_a_jaw else -1
+        names = *self.numbers, *[-1] * (4 - len(self.numbers))
+        return (jaw, *names, *self.shift[1:].tolist())
 
     @cached_property
     def names(self) -> Array:
         """The pattern's number of each peg, and -1 of none, which comes last."""
         return np.array([*self.numbers, -1.0])
+
+
+@lru_cache(maxsize=SIDES)
+def distances(pattern: Pattern) -> list[list[tuple[float, float]]]:
+    """How far to the right and how much higher each peg of a pattern is than each, in mm, first the one that it is seen
+    from."""
+    pegs = pattern.pegs.tolist()
+    return [[(rounded(x - left), rounded(y - low)) for x, y in pegs] for left, low in pegs]
 
 
 def rounded(x: float) -> float:

@@ -54,6 +54,8 @@ __all__ = ["Holdings", "JawHoldings"]
 Array = NDArray[np.float64]
 # Cells of the holdings that are kept, of about 360 bytes with all that belongs to them; beyond, all are forgotten.
 MOST_KEPT = 250_000
+NO_HOLDINGS = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+NO_SLIDES = np.zeros((0, SLIDE_LENGTH))
 
 
 @frozen(eq=False, slots=False)
@@ -103,11 +105,23 @@ class JawHoldings:
             stretches.append(table.curves.stretches)
             curves_before, stretches_before = curves_before + len(whole), stretches_before + len(stretches[-1])
         rows, curves = np.concatenate(holdings), (np.concatenate(integers), np.concatenate(reals))
-        given, every = Given(rows, *curves, np.array(locus.loose), pegs, right, locus.parts), np.concatenate(stretches)
+        given, every = Given(rows, *curves, locus.loose, pegs, right, locus.parts), np.concatenate(stretches)
         cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(locus.pockets) + 64, make_cells, given, every)
         known = np.empty((len(cells), MIDDLE_LENGTH))
         write_middles(cells, given, known)
         return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
+
+    def named(self, names: Array) -> tuple[Array, Array]:
+        """The holdings and the slides with a pattern's numbers (K + 1,) of the pegs, last -1 of none."""
+        rows, slid = np.array(self.holdings), np.array(self.slides)
+        rows[:, FIRST_PEG : SECOND_PEG + 1] = names[self.pegs]
+        slid[:, SLIDE_FIRST : SLIDE_SECOND + 1] = names[self.sliding_pegs]
+        return rows, slid
+
+    @cached_property
+    def after_one(self) -> tuple[Array, Array]:
+        """The same of two pegs that come after the only one of the other jaw."""
+        return self.named(np.array([1.0, 2.0, -1.0]))
 
     @cached_property
     def pegs(self) -> NDArray[np.int64]:
@@ -170,18 +184,26 @@ class Holdings:
         before = curves_before = 0
         for side, group in jaw_groups(pattern).items():
             known = JawHoldings.known(locus, group)
-            rows, slid = np.array(known.holdings), np.array(known.slides)
-            rows[:, FIRST_PEG : SECOND_PEG + 1] = group.names[known.pegs]
-            slid[:, SLIDE_FIRST : SLIDE_SECOND + 1] = group.names[known.sliding_pegs]
+            rows, slid = known.named(group.names)
             # Pockets, of which curves are none, come first.
             rows[known.pockets :, SOURCE] += curves_before
             parts.append((rows, known.curves, known.reals, slid))
             jaws[side] = known, before, float(group.shift[2])
             before, curves_before = before + len(rows), curves_before + len(known.curves)
         rows, curves, reals, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
-        pegs = np.array(pattern.pegs), pattern.right, locus.parts
-        given = Given(rows, curves, reals, np.array(locus.rows), *pegs)
-        return cls(given, given._replace(rows=np.array(locus.loose)), slides, jaws)
+        return cls(*given_of(locus, pattern, rows, curves, reals), slides, jaws)
+
+    @classmethod
+    def of_jaw_alone(cls, locus: Locus, group: Group) -> Holdings:
+        """Those of a group's pegs of one jaw, where the other has one or none; of a peg of each there are none."""
+        if len(group.sides) == 2 and not group.is_of_a_jaw:
+            return cls(*given_of(locus, group.pattern, *NO_HOLDINGS), NO_SLIDES, {})
+        side = int(2 * sum(group.sides) > len(group.sides))
+        own = group if group.is_of_a_jaw else group.of_jaw(side)
+        known = JawHoldings.known(locus, own)
+        rows, slides = (known.holdings, known.slides) if group.sides[0] == side else known.after_one
+        given = given_of(locus, group.pattern, rows, known.curves, known.reals)
+        return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def by_holding(self, right: int) -> tuple[Array, Array]:
         """The cells of one jaw's holdings and their middles, those of one after each other."""
@@ -192,6 +214,14 @@ class Holdings:
         """The cells of one jaw's holdings, ordered by their lowest orientation, those beyond a turn a second time."""
         known, before, height = self.jaws[right]
         return moved(known.ordered, before, height)
+
+
+def given_of(
+    locus: Locus, pattern: Pattern, holdings: Array, curves: NDArray[np.int64], reals: Array
+) -> tuple[Given, Given]:
+    """What is given and what is sought as of ``Holdings``."""
+    after = np.array(pattern.pegs), pattern.right, locus.parts
+    return Given(holdings, curves, reals, locus.pieces, *after), Given(holdings, curves, reals, locus.loose, *after)
 
 
 def moved(cells: Array, before: int, height: float) -> Array:

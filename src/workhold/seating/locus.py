@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from workhold.seating.alone import Kept
     from workhold.seating.common_normals import CommonNormal
     from workhold.seating.holdings import JawHoldings
+    from workhold.seating.loose_ways import Opposed
     from workhold.seating.pattern import Pattern
 
 __all__ = ["Locus", "contains"]
@@ -99,10 +100,16 @@ class Locus:
         size : of the part in mm, by which turns are counted.
         stop : S in mm at which what moves is stopped.
         """
-        pieces = np.array(self.rows), self.spans, self.discs + np.array([0.0, 0.0, PAST_POCKET])
         pegs = np.array(pattern.pegs), pattern.right, self.parts
         hull = np.zeros((0, 6)) if pattern.wall is None else np.array(self.hull.rows)
-        return Obstacles(*pieces, *pegs, size, stop, hull, np.array(pattern.wall or (0.0, 0.0, 0.0)))
+        return Obstacles(
+            self.pieces, self.spans, self.wide_discs, *pegs, size, stop, hull, np.array(pattern.wall or (0.0, 0.0, 0.0))
+        )
+
+    @cached_property
+    def pieces(self) -> Array:
+        """The rows as kernels take them, which may be written to: numba has kernels of their own for others."""
+        return np.array(self.rows)
 
     @cached_property
     def loose(self) -> Array:
@@ -121,6 +128,11 @@ class Locus:
         out[short, :2] += rows[short, RADIUS, None] * rows[short][:, [AXIS_X, AXIS_Y]]
         out[short, 2] = 2.0 * rows[short, RADIUS] * np.sin(rows[short, HALF_EXTENT] / 2.0)
         return out
+
+    @cached_property
+    def wide_discs(self) -> Array:
+        """The same with what of the pieces counts past pockets."""
+        return np.asarray(self.discs + np.array([0.0, 0.0, PAST_POCKET]))
 
     @cached_property
     def spans(self) -> Array:
@@ -158,6 +170,24 @@ class Locus:
     def corners(self) -> NDArray[np.bool_]:
         """Which of these are corners."""
         return np.array([touch.corner for touch in self.all_touches])
+
+    @cached_property
+    def rings(self) -> list[tuple[list[tuple[int, float]], list[tuple[int, float]]]]:
+        """The arcs of each centre that has some of both, those of pegs that stand still and of those that move: numbers, and
+        radii in mm, below 0 of those that bend in."""
+        signed = (self.rows[:, SIGN] * self.rows[:, RADIUS]).tolist()
+        both = (
+            tuple([(k, signed[k]) for k in group if first <= k < end] for first, end in self.parts.tolist())
+            for group in self.concentric
+        )
+        return [(standing, moving) for standing, moving in both if standing and moving]
+
+    @cached_property
+    def opposed(self) -> list[Opposed]:
+        """See ``seating.loose_ways``."""
+        from workhold.seating.loose_ways import opposed_lines
+
+        return opposed_lines(self)
 
     @cached_property
     def contacts(self) -> dict[int, tuple[Contact, ...]]:

@@ -26,13 +26,14 @@ Array = NDArray[np.float64]
 
 def tangent(locus: Locus, pattern: Pattern, given: Given) -> list[Array]:
     """Candidates (N, 24) of all pairs of pegs of a jaw, lines and arcs, with a third peg on a line parallel to the first."""
-    out = []
-    for i, j in permutations(range(len(pattern.pegs)), 2):
-        if pattern.right[i] != pattern.right[j]:
+    out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
+    for i, j in permutations(range(len(pegs)), 2):
+        if right[i] != right[j]:
             continue
-        chords = chords_at_tangencies(locus, hypot(*(pattern.pegs[j] - pattern.pegs[i])), int(pattern.right[i]))
-        reach = chords, pattern.stop, pattern.widest, given
-        out.append(filled(CANDIDATE_LENGTH, 256, at_tangencies, i, j, *reach))
+        chords = chords_at_tangencies(locus, hypot(pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]), right[i])
+        if len(chords):
+            reach = chords, pattern.stop, pattern.widest, given
+            out.append(filled(CANDIDATE_LENGTH, 256, at_tangencies, i, j, *reach))
     return out
 
 
@@ -41,5 +42,5 @@ def chords_at_tangencies(locus: Locus, d: float, jaw: int) -> Array:
     key = round(d, 9), jaw
     if key not in locus.tangents:
         first, end = locus.parts[jaw].tolist()
-        locus.tangents[key] = filled(ALPHA + 1, 256, tangent_chords, np.array(locus.rows), first, end, d)
+        locus.tangents[key] = filled(ALPHA + 1, 256, tangent_chords, locus.pieces, first, end, d)
     return locus.tangents[key]

@@ -14,6 +14,7 @@ from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE, Families
 from workhold.seating.families import SHORTEST, SLIDE_STEPS, Finder, Way
 from workhold.seating.fence import LOCATOR, ON_WALL, TIP, Fence
 from workhold.seating.hull import HullSide
+from workhold.seating.loose_ways import turning
 
 __all__ = ["on_wall"]
 
@@ -80,7 +81,7 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Families]:
             signed = float(finder.rows[tip, SIGN] * finder.rows[tip, RADIUS])
             if ux > 0.0:
                 across = (0.0, 1.0) if signed > 0.0 else None
-                ways = finder.turning(first, (known, ty), known + signed - tx, [(TIP, tip)], across)
+                ways = turning(finder.pattern, first, (known, ty), known + signed - tx, [(TIP, tip)], across)
                 out.append(finder.cut(finder.free(ways)))
             for locator in (k for k in group if finder.locus.fits(0, k)):
                 radius = float(finder.rows[locator, RADIUS])
@@ -95,7 +96,9 @@ def turning_on_wall(finder: Finder, fence: Fence) -> list[Families]:
                     pressed = presses(fence, finder, center, (lx, ly), (tx + separation, ty), (locator, tip))
                     if pressed:
                         contacts = [(LOCATOR, locator), (TIP, tip)]
-                        out.append(finder.cut(finder.free(finder.turning(first, center, separation, contacts, None))))
+                        out.append(
+                            finder.cut(finder.free(turning(finder.pattern, first, center, separation, contacts, None)))
+                        )
     return out
 
 

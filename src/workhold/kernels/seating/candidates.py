@@ -52,6 +52,10 @@ IntArray = NDArray[np.int64]
 SINGULAR = 1e-14
 # mm. Pegs farther than this from what they are said to touch do not touch it.
 MISFIT = 1e-6
+# No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
+BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
+# What is told of a candidate: it is no equilibrium, it is one, or one that is in doubt.
+NO_BALANCE, IN_BALANCE, DOUBTFUL = 0, 1, 2
 
 
 @inner
@@ -296,6 +300,25 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
                 first, end = given.parts[given.right[peg], 0], given.parts[given.right[peg], 1]
                 x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
                 row[CLEAR] = min(row[CLEAR], clearance(x, y, given.rows, first, end))
+
+
+@compiled
+def tell_balance(candidates: Array, slack: float, slack_in_doubt: float, told: NDArray[np.int8]) -> None:
+    """Write of settled candidates (N, 24) whether all contacts press and forces balance: NO_BALANCE, IN_BALANCE or DOUBTFUL.
+
+    Parameters
+    ----------
+    slack, slack_in_doubt : by how much in mm pegs that do not touch may be in the part.
+    """
+    for number in range(candidates.shape[0]):
+        row = candidates[number]
+        pressed, told[number] = True, NO_BALANCE
+        for k in range(int(row[CONTACTS])):
+            pressed = pressed and row[FORCE + k] > LEAST_FORCE
+        if pressed and row[DOUBT] == 0.0 and row[RESIDUAL] < BALANCED and row[CLEAR] > -slack:
+            told[number] = IN_BALANCE
+        elif pressed and row[DOUBT] != 0.0 and row[RESIDUAL] < BALANCED_IN_DOUBT and row[CLEAR] > -slack_in_doubt:
+            told[number] = DOUBTFUL
 
 
 @inner
