@@ -8,7 +8,7 @@ from attrs import evolve
 
 from seating_examples import moved, solved
 from workhold.kernels.seating.candidates import complete_third, complete_three
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, DEPTH, SEPARATION
+from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.filled import filled
@@ -56,11 +56,18 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     pattern = Pattern.of(fixture, solver.toolkit)
     holdings = Holdings.of(solver.closing(pattern, False).locus, pattern)
     left, right = holdings.of_jaw(0), holdings.of_jaw(1)
-    work = np.empty((DEPTH, 2)), np.empty(len(right), np.int64)
+    work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(right.cells), np.int64)
     every = filled(ROOT_LENGTH, 1024, two_holdings, left, right, holdings.sought, *work)
-    alone = [filled(ROOT_LENGTH, 64, two_holdings, one[None, :], right, holdings.sought, *work) for one in left]
+    ones = [left._replace(cells=one[None, :]) for one in left.cells]
+    alone = [filled(ROOT_LENGTH, 64, two_holdings, one, right, holdings.sought, *work) for one in ones]
     assert len(every) > 10
     assert np.array_equal(every, np.concatenate(alone))
+    # Nor does what is left out by heights meet.
+    tall = [jaw._replace(cells=np.array(jaw.cells)) for jaw in (left, right)]
+    for jaw in tall:
+        jaw.cells[:, BOTTOM], jaw.cells[:, TOP] = -1e9, 1e9
+    assert left.height != right.height
+    assert np.array_equal(filled(ROOT_LENGTH, 1024, two_holdings, *tall, holdings.sought, *work), every)
 
 
 def test_many_fixtures_are_told_as_one_by_one():

@@ -56,6 +56,7 @@ from workhold.kernels.seating.columns import (
     NODE_LENGTH,
     Families,
     Given,
+    JawCells,
     Obstacles,
     Ways,
     WorkSpace,
@@ -180,7 +181,8 @@ def seats_and_passes() -> Calls:
     between = np.zeros((0, MIDDLE_LENGTH))
     yield write_middles, (cells, given, between)
     yield three_contacts, (cells, between, given, np.zeros((0, 3)), 0.0, stack, np.zeros((5, 0)), roots)
-    yield two_holdings, (cells, cells, given, stack, none, roots)
+    jaw = JawCells(cells, 0, 0.0)
+    yield two_holdings, (jaw, jaw, given, np.zeros((2, CELL_LENGTH)), stack, none, roots)
     yield third_of_jaw, (cells, between, given, np.zeros((0, 3)), stack, roots)
     for complete in (complete_three, complete_two, complete_third):
         yield complete, (roots, given, pockets, many)
@@ -190,7 +192,7 @@ def seats_and_passes() -> Calls:
     slides = np.zeros((0, SLIDE_LENGTH))
     for slid in (slides_squared, slides_stopped):
         yield slid, (slides, given, many)
-    yield slides_held, (slides, cells, cells, given, pockets, many)
+    yield slides_held, (slides, jaw, jaw, given, pockets, many)
     yield at_tangencies, (0, 0, np.zeros((0, ALPHA + 1)), 0.0, 0.0, given, many)
     yield tangent_chords, (rows, 0, 0, 1.0, np.zeros((0, ALPHA + 1)))
     yield about_one_center, (given, 0.0, 0.0, many)

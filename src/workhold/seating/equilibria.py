@@ -10,6 +10,7 @@ from workhold.conventions import SAME_POSE
 from workhold.kernels.seating.candidates import DOUBTFUL, IN_BALANCE, complete_two
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
+    CELL_LENGTH,
     CONTACTS,
     DEPTH,
     FORCE,
@@ -78,7 +79,7 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
         return on_fence(locus, pattern, size)
     holdings, finder = Holdings.of(locus, pattern), Finder(locus, pattern)
     given, jaws, pockets = holdings.given, (holdings.of_jaw(0), holdings.of_jaw(1)), locus.pocket_pieces
-    work = np.empty((DEPTH, 2)), np.empty(len(jaws[1]), np.int64)
+    work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(jaws[1].cells), np.int64)
     roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, holdings.sought, *work)
     two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
     slid = filled(CANDIDATE_LENGTH, 256, slides_held, holdings.slides, *jaws, given, pockets)

@@ -49,7 +49,7 @@ class Group:
     @classmethod
     def of(cls, pattern: Pattern, numbers: Sequence[int]) -> Group:
         """Some pegs of a pattern, by their numbers."""
-        pegs, right, beside = pattern.pegs.tolist(), pattern.right.tolist(), distances(pattern)
+        pegs, right, beside = places_of(pattern)
         # Pegs of each jaw from left to right, those that stand still before those that move.
         start = {right[k]: k for k in reversed(numbers)}
         order = tuple(k for *_, k in sorted((right[k], *beside[start[right[k]]][k], k) for k in numbers))
@@ -96,11 +96,15 @@ class Group:
 
 
 @lru_cache(maxsize=SIDES)
-def distances(pattern: Pattern) -> list[list[tuple[float, float]]]:
-    """How far to the right and how much higher each peg of a pattern is than each, in mm, first the one that it is seen
-    from."""
+def places_of(pattern: Pattern) -> tuple[list[list[float]], list[int], list[list[tuple[float, float]]]]:
+    """The pegs of a pattern, whether each moves, and how far to the right and how much higher each is than each, in mm,
+    first the one that it is seen from."""
     pegs = pattern.pegs.tolist()
-    return [[(rounded(x - left), rounded(y - low)) for x, y in pegs] for left, low in pegs]
+    return (
+        pegs,
+        pattern.right.tolist(),
+        [[(rounded(x - left), rounded(y - low)) for x, y in pegs] for left, low in pegs],
+    )
 
 
 def rounded(x: float) -> float:

@@ -26,7 +26,6 @@ from workhold.kernels.curves.columns import (
 )
 from workhold.kernels.seating.columns import (
     ANGLE,
-    BOTTOM,
     CELL_LENGTH,
     FIRST_PEG,
     HIGH,
@@ -38,8 +37,8 @@ from workhold.kernels.seating.columns import (
     PIVOT_Y,
     SECOND_PEG,
     SOURCE,
-    TOP,
     Given,
+    JawCells,
 )
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
@@ -206,14 +205,17 @@ class Holdings:
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def by_holding(self, right: int) -> tuple[Array, Array]:
-        """The cells of one jaw's holdings and their middles, those of one after each other."""
-        known, before, height = self.jaws[right]
-        return moved(known.cells, before, height), known.middles
+        """The cells of one jaw's holdings and their middles, those of one after each other, heights from its own first
+        peg."""
+        known, before, _ = self.jaws[right]
+        cells = np.array(known.cells)
+        cells[:, HOLDING] += before
+        return cells, known.middles
 
-    def of_jaw(self, right: int) -> Array:
-        """The cells of one jaw's holdings, ordered by their lowest orientation, those beyond a turn a second time."""
+    def of_jaw(self, right: int) -> JawCells:
+        """The cells of one jaw's holdings in order."""
         known, before, height = self.jaws[right]
-        return moved(known.ordered, before, height)
+        return JawCells(known.ordered, before, height)
 
 
 def given_of(
@@ -222,15 +224,6 @@ def given_of(
     """What is given and what is sought as of ``Holdings``."""
     after = np.array(pattern.pegs), pattern.right, locus.parts
     return Given(holdings, curves, reals, locus.pieces, *after), Given(holdings, curves, reals, locus.loose, *after)
-
-
-def moved(cells: Array, before: int, height: float) -> Array:
-    """Cells (C, 7) of a jaw as those of a pattern, in which heights are counted from where the first peg is."""
-    out = np.array(cells)
-    out[:, BOTTOM] -= height
-    out[:, TOP] -= height
-    out[:, HOLDING] += before
-    return out
 
 
 def pockets_held(locus: Locus, right: NDArray[np.int64]) -> Array:

@@ -36,6 +36,8 @@ Array = NDArray[np.float64]
 Point = tuple[float, float]
 # Configurations by which a turn is told.
 TURN_STEPS = 384
+# Numbers of the configurations of a slide.
+EVEN = np.arange(SLIDE_STEPS, dtype=np.float64)
 # A force's share below this is none.
 LEAST_SHARE = 1e-9
 
@@ -88,11 +90,12 @@ def sliding(
     """The way of a part that slides with one peg, which stands at ``start``, on a line from a parameter to another."""
     if high - low < SHORTEST or not pattern.reaches(s, SAME):
         return []
-    t = np.linspace(low, high, SLIDE_STEPS)
-    x, y = line[X] + t * line[AXIS_X], line[Y] + t * line[AXIS_Y]
-    c, d = cos(theta), sin(theta)
-    every = np.ones(SLIDE_STEPS)
-    configs = np.stack([theta * every, start[0] - (c * x - d * y), start[1] - (d * x + c * y), s * every], axis=1)
+    t = EVEN * ((high - low) / EVEN[-1]) + low
+    t[-1] = high
+    x, y, c, d = line[X] + t * line[AXIS_X], line[Y] + t * line[AXIS_Y], cos(theta), sin(theta)
+    configs = np.empty((SLIDE_STEPS, 4))
+    configs[:, 0], configs[:, 3] = theta, s
+    configs[:, 1], configs[:, 2] = start[0] - (c * x - d * y), start[1] - (d * x + c * y)
     return [Way(configs, contacts, False, None)]
 
 

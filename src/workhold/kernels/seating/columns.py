@@ -64,6 +64,22 @@ class Given(NamedTuple):
     parts: NDArray[np.int64]
 
 
+class JawCells(NamedTuple):
+    """The cells of one jaw, in the frame of its own pegs.
+
+    Parameters
+    ----------
+    cells : (C, 7), ordered by their lowest orientation; those that reach beyond a turn stand there a second time, a turn
+        lower.
+    before : how many holdings of the pattern stand before its own.
+    height : of its first peg in the pattern, in mm.
+    """
+
+    cells: NDArray[np.float64]
+    before: int
+    height: float
+
+
 class Obstacles(NamedTuple):
     """What keeps pegs off a part while the jaws close.
 

@@ -17,6 +17,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     BOTTOM,
+    CELL_LENGTH,
     FIRST_PEG,
     HIGH,
     HOLDING,
@@ -26,6 +27,7 @@ from workhold.kernels.seating.columns import (
     TOP,
     VAGUE,
     Given,
+    JawCells,
 )
 from workhold.kernels.seating.holdings import END, Held, height, held
 from workhold.kernels.seating.middles import COSINE, SINE, held_in
@@ -147,40 +149,52 @@ def roots_between(
     return count
 
 
+@inner
+def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
+    """Write a cell of a jaw as one of the pattern, in which heights are counted from where the first peg is."""
+    for k in range(CELL_LENGTH):
+        out[k] = jaw.cells[number, k]
+    out[BOTTOM] -= jaw.height
+    out[TOP] -= jaw.height
+    out[HOLDING] += jaw.before
+
+
 @compiled
-def two_holdings(left: Array, right: Array, given: Given, stack: Array, reaching: NDArray[np.int64], out: Array) -> int:
+def two_holdings(
+    left: JawCells, right: JawCells, given: Given, pair: Array, stack: Array, reaching: NDArray[np.int64], out: Array
+) -> int:
     """Orientations at which a holding of the left jaw and one of the right have one height; how many, or -1.
 
     Parameters
     ----------
-    left, right : (C, 7) cells of each jaw, ordered by their lowest orientation; those that reach beyond a turn stand there a
-        second time, a turn lower.
-    stack : (DEPTH, 2) work space.
+    pair, stack : (2, 7) and (DEPTH, 2) work space.
     reaching : as many as right cells: work space.
     out : (N, 6) roots, written here: the right holding stands in the column of the piece.
     """
+    p, others, lifted = pair[0], right.cells, right.height
     count = known = begun = 0
-    for i in range(left.shape[0]):
-        p = left[i]
+    for i in range(left.cells.shape[0]):
+        write_in_pattern(i, left, p)
         # The right cells that began before this one and reach into it are few; then come those that begin in it.
         kept = 0
         for k in range(known):
-            if right[reaching[k], HIGH] >= p[LOW]:
+            if others[reaching[k], HIGH] >= p[LOW]:
                 reaching[kept] = reaching[k]
                 kept += 1
         known = kept
-        while begun < right.shape[0] and right[begun, LOW] < p[LOW]:
-            if right[begun, HIGH] >= p[LOW]:
+        while begun < others.shape[0] and others[begun, LOW] < p[LOW]:
+            if others[begun, HIGH] >= p[LOW]:
                 reaching[known] = begun
                 known += 1
             begun += 1
-        for k in range(known + right.shape[0] - begun):
-            q = right[reaching[k] if k < known else begun + k - known]
-            if q[LOW] > p[HIGH]:
+        for k in range(known + others.shape[0] - begun):
+            number = reaching[k] if k < known else begun + k - known
+            if others[number, LOW] > p[HIGH]:
                 break
-            if q[BOTTOM] > p[TOP] or q[TOP] < p[BOTTOM]:
+            if others[number, BOTTOM] - lifted > p[TOP] or others[number, TOP] - lifted < p[BOTTOM]:
                 continue
-            count = roots_between(APART, p, q, -1, -1, given, stack, out, count)
+            write_in_pattern(number, right, pair[1])
+            count = roots_between(APART, p, pair[1], -1, -1, given, stack, out, count)
             if count < 0:
                 return -1
     return count

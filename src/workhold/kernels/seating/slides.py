@@ -30,6 +30,7 @@ from workhold.kernels.seating.columns import (
     SECOND,
     SOURCE,
     Given,
+    JawCells,
 )
 from workhold.kernels.seating.holdings import TURN, height, held, is_on_its_pieces
 from workhold.kernels.seating.pieces import on_piece
@@ -187,27 +188,24 @@ def inside(holding: Array, given: Given, psi: float) -> float:
 
 
 @compiled
-def slides_held(slides: Array, left: Array, right: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+def slides_held(
+    slides: Array, left: JawCells, right: JawCells, given: Given, pocket_pieces: IntArray, out: Array
+) -> int:
     """Write the candidates of slides (S, 7) at the height at which the other jaw holds the part at their orientation: four
-    contacts. Return their number, or -1 where they do not fit.
-
-    Parameters
-    ----------
-    left, right : (C, 7) cells of each jaw as of ``four_contacts.two_holdings``.
-    """
+    contacts. Return their number, or -1 where they do not fit."""
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         row, first, psi = given.rows[int(slide[SLIDE_ONE])], int(slide[SLIDE_FIRST]), slide[SLIDE_PSI]
         middle, c, s, within = middle_of(row), cos(psi), sin(psi), psi % TURN
-        cells = left if given.right[first] == 1 else right
-        for number in range(cells.shape[0]):
-            cell = cells[number]
+        jaw = left if given.right[first] == 1 else right
+        for number in range(jaw.cells.shape[0]):
+            cell = jaw.cells[number]
             if cell[LOW] - BESIDE > within:
                 break
             if cell[HIGH] + BESIDE < within:
                 continue
-            holding = given.holdings[int(cell[HOLDING])]
+            holding = given.holdings[int(cell[HOLDING]) + jaw.before]
             exact = inside(holding, given, psi)
             there = held(holding, given, exact)
             if not is_on_its_pieces(holding, given, exact, there[0], there[1]):
