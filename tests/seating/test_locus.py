@@ -11,7 +11,9 @@ import pytest
 import workhold
 from seating_examples import STEP, solved
 from workhold import Workpiece
+from workhold.contact.curves import LatticeSteps, curve_table
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
+from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.model.seating import Contact
 from workhold.seating.locus import Locus
 
@@ -56,3 +58,16 @@ def test_contacts_are_told_by_their_pegs_and_pieces() -> None:
         right = [Contact(peg, touches[at].face, touches[at].corner) for peg, at in pair if peg >= 0]
         assert list(contacts) == right
     assert locus.corners.tolist() == [touch.corner for touch in touches]
+
+
+def test_curves_of_each_jaw_are_those_of_its_pieces():
+    """Of pegs of two radii, on a part with arcs of one centre, whatever was asked before."""
+    locus = Locus.of(workhold.load("oblongPart"), (2.5, 4.0))
+    steps = LatticeSteps(np.array([15.0]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0]))
+    for side, (first, end) in enumerate(locus.parts.tolist()):
+        locus.curves(10.0, side)
+        told, known = locus.curves(15.0, side), curve_table(locus.loose[first:end], steps)
+        assert len(set(locus.centers[first].tolist())) < end - first
+        for one, two in ((told.curves, known.curves), (told.sliding_pairs, known.sliding_pairs)):
+            assert len(one.integers) > 0 and np.array_equal(one.reals, two.reals)
+            assert np.array_equal(one.integers[:, [TAIL, HEAD]] - first, two.integers[:, [TAIL, HEAD]])

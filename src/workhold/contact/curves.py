@@ -103,6 +103,7 @@ def curve_table(
     tails: Sequence[int] | None = None,
     threads: int = 1,
     cancel: Event | None = None,
+    centers: NDArray[np.int64] | None = None,
 ) -> CurveTable:
     """Chord curves between (F, 10) loosened feature rows, or those with their tails on some features.
 
@@ -110,8 +111,9 @@ def curve_table(
     ----------
     threads : how many threads share the work; the outcome does not depend on it.
     cancel : when set, curves whose turn has not come are left out.
+    centers : as of ``center_numbers``, for who asks again and again.
     """
-    centers = center_numbers(rows)
+    centers = center_numbers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         few = steps if cancel is None or not cancel.is_set() else steps.none

@@ -16,7 +16,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened
+from workhold.contact.curves import CurveTable, LatticeSteps, center_numbers, curve_table, loosened
 from workhold.contact.problem import centered
 from workhold.conventions import CLEARANCE, END_SLACK, JOINT, SAME_CENTER, TANGENT
 from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
@@ -218,6 +218,11 @@ class Locus:
         return {}
 
     @cached_property
+    def centers(self) -> dict[int, NDArray[np.int64]]:
+        """Which pieces have one centre, of those that pegs of a jaw touch, by the first: ``contact.curves``."""
+        return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
+
+    @cached_property
     def tangents(self) -> dict[tuple[float, int], Array]:
         """Tangencies by the length of the chord and the jaw; see ``seating.tangent``, which fills it."""
         return {}
@@ -242,7 +247,7 @@ class Locus:
             steps = LatticeSteps(
                 np.array([round(length, 12)]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
             )
-            table = curve_table(self.loose[first:end], steps)
+            table = curve_table(self.loose[first:end], steps, centers=self.centers[first])
             for integers in (table.curves.integers, table.sliding_pairs.integers):
                 integers[:, [TAIL, HEAD]] += first
             self.tables[key] = table
