@@ -133,7 +133,7 @@ def test_a_long_step_is_looked_at_between_its_ends():
     for most, last in ((10.0, 1), (0.3, 0)):
         lasts = np.empty(1, np.int64)
         free_until(
-            one, one, nodes, np.array([0, 2]), np.zeros((1, 4)), others, most, obstacles, np.empty((4, 3)), lasts
+            one, one, nodes, np.array([0, 2]), np.zeros((1, 4)), others, most, obstacles, np.empty((4, 4)), lasts
         )
         assert lasts[0] == last
 

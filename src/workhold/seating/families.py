@@ -106,7 +106,7 @@ class Finder:
             every.counts[k], every.closed[k], every.across[k] = len(way.configs), way.is_closed, way.across or nan
             for peg, piece in way.contacts:
                 every.pieces[k, peg] = piece
-        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs), 3)))
+        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs), 4)))
         return every.first(count)
 
     def cut(self, ways: Ways) -> Families:
@@ -117,7 +117,7 @@ class Finder:
         most, pegs = len(ways.configs) // 2 + len(ways.counts), len(self.pattern.pegs)
         out = Families.room(most, len(ways.configs) + 2 * most)
         low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
-        clear, seen = np.empty((len(ways.configs), self.obstacles)), np.empty((pegs, 3))
+        clear, seen = np.empty((len(ways.configs), self.obstacles)), np.empty((pegs, 4))
         touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
         return out.first(free_runs(ways, low, high, self.around, clear, seen, touched, work, out))
 

@@ -184,6 +184,6 @@ def free_ways(found: Equilibria, passes: IntArray, closing: Closing) -> tuple[In
     for row, (group, _) in zip(others, found.groups, strict=True):
         row[list(group.numbers)] = 0
     most, lasts = LONGEST_STEP * min(closing.pattern.radii), np.empty(len(ways), np.int64)
-    work = shifts_of(found), others, most, closing.obstacles, np.empty((4, 3))
+    work = shifts_of(found), others, most, closing.obstacles, np.empty((4, 4))
     free_until(ways, whose, trodden.nodes, trodden.begins, *work, lasts)
     return ways, whose, lasts

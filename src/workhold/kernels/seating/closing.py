@@ -30,8 +30,8 @@ LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
 # Of the part's size, how much farther around pegs pieces are listed than is asked for.
 AROUND = 0.1
-# How many half widths of a step's box around pegs are looked at: in the next, wider one a clearance falls by 3.6 at most.
-REACH = 6.0
+# How many times as wide a step's box is as the one before at most, and how many half widths of it a clearance falls within it.
+WIDER, REACH = 3.0, 3.6
 # mm. What is entered by less is not; how often what is met may change on one way out.
 BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40
 # How many times as far as is looked at a way out leads at most: out of a narrow corner it is longer than what is entered.
@@ -341,6 +341,12 @@ def add_node(config: Array, trust: float, longest: float, nodes: Array, first: i
 
 
 @inner
+def ahead(trust: float, most: float) -> float:
+    """How far around pegs what is near counts in the next step, after one in a box of half width ``trust``."""
+    return REACH * min(WIDER * trust, most) + 1e-6
+
+
+@inner
 def close_one(
     config: Array,
     trust: float,
@@ -354,7 +360,7 @@ def close_one(
 ) -> tuple[int, int]:
     """Close the jaws from a configuration, in place; how it ended, and the number after that of the last node."""
     trial, wait, below, first = work.trial, 0, seats.shape[0], at
-    count = push_out(config, obstacles, 8.0 * trust + 1e-6, work)
+    count = push_out(config, obstacles, ahead(trust, most), work)
     if count < 0:
         return (GAVE_UP, at)
     at = add_node(config, trust, longest, nodes, first, at)
@@ -367,7 +373,7 @@ def close_one(
         if is_in_one_of(config, seats, below, obstacles.size):
             return (AT_REST, at)
         if count < 0:
-            count = look_around(config, obstacles, REACH * trust, work)
+            count = look_around(config, obstacles, ahead(trust, most), work)
         length = squeeze(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
         if length <= 0.0:
             # What is in the way is a matter of linear programs, for a while.
@@ -386,7 +392,7 @@ def close_one(
             trial[0] = config[0] + work.step[0] / obstacles.size
             for j in range(1, 4):
                 trial[j] = config[j] + work.step[j]
-            count = push_out(trial, obstacles, REACH * trust + 1e-6, work)
+            count = push_out(trial, obstacles, ahead(trust, most), work)
             good = count >= 0 and trial[3] < config[3] - 0.1 * gain
         if not good:
             # Where no step leads down, no shorter one does: that is only seen again, against rounding.
@@ -396,9 +402,10 @@ def close_one(
             count = -1
             continue
         if trial[3] < config[3] - 0.7 * gain:
-            trust = min(1.6 * trust, most)
+            trust = min(WIDER * trust, most)
         for j in range(4):
             config[j] = trial[j]
+        longest = max(longest, trust)
         at = add_node(config, trust, longest, nodes, first, at)
     return (GAVE_UP, at)
 
@@ -429,6 +436,7 @@ def close_jaws(
     count = 0
     for peg in range(obstacles.pegs.shape[0]):
         work.known[peg, 2] = work.places[peg, 2] = -inf
+        work.known[peg, 3] = 0.0
     for k in range(configs.shape[0]):
         begins[k] = count
         ends[k], count = close_one(configs[k], lengths[k, 0], lengths[k, 1], most, obstacles, seats, work, nodes, count)

@@ -184,7 +184,8 @@ class WorkSpace(NamedTuple):
     basis, triangle : (5, 4) and (5, 6).
     step, way, trial : (4,).
     members : (8,).
-    known : (4, 3) for each peg a place on the part and the clearance there in mm: a disc in which it is free.
+    known : (4, 4) for each peg a place on the part and the clearance there in mm, a disc in which it is free, and the piece
+        that is the nearest there.
     lists, counts, places : (4, N) and (4,) pieces near each peg and how many, as far as they are within a reach, in mm,
         of a place: (4, 3).
     """
@@ -207,4 +208,4 @@ class WorkSpace(NamedTuple):
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         listed = np.empty((4, count), np.int64), np.empty(4, np.int64), np.empty((4, 3))
         normals = np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6))
-        return cls(*normals, step, way, trial, np.empty(8, np.int64), np.empty((4, 3)), *listed)
+        return cls(*normals, step, way, trial, np.empty(8, np.int64), np.empty((4, 4)), *listed)

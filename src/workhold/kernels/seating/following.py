@@ -97,11 +97,11 @@ def free_until(
     shifts : (G, 4) to be added to the configurations of each group.
     others : (G, K) 1 for the pegs that are not in each group.
     most : how long a step of a peg on the part is that is looked at only where it ends, in mm.
-    known : (4, 3) work space.
+    known : (4, 4) work space.
     lasts : (N,) written here.
     """
     for peg in range(obstacles.pegs.shape[0]):
-        known[peg, 2] = -1.0
+        known[peg, 2], known[peg, 3] = -1.0, 0.0
     for n in range(chosen.shape[0]):
         group, first, end = whose[n], begins[chosen[n]], begins[chosen[n] + 1]
         # On a way S only falls.

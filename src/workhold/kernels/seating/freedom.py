@@ -22,7 +22,7 @@ from workhold.kernels.seating.columns import (
     Obstacles,
     Ways,
 )
-from workhold.kernels.seating.pieces import clearance, on_piece, place_on_part
+from workhold.kernels.seating.pieces import nearest_piece, on_piece, place_on_part
 from workhold.kernels.seating.walls import SUPPORTS, beside_wall, off_wall
 
 Array = NDArray[np.float64]
@@ -40,7 +40,8 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
     """Clearance of a peg in mm in a configuration (4,); -inf where it is not on a piece that it has to touch (-1: none).
 
-    Where none, as far as ``seen`` (3,), a place on the part and its clearance, tells: no nearer than that, and on its side.
+    Where none, as far as ``seen`` (4,) tells, a place on the part, its clearance and the nearest piece there: no nearer than
+    that, and on its side.
     """
     x, y = place_on_part(config, around, peg)
     if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
@@ -48,10 +49,10 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
     rest = abs(seen[2]) - hypot(x - seen[0], y - seen[1])
     if piece < 0 and rest > SURELY:
         return rest if seen[2] > 0.0 else -rest
-    side = around.right[peg]
-    seen[0], seen[1] = x, y
-    seen[2] = clearance(x, y, around.rows, around.parts[side, 0], around.parts[side, 1])
-    return seen[2]
+    first, end = around.parts[around.right[peg], 0], around.parts[around.right[peg], 1]
+    off, nearest = nearest_piece(x, y, around.rows, first, end, int(seen[3]))
+    seen[0], seen[1], seen[2], seen[3] = x, y, off, nearest
+    return off
 
 
 @inner
@@ -74,9 +75,9 @@ def write_clearances(config: Array, touched: IntArray, known: int, around: Obsta
 
 @inner
 def nothing_seen(seen: Array) -> None:
-    """Begin anew with what is seen of pegs (K, 3)."""
+    """Begin anew with what is seen of pegs (K, 4)."""
     for k in range(seen.shape[0]):
-        seen[k, 0], seen[k, 1], seen[k, 2] = 0.0, 0.0, 0.0
+        seen[k, 0], seen[k, 1], seen[k, 2], seen[k, 3] = 0.0, 0.0, 0.0, 0.0
 
 
 @compiled
@@ -86,7 +87,7 @@ def keep_free(ways: Ways, around: Obstacles, seen: Array) -> int:
 
     Parameters
     ----------
-    seen : (P, 3) work space, of so many pegs.
+    seen : (P, 4) work space, of so many pegs.
     """
     count, begin, at = 0, 0, 0
     for w in range(ways.counts.shape[0]):
@@ -120,7 +121,7 @@ def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, s
 
     Parameters
     ----------
-    trial, seen, clear : (4,), (K, 3) and (K,) work space.
+    trial, seen, clear : (4,), (K, 4) and (K,) work space.
     """
     nothing_seen(seen)
     for attempt in range(EDGE_ROUNDS):
@@ -313,7 +314,7 @@ def free_runs(
     Parameters
     ----------
     low, high : in mm, between which the separations of ways are that count.
-    clear, seen, touched, work : (M, K), (P, 3), (P,) and (4, 4) work space, of so many pegs and, last, a wall.
+    clear, seen, touched, work : (M, K), (P, 4), (P,) and (4, 4) work space, of so many pegs and, last, a wall.
     out : with room for all, written here.
     """
     count, begin = 0, 0

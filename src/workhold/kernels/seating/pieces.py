@@ -108,13 +108,16 @@ def distance_to(row: Array, x: float, y: float) -> float:
 
 
 @inner
-def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
-    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part.
+def nearest_piece(x: float, y: float, rows: Array, first: int, end: int, guess: int) -> tuple[float, int]:
+    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part, and
+    the nearest piece. It is found the sooner the nearer the one is that is guessed, which need not be one of them.
 
     Where the nearest point is an inner corner, in which two pieces end, the centre is in the part, though it may lie on the
     outer side of one of them; so of two as near the one that says so counts.
     """
-    best = inf
+    best, nearest = inf, first
+    if first <= guess < end:
+        best, nearest = distance_to(rows[guess], x, y), guess
     for k in range(first, end):
         row = rows[k]
         # What cannot be nearer: its carrier is not.
@@ -123,8 +126,14 @@ def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
         if abs(off) < abs(best) + SAME_END:
             d = distance_to(row, x, y)
             if abs(d) < abs(best) - SAME_END or (abs(d) < abs(best) + SAME_END and d < 0.0):
-                best = d
-    return best
+                best, nearest = d, k
+    return (best, nearest)
+
+
+@inner
+def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
+    """The distance alone, as of ``nearest_piece``."""
+    return nearest_piece(x, y, rows, first, end, first)[0]
 
 
 @compiled

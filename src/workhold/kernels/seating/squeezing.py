@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import Obstacles, WorkSpace
-from workhold.kernels.seating.pieces import angle_from_middle, clearance, place_on_part
+from workhold.kernels.seating.pieces import angle_from_middle, nearest_piece, place_on_part
 from workhold.kernels.seating.walls import off_wall
 
 Array = NDArray[np.float64]
@@ -66,13 +66,14 @@ def parameter(row: Array, x: float, y: float) -> float:
 @inner
 def is_peg_free(x: float, y: float, peg: int, obstacles: Obstacles, known: Array) -> bool:
     """Whether a peg at a place of the part is not in it. Nor is it where the part is farther than the place from one at
-    which its clearance is known, or in other words within a disc (x, y, radius) that is."""
+    which its clearance is known, or in other words within a disc (x, y, radius) that is;
+    last of what is known comes the piece that was the nearest."""
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     if known[peg, 2] > 0.0 and dx * dx + dy * dy < known[peg, 2] * known[peg, 2]:
         return True
-    side = obstacles.right[peg]
-    free = clearance(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1])
-    known[peg, 0], known[peg, 1], known[peg, 2] = x, y, free
+    first, end = obstacles.parts[obstacles.right[peg], 0], obstacles.parts[obstacles.right[peg], 1]
+    free, piece = nearest_piece(x, y, obstacles.rows, first, end, int(known[peg, 3]))
+    known[peg, 0], known[peg, 1], known[peg, 2], known[peg, 3] = x, y, free, piece
     return free >= -ENTERED
 
 
