@@ -20,7 +20,7 @@ from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
 from workhold.seating.tree import Tree
-from workhold.seating.ways_down import steps_off
+from workhold.seating.ways_down import starts_off
 
 NOTCH = Workpiece.from_loops(
     "notch", [[[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]], [[30, 12, -1], [14, 12, -1]]]
@@ -39,8 +39,7 @@ def ways():
     for turned_over in (False, True):
         closing = solver.closing(pattern, turned_over)
         found = equilibria(closing.locus, pattern, closing.size)
-        steps = steps_off(found.passes, closing.size)[0]
-        starts = np.concatenate([found.passes[:, CONFIG] + sign * steps for sign in (1.0, -1.0)])
+        starts = starts_off(found.passes, closing.size)[0]
         out.append((closing, starts, Tree.of(found, closing)))
     return out
 
@@ -148,11 +147,11 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
     for closing, _, tree in ways:
         off_passes = np.flatnonzero(tree.passes[:, SECOND] < 0.0)
         rows, joined = tree.passes[off_passes], tree.joined[off_passes]
-        steps, lengths = steps_off(rows, closing.size)
-        for sign, side in ((1.0, 0), (-1.0, 1)):
-            starts = rows[:, CONFIG] + sign * steps
-            for k in np.flatnonzero(lengths == 0.01).tolist():
-                ends, how = closing.run(starts[k : k + 1], 0.005, np.ascontiguousarray(tree.seats[:, CONFIG]))
+        (every, lengths), how_far = starts_off(rows, closing.size), 0.005
+        for side in (0, 1):
+            starts = every[side::2]
+            for k in np.flatnonzero(lengths[side::2, 0] == how_far).tolist():
+                ends, how = closing.run(starts[k : k + 1], how_far, np.ascontiguousarray(tree.seats[:, CONFIG]))
                 at_end, at_start = closing.escape(np.concatenate([ends, starts[k : k + 1]])).tolist()
                 if how[0] == AT_THE_STOP:
                     assert joined[k, side] == (OUTSIDE if at_end or at_start else STOP)

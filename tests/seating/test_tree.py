@@ -10,9 +10,9 @@ import pytest
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, SEPARATION
+from workhold.kernels.seating.following import BESIDE
 from workhold.kernels.seating.places import OUTSIDE, STOP
 from workhold.seating.tree import SlidingOff, Tree, distances
-from workhold.seating.ways_down import BESIDE
 
 
 class Slope:

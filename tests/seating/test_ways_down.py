@@ -30,7 +30,7 @@ from workhold.seating.descents import WAYS, Closing
 from workhold.seating.equilibria import equilibria
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.ways_down import Trodden, both_ways_down, free_ways, starts_off
+from workhold.seating.ways_down import Trodden, both_ways_down, free_ways, shifts_of, starts_off
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))
@@ -72,8 +72,7 @@ def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
     seen = set()
     for closing, found, seats, (starts, ends, how) in ways:
         assert starts[::2] + starts[1::2] == pytest.approx(2.0 * found.passes[:, CONFIG], abs=1e-9)
-        first = starts_off(found.passes, closing.size)[1]
-        known, ended = closing.run(starts, np.stack([first, first], axis=1), seats)
+        known, ended = closing.run(starts, starts_off(found.passes, closing.size)[1], seats)
         assert np.array_equal(how, ended)
         assert ends[:, 3] == pytest.approx(known[:, 3], abs=1e-5)
         assert (clearance(closing, ends, [0, 1, 2, 3]) > -2e-8).all()
@@ -88,7 +87,7 @@ def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the
     cut = whole = 0
     for closing, found, _, _ in ways:
         trodden = found.groups[0][1].trodden
-        chosen, whose, lasts = free_ways(found, np.arange(len(found.passes)), closing)
+        chosen, whose, lasts = free_ways(found, np.arange(len(found.passes)), closing, shifts_of(found))
         for way, group, last in zip(chosen.tolist(), whose.tolist(), lasts.tolist(), strict=True):
             first, end = trodden.begins[way : way + 2]
             nodes = trodden.nodes[first:end, :4] + found.groups[group][0].shift

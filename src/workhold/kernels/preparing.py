@@ -63,7 +63,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.fibres import free_poses
-from workhold.kernels.seating.following import free_until
+from workhold.kernels.seating.following import begin_ways, free_until, take_up
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP_LENGTH, gathered
@@ -217,6 +217,11 @@ def seats_and_passes() -> Calls:
     yield close_jaws, (ways, points, 1.0, obstacles, ways, work, np.zeros(0, np.int8), begins, nodes)
     followed = none, none, nodes, begins, ways, np.zeros((0, 4), np.int8)
     yield free_until, (*followed, 1.0, obstacles, np.zeros((4, 4)), none)
+    yield begin_ways, (many, 1.0, ways, points)
+    yield (
+        take_up,
+        (none, none, none, none, nodes, begins, np.zeros(0, np.int8), ways, ways, points, np.zeros(0, np.int8)),
+    )
     yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))

@@ -67,11 +67,11 @@ class Closing:
         return out, ends
 
     def followed(self, configs: Array, first: Array, seats: Array) -> tuple[Array, NDArray[np.int64], NDArray[np.int8]]:
-        """The nodes (M, 10) of the ways from configurations (N, 4), from first steps (N,) in mm on, where those of each
+        """The nodes (M, 10) of the ways from configurations (N, 4), from first steps (N, 2) in mm on, where those of each
         begin and, last, end, and how the ways end; see ``run``."""
-        lengths, room = np.stack([first, first], axis=1), USUAL * len(configs)
+        room = USUAL * len(configs)
         while True:
-            ends, begins, nodes = self.closed(np.array(configs), lengths, self.obstacles, seats, room)
+            ends, begins, nodes = self.closed(np.array(configs), first, self.obstacles, seats, room)
             if begins[-1] <= room:
                 return nodes[: begins[-1]], begins, ends
             room = int(begins[-1])

@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_THE_STOP
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, SEPARATION, Families
+from workhold.kernels.seating.following import BESIDE
 from workhold.kernels.seating.loose import first_sets, write_beyond
 from workhold.kernels.seating.places import FALLS, leads_out, write_places
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
-from workhold.seating.ways_down import BESIDE, both_ways_down
+from workhold.seating.ways_down import both_ways_down
 
 __all__ = ["Join", "Tree", "distances"]
 

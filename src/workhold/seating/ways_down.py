@@ -6,6 +6,7 @@ pegs.
 
 from __future__ import annotations
 
+from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
@@ -18,47 +19,29 @@ from workhold.kernels.seating.columns import (
     CONFIG,
     CONTACTS,
     DOUBT,
-    MOTION,
     NODE_LENGTH,
     SECOND,
-    STEP,
-    STEP_ALONG,
 )
-from workhold.kernels.seating.following import free_until
+from workhold.kernels.seating.following import begin_ways, free_until, take_up
 from workhold.seating.descents import LONGEST_STEP, Closing
 
 if TYPE_CHECKING:
     from workhold.seating.equilibria import Equilibria
 
-__all__ = ["BESIDE", "Trodden", "WaysDown", "both_ways_down", "steps_off"]
+__all__ = ["Trodden", "WaysDown", "both_ways_down", "starts_off"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-# mm. How far from a pass a way down begins, and how near it begins at least; and by which part of its way the motion may
-# have bent there.
-BESIDE = 0.01
-SHORTEST, MOST_BEND = 1e-5, 0.1
-
-
-def steps_off(rows: Array, size: float) -> tuple[Array, Array]:
-    """Steps (N, 4) along the free motions of passes (N, 24) at which ways down begin, and their lengths (N,) in mm: shorter
-    where the motion bends so much that they would lie elsewhere."""
-    motions, seconds = rows[:, MOTION : MOTION + 3], np.abs(rows[:, SECOND])
-    speeds = np.abs(motions[:, 0]) * size + np.hypot(motions[:, 1], motions[:, 2])
-    bent = 2.0 * MOST_BEND * speeds * speeds
-    lengths = np.where(seconds * BESIDE > bent, np.maximum(bent / np.maximum(seconds, 1e-300), SHORTEST), BESIDE)
-    steps = np.zeros((len(rows), 4))
-    steps[:, :3] = (lengths / speeds)[:, None] * motions
-    return steps, lengths
+# Nodes for which there is room at first.
+ROOM = 65_536
 
 
 def starts_off(rows: Array, size: float) -> tuple[Array, Array]:
     """Where ways down begin, to one and the other side of each of some passes (N, 24): configurations (2 N, 4), and how long
-    their first steps are in mm (2 N,)."""
-    (steps, lengths), configs = steps_off(rows, size), rows[:, CONFIG]
-    starts, first = np.empty((len(rows), 2, 4)), np.empty((len(rows), 2))
-    starts[:, 0], starts[:, 1], first[:] = configs + steps, configs - steps, lengths[:, None] / 2.0
-    return starts.reshape(-1, 4), first.ravel()
+    their first steps are in mm (2 N, 2)."""
+    starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
+    begin_ways(np.ascontiguousarray(rows), size, starts, lengths)
+    return starts, lengths
 
 
 @define(eq=False)
@@ -77,7 +60,7 @@ class Trodden:
     """
 
     numbers: IntArray = field(factory=lambda: np.zeros((0, 2), np.int64))
-    nodes: Array = field(factory=lambda: np.zeros((0, NODE_LENGTH)))
+    nodes: Array = field(factory=lambda: np.empty((ROOM, NODE_LENGTH)))
     begins: IntArray = field(factory=lambda: np.zeros(1, np.int64))
     how: NDArray[np.int8] = field(factory=lambda: np.zeros(0, np.int8))
     counts: tuple[int, int, int] = (0, 0, 0)
@@ -114,7 +97,7 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     return out
 
 
-@define(eq=False)
+@define(eq=False, slots=False)
 class WaysDown:
     """The ways down of a group of pegs.
 
@@ -138,9 +121,14 @@ class WaysDown:
         """Follow the ways off some of the candidates, by their numbers there."""
         # Another thread may follow some at the same time: then both are there, and are the same.
         starts, first = starts_off(self.candidates[numbers - self.first], self.closing.size)
+        self.trodden.add(numbers, *self.closing.followed(starts, first, self.seats))
+
+    @cached_property
+    def seats(self) -> Array:
+        """Configurations (M, 4) of those at which closing ends for certain."""
         every = self.candidates
         is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
-        self.trodden.add(numbers, *self.closing.followed(starts, first, every[is_seat][:, CONFIG]))
+        return np.asarray(every[is_seat][:, CONFIG])
 
 
 def both_ways_down(found: Equilibria, closing: Closing, seats: Array) -> tuple[Array, Array, NDArray[np.int8]]:
@@ -150,19 +138,15 @@ def both_ways_down(found: Equilibria, closing: Closing, seats: Array) -> tuple[A
     ----------
     seats : (M, 4) configurations at which closing is known to end.
     """
-    starts, first = starts_off(found.passes, closing.size)
-    ends, how = np.array(starts), np.full(len(starts), AT_REST, np.int8)
-    lengths, left = np.stack([first, first], axis=1), np.ones(len(starts), np.bool_)
+    starts, lengths = starts_off(found.passes, closing.size)
+    ends, how, left = np.array(starts), np.full(len(starts), AT_REST, np.int8), np.ones(len(starts), np.int8)
     known = np.flatnonzero(found.origins[:, 0] >= 0)
     if len(known):
-        trodden = found.groups[0][1].trodden
-        ways, whose, lasts = free_ways(found, known, closing)
-        mine, begun = (2 * known[:, None] + [0, 1]).ravel(), lasts >= trodden.begins[ways]
-        reached, mine_begun = trodden.nodes[lasts[begun]], mine[begun]
-        lengths[mine_begun], ends[mine_begun] = reached[:, [STEP, STEP_ALONG]], reached[:, :4]
-        ends[mine_begun] += shifts_of(found)[whose[begun]]
-        left[mine] = ~begun | (lasts + 1 < trodden.begins[ways + 1]) | (trodden.how[ways] != AT_REST)
-    ends[left], how[left] = closing.run(ends[left], lengths[left], seats)
+        trodden, shifts = found.groups[0][1].trodden, shifts_of(found)
+        ways = free_ways(found, known, closing, shifts)
+        take_up(known, *ways, trodden.nodes, trodden.begins, trodden.how, shifts, ends, lengths, left)
+    rest = np.flatnonzero(left)
+    ends[rest], how[rest] = closing.run(ends[rest], lengths[rest], seats)
     return starts, ends, how
 
 
@@ -171,9 +155,11 @@ def shifts_of(found: Equilibria) -> Array:
     return np.array([group.shift for group, _ in found.groups])
 
 
-def free_ways(found: Equilibria, passes: IntArray, closing: Closing) -> tuple[IntArray, IntArray, IntArray]:
+def free_ways(
+    found: Equilibria, passes: IntArray, closing: Closing, shifts: Array
+) -> tuple[IntArray, IntArray, IntArray]:
     """The ways off both sides of some passes (2 N,), the groups whose they are, and the last node of each at which the
-    pattern's other pegs are not in the part."""
+    pattern's other pegs are not in the part; shifts as of ``shifts_of``."""
     whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
     trodden = found.groups[0][1].trodden
     new = trodden.numbers[numbers, 0] < 0
@@ -184,6 +170,6 @@ def free_ways(found: Equilibria, passes: IntArray, closing: Closing) -> tuple[In
     for row, (group, _) in zip(others, found.groups, strict=True):
         row[list(group.numbers)] = 0
     most, lasts = LONGEST_STEP * min(closing.pattern.radii), np.empty(len(ways), np.int64)
-    work = shifts_of(found), others, most, closing.obstacles, np.empty((4, 4))
+    work = shifts, others, most, closing.obstacles, np.empty((4, 4))
     free_until(ways, whose, trodden.nodes, trodden.begins, *work, lasts)
     return ways, whose, lasts

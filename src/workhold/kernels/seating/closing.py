@@ -30,7 +30,7 @@ LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
 # Of the part's size, how much farther around pegs pieces are listed than is asked for.
 AROUND = 0.1
-# How many times as wide a step's box is as the one before at most, and how many half widths of it a clearance falls within it.
+# How many times as wide as the one before a step's box is at most, and how many half widths a clearance falls within one.
 WIDER, REACH = 3.0, 3.6
 # mm. What is entered by less is not; how often what is met may change on one way out.
 BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40

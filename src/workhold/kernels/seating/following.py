@@ -1,23 +1,64 @@
-"""How far ways down of some pegs of a pattern are free of the others."""
+"""Where ways down begin, and how far those of some pegs of a pattern are free of the others."""
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.seating.columns import COSINE, MOVED, SINE, TURNED, Obstacles
+from workhold.kernels.seating.closing import AT_REST
+from workhold.kernels.seating.columns import (
+    COSINE,
+    MOTION,
+    MOVED,
+    SECOND,
+    SINE,
+    STEP,
+    STEP_ALONG,
+    TURNED,
+    Obstacles,
+)
 from workhold.kernels.seating.squeezing import is_peg_free
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# mm. How far from a pass a way down begins, and how near it begins at least; and by which part of its way the motion may
+# have bent there.
+BESIDE = 0.01
+SHORTEST, MOST_BEND = 1e-5, 0.1
 # mm. A way that ends less above the stop may end at it.
 ABOVE = 1e-6
 # Parts of a step that is longer than most, at whose ends it is looked at.
 PARTS = 3
+
+
+@compiled
+def begin_ways(rows: Array, size: float, starts: Array, lengths: Array) -> None:
+    """Where ways down begin, to one and the other side of each of some passes (N, 24) along its free motion: nearer where
+    the motion bends so much that they would lie elsewhere.
+
+    Parameters
+    ----------
+    size : of the part in mm, by which turns are counted.
+    starts : (2 N, 4) configurations, written here.
+    lengths : (2 N, 2) how long their first steps are in mm, half as far as they begin off the pass, written here.
+    """
+    for n in range(rows.shape[0]):
+        row = rows[n]
+        x, y, second = row[MOTION + 1], row[MOTION + 2], abs(row[SECOND])
+        speed = abs(row[MOTION]) * size + hypot(x, y)
+        bent, length = 2.0 * MOST_BEND * speed * speed, BESIDE
+        if second * BESIDE > bent:
+            length = max(bent / second, SHORTEST)
+        for side in range(2):
+            start, sign = starts[2 * n + side], 1.0 - 2.0 * side
+            for k in range(3):
+                start[k] = row[k] + sign * (length / speed * row[MOTION + k])
+            start[3] = row[3]
+            lengths[2 * n + side, 0] = lengths[2 * n + side, 1] = length / 2.0
 
 
 @inner
@@ -111,3 +152,38 @@ def free_until(
             if others[group, peg] != 0:
                 end = end_of_free(nodes, first, end, shifts[group], peg, most, obstacles, known)
         lasts[n] = end - 1
+
+
+@compiled
+def take_up(
+    passes: IntArray,
+    chosen: IntArray,
+    whose: IntArray,
+    lasts: IntArray,
+    nodes: Array,
+    begins: IntArray,
+    how: NDArray[np.int8],
+    shifts: Array,
+    ends: Array,
+    lengths: Array,
+    left: NDArray[np.int8],
+) -> None:
+    """Write where ways off both sides of some passes come without what is known of them being left, and what is left.
+
+    Parameters
+    ----------
+    passes : (N,) their numbers.
+    chosen, whose, nodes, begins, shifts, lasts : of the 2 N ways, as of ``free_until``, which wrote the last.
+    how : of all ways, how each ends.
+    ends, lengths : (2 P, 4) configurations and (2 P, 2) lengths of the next steps of the ways off all passes.
+    left : (2 P,) 0 for ways of which nothing is left to be followed.
+    """
+    for n in range(chosen.shape[0]):
+        way, last, place = chosen[n], lasts[n], 2 * passes[n // 2] + n % 2
+        if last < begins[way]:
+            continue
+        for k in range(4):
+            ends[place, k] = nodes[last, k] + shifts[whose[n], k]
+        lengths[place, 0], lengths[place, 1] = nodes[last, STEP], nodes[last, STEP_ALONG]
+        if last + 1 == begins[way + 1] and how[way] == AT_REST:
+            left[place] = 0
