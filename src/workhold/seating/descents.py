@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from math import cos, pi, sin
 
 import numpy as np
 from attrs import define
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import NODE_LENGTH, Obstacles, WorkSpace
-from workhold.kernels.seating.leaving import leave
+from workhold.kernels.seating.leaving import RANGES, leave
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -20,9 +19,6 @@ __all__ = ["LONGEST_STEP", "Closing"]
 Array = NDArray[np.float64]
 # No step is longer than this part of the peg radius: no wall is thin enough to be passed.
 LONGEST_STEP = 0.35
-# Directions in which a part may be taken away.
-DIRECTIONS = 48
-WAYS = np.array([[cos(2.0 * pi * k / DIRECTIONS), sin(2.0 * pi * k / DIRECTIONS)] for k in range(DIRECTIONS)])
 NO_SEATS = np.zeros((0, 4))
 # Nodes that a way down has as a rule.
 USUAL = 128
@@ -92,12 +88,19 @@ class Closing:
         return ends, begins, nodes
 
     def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand, in one of
-        many directions; false of those that are not asked for (N,)."""
-        out = np.ones(len(configs), np.int8) if asked is None else asked.astype(np.int8)
-        if out.any():
-            leave(np.ascontiguousarray(configs), self.obstacles, WAYS, np.empty((4, 2)), out)
-        return out.astype(np.bool_)
+        """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand; false of
+        those that are not asked for (N,)."""
+        return ~np.isnan(self.ways_away(configs, asked))
+
+    def ways_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
+        """The directions (N,) in radians in which it can, as pegs move on the part; NaN where it cannot, or is not asked."""
+        out, obstacles = np.zeros(len(configs)), self.obstacles
+        if asked is not None:
+            out[~asked] = np.nan
+        if len(out):
+            room = RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
+            leave(np.ascontiguousarray(configs), obstacles, np.empty((room, 2)), out)
+        return out
 
     def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether a part can be taken away where ways ended that were stopped (N,), or where they began: what can be taken

@@ -177,7 +177,7 @@ def middle_of(clear: Array, begin: int, length: int, first: int, count: int) -> 
 
 
 @inner
-def nearest_piece(config: Array, peg: int, around: Obstacles) -> int:
+def touched_piece(config: Array, peg: int, around: Obstacles) -> int:
     """Number of the piece that a peg, or after them the wall, touches in a configuration (4,)."""
     if peg == around.pegs.shape[0]:
         return around.rows.shape[0] + beside_wall(config, around, SUPPORTS)[1]
@@ -205,7 +205,7 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
     for peg in range(clear.shape[0]):
         if abs(clear[peg]) < TOUCHES:
             known = touched[peg] if peg < touched.shape[0] else -1
-            row[PEG + count], row[PIECE + count] = peg, known if known >= 0 else nearest_piece(config, peg, around)
+            row[PEG + count], row[PIECE + count] = peg, known if known >= 0 else touched_piece(config, peg, around)
             count += 1
     row[CONTACTS] = count
 

@@ -1,104 +1,167 @@
-"""Whether a part can be taken straight away from all pegs."""
+"""Whether a part can be taken straight away from all pegs, jaws as they stand: exactly, not for some directions only.
+
+Seen from a peg's centre, the directions in which it meets a piece of the boundary, from outside, are a range; so are those
+that lead into a piece that it touches. Where all ranges of all pegs, and of a wall, leave any direction, they leave the end
+of one of them.
+"""
 
 from __future__ import annotations
 
-from math import cos, hypot, sin, sqrt
+from math import acos, atan2, cos, floor, isnan, nan, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
-from workhold.kernels.seating.pieces import normal_at, on_piece, place_on_part
+from workhold.kernels.seating.pieces import length, on_piece, place_on_part
 
 Array = NDArray[np.float64]
-# mm. A peg this near to a piece touches it; so it does a hair inside. No unit: ways this near to a face go along it.
-TOUCHED, LEVEL = 1e-4, 1e-12
-# mm. How far past the end of a piece a peg meets it: rounding.
-END = 1e-9
+# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way down begins.
+TOUCHED, ENTERED = 1e-4, 0.01
+# Radians. Ways that pass an end by less meet it, and by how much less than nothing one range begins after another: rounding.
+HAIR, ROUNDING = 1e-9, 1e-12
+TURN = 2.0 * pi
+# The most ranges that a peg and a piece have: into what is touched, and what is seen of an arc on each turn.
+RANGES = 4
 
 
 @inner
-def meets(row: Array, x: float, y: float, wx: float, wy: float) -> bool:
-    """Whether a point moved along a direction enters the part through a piece, be it at once."""
+def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
+    """Write a range, its first direction and how far it goes on counter-clockwise, after others; the new count."""
+    ranges[count, 0], ranges[count, 1] = low, sweep
+    return count + 1
+
+
+@inner
+def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Write the directions in which a point meets a line; see ``add_piece``."""
+    dx, dy, axis = x - row[X], y - row[Y], atan2(row[AXIS_Y], row[AXIS_X])
+    off, along = dx * row[AXIS_Y] - dy * row[AXIS_X], dx * row[AXIS_X] + dy * row[AXIS_Y]
+    if -ENTERED < off < TOUCHED and abs(along) <= row[HALF_EXTENT] + TOUCHED:
+        return add_range(axis, pi, ranges, count)
+    if off <= 0.0:
+        return count
+    low, high = atan2(off, row[HALF_EXTENT] - along), atan2(off, -row[HALF_EXTENT] - along)
+    return add_range(axis + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
+
+
+@inner
+def seen_outside(radius: float, away: float, angle: float) -> float:
+    """Direction to a place of a circle from a point outside it, told from that to the centre; the angle is told from the
+    direction of the point."""
+    return atan2(-radius * sin(angle), away - radius * cos(angle))
+
+
+@inner
+def seen_inside(radius: float, away: float, angle: float) -> float:
+    """Direction to a place of a circle from a point inside it, told as the angle is from the direction of the point: never a
+    quarter turn from it, so that it goes on with it beyond half turns."""
+    return angle + atan2(away * sin(angle), radius - away * cos(angle))
+
+
+@inner
+def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, count: int) -> int:
+    """Write the directions in which a point outside an arc's circle, ``away`` from its centre in a direction, meets the near
+    side of the arc, or the far one."""
+    seen = acos(row[RADIUS] / away)
+    first, last = (-seen, seen) if near else (seen, TURN - seen)
+    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    middle -= TURN * floor(middle / TURN)
+    for turns in range(-1, 2):
+        around = middle + TURN * turns
+        low, high = max(around - row[HALF_EXTENT], first), min(around + row[HALF_EXTENT], last)
+        if low < high:
+            one, two = seen_outside(row[RADIUS], away, low), seen_outside(row[RADIUS], away, high)
+            count = add_range(toward + pi + min(one, two) - HAIR, abs(two - one) + 2.0 * HAIR, ranges, count)
+    return count
+
+
+@inner
+def add_convex(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Write the directions in which a point meets a convex arc; see ``add_piece``."""
     dx, dy = x - row[X], y - row[Y]
-    if row[IS_ARC] == 0.0:
-        entering, off = wx * row[AXIS_Y] - wy * row[AXIS_X], dx * row[AXIS_Y] - dy * row[AXIS_X]
-        if not entering < -LEVEL:
-            return False
-        if abs(off) < TOUCHED and on_piece(row, x, y, TOUCHED):
-            return True
-        t, least = -off / entering, TOUCHED
-    else:
-        size = hypot(dx, dy)
-        if abs(size - row[RADIUS]) < TOUCHED:
-            nx, ny = normal_at(row, x, y)
-            # Along a concave arc there is no way.
-            level = -LEVEL if row[SIGN] > 0.0 else TOUCHED
-            if wx * nx + wy * ny < level and on_piece(row, x, y, TOUCHED):
-                return True
-        middle = wx * dx + wy * dy
-        square = middle * middle - (size - row[RADIUS]) * (size + row[RADIUS])
-        if square <= 0.0:
-            return False
-        # Into a convex arc from without; into a concave one from within, also from where it is touched.
-        t = -middle - row[SIGN] * sqrt(square)
-        least = TOUCHED if row[SIGN] > 0.0 else 0.0
-    return t > least and on_piece(row, x + t * wx, y + t * wy, END)
+    away, toward = length(dx, dy), atan2(dy, dx)
+    if -ENTERED < away - row[RADIUS] < TOUCHED and on_piece(row, x, y, TOUCHED):
+        count = add_range(toward + pi / 2.0, pi, ranges, count)
+    return count if away <= row[RADIUS] else add_side(row, away, toward, True, ranges, count)
 
 
 @inner
-def first_met(obstacles: Obstacles, wx: float, wy: float, places: Array, last: int) -> int:
-    """The number of the peg and the piece that meet as all pegs move away along a direction of the part's frame, -1 where
-    none do.
+def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Write the directions in which a point meets a concave arc, from within its circle or through the opening; see
+    ``add_piece``."""
+    dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
+    away, toward = length(dx, dy), atan2(dy, dx)
+    if -ENTERED < radius - away < TOUCHED and on_piece(row, x, y, TOUCHED):
+        # Along it there is no way.
+        count = add_range(toward - pi / 2.0 - HAIR, pi + 2.0 * HAIR, ranges, count)
+        away = min(away, radius)
+    if away > radius:
+        return add_side(row, away, toward, False, ranges, count)
+    if row[HALF_EXTENT] >= pi:
+        return add_range(0.0, 2.0 * TURN, ranges, count)
+    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    low = seen_inside(radius, away, middle - row[HALF_EXTENT])
+    high = seen_inside(radius, away, middle + row[HALF_EXTENT])
+    return add_range(toward + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
 
-    Parameters
-    ----------
-    places : (K, 2) of the pegs on the part.
-    last : what was met on another way, which is looked at first, or -1.
-    """
-    pieces = obstacles.rows.shape[0]
-    if last >= 0:
-        peg = last // pieces
-        if meets(obstacles.rows[last % pieces], places[peg, 0], places[peg, 1], wx, wy):
-            return last
+
+@inner
+def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Write the ranges of directions in which a point that moves straight away meets a piece, coming from outside, be it at
+    once; the new count."""
+    if row[IS_ARC] == 0.0:
+        return add_line(row, x, y, ranges, count)
+    return add_convex(row, x, y, ranges, count) if row[SIGN] > 0.0 else add_concave(row, x, y, ranges, count)
+
+
+@inner
+def way_left(ranges: Array, count: int) -> float:
+    """A direction in none of some ranges, each without its ends, or NaN: from the end of one to that of another which goes
+    on farthest, until none goes on or all has been gone around."""
+    if count == 0:
+        return 0.0
+    at, gone = ranges[0, 0] + ranges[0, 1], 0.0
+    while gone <= TURN:
+        farthest = 0.0
+        for k in range(count):
+            within = at - ranges[k, 0]
+            within -= TURN * floor(within / TURN)
+            if ROUNDING < within < ranges[k, 1] - ROUNDING:
+                farthest = max(farthest, ranges[k, 1] - within)
+        if farthest == 0.0:
+            return at
+        at, gone = at + farthest, gone + farthest
+    return nan
+
+
+@inner
+def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
+    """See ``leave``, of one configuration."""
+    count = 0
+    if obstacles.wall[0] != 0.0 or obstacles.wall[1] != 0.0:
+        # The part moves the other way than pegs do on it, and nothing moves toward the wall.
+        count = add_range(atan2(obstacles.wall[1], obstacles.wall[0]) - config[0] - pi / 2.0, pi, ranges, count)
     for peg in range(obstacles.pegs.shape[0]):
+        x, y = place_on_part(config, obstacles, peg)
         side = obstacles.right[peg]
         for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
-            if meets(obstacles.rows[piece], places[peg, 0], places[peg, 1], wx, wy):
-                return peg * pieces + piece
-    return -1
-
-
-@inner
-def leads_away(config: Array, obstacles: Obstacles, ways: Array, places: Array) -> bool:
-    """See ``leave``, of one configuration."""
-    cosine, sine = cos(config[0]), sin(config[0])
-    for peg in range(obstacles.pegs.shape[0]):
-        places[peg, 0], places[peg, 1] = place_on_part(config, obstacles, peg)
-    met = -1
-    for k in range(ways.shape[0]):
-        wx, wy = ways[k, 0], ways[k, 1]
-        vx, vy = cosine * wx - sine * wy, sine * wx + cosine * wy
-        if vx * obstacles.wall[0] + vy * obstacles.wall[1] <= LEVEL:
-            met = first_met(obstacles, wx, wy, places, met)
-            if met < 0:
-                return True
-    return False
+            count = add_piece(obstacles.rows[piece], x, y, ranges, count)
+    return way_left(ranges, count)
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, ways: Array, places: Array, out: NDArray[np.int8]) -> None:
-    """Whether pegs can all move away from a part, in configurations (N, 4), in one of some directions without entering it,
-    and without coming nearer to a wall.
+def leave(configs: Array, obstacles: Obstacles, ranges: Array, out: Array) -> None:
+    """A direction in radians, in the part's frame, along which all pegs can move away from a part in configurations (N, 4)
+    without entering it, and the part comes no nearer to a wall; NaN where there is none. Written to ``out`` (N,), in which
+    NaN stands where it is not asked.
 
     Parameters
     ----------
-    ways : (D, 2) unit vectors of the directions.
-    places : (K, 2) work space.
-    out : (N,) 1 where it is asked; 0 is written where they cannot.
+    ranges : (RANGES * K * P + 1, 2) work space, of so many pegs and pieces.
     """
     for n in range(configs.shape[0]):
-        if out[n] != 0 and not leads_away(configs[n], obstacles, ways, places):
-            out[n] = 0
+        if not isnan(out[n]):
+            out[n] = way_away(configs[n], obstacles, ranges)
