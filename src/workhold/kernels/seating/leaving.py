@@ -15,12 +15,15 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
-from workhold.kernels.seating.pieces import length, on_piece, place_on_part
+from workhold.kernels.seating.pieces import length, normal_at, on_piece, place_on_part
 
 Array = NDArray[np.float64]
 # mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way down begins.
 TOUCHED, ENTERED = 1e-4, 0.01
-# Radians. Ways that pass an end by less meet it, and by how much less than nothing one range begins after another: rounding.
+# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it is.
+LIFTED = 1e-6
+# Radians. Ways that pass an end by less meet it, and those that lead into what is touched by less go along it; one range
+# begins where another ends if no more is between: rounding.
 HAIR, ROUNDING = 1e-9, 1e-12
 TURN = 2.0 * pi
 # The most ranges that a peg and a piece have: into what is touched, and what is seen of an arc on each turn.
@@ -35,14 +38,25 @@ def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
 
 
 @inner
+def off_carrier(row: Array, x: float, y: float) -> float:
+    """Distance in mm of a point from the carrier of a piece, negative where it is seen from the part's side."""
+    dx, dy = x - row[X], y - row[Y]
+    return dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else row[SIGN] * (length(dx, dy) - row[RADIUS])
+
+
+@inner
+def is_touched(row: Array, x: float, y: float) -> bool:
+    """Whether a peg at a place touches a piece."""
+    return -ENTERED < off_carrier(row, x, y) < TOUCHED and on_piece(row, x, y, TOUCHED)
+
+
+@inner
 def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
     """Write the directions in which a point meets a line; see ``add_piece``."""
-    dx, dy, axis = x - row[X], y - row[Y], atan2(row[AXIS_Y], row[AXIS_X])
-    off, along = dx * row[AXIS_Y] - dy * row[AXIS_X], dx * row[AXIS_X] + dy * row[AXIS_Y]
-    if -ENTERED < off < TOUCHED and abs(along) <= row[HALF_EXTENT] + TOUCHED:
-        return add_range(axis, pi, ranges, count)
+    off = off_carrier(row, x, y)
     if off <= 0.0:
         return count
+    axis, along = atan2(row[AXIS_Y], row[AXIS_X]), (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
     low, high = atan2(off, row[HALF_EXTENT] - along), atan2(off, -row[HALF_EXTENT] - along)
     return add_range(axis + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
 
@@ -79,29 +93,19 @@ def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, 
 
 
 @inner
-def add_convex(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Write the directions in which a point meets a convex arc; see ``add_piece``."""
-    dx, dy = x - row[X], y - row[Y]
-    away, toward = length(dx, dy), atan2(dy, dx)
-    if -ENTERED < away - row[RADIUS] < TOUCHED and on_piece(row, x, y, TOUCHED):
-        count = add_range(toward + pi / 2.0, pi, ranges, count)
-    return count if away <= row[RADIUS] else add_side(row, away, toward, True, ranges, count)
-
-
-@inner
 def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
     """Write the directions in which a point meets a concave arc, from within its circle or through the opening; see
     ``add_piece``."""
     dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
     away, toward = length(dx, dy), atan2(dy, dx)
-    if -ENTERED < radius - away < TOUCHED and on_piece(row, x, y, TOUCHED):
+    if is_touched(row, x, y):
         # Along it there is no way.
         count = add_range(toward - pi / 2.0 - HAIR, pi + 2.0 * HAIR, ranges, count)
         away = min(away, radius)
     if away > radius:
         return add_side(row, away, toward, False, ranges, count)
     if row[HALF_EXTENT] >= pi:
-        return add_range(0.0, 2.0 * TURN, ranges, count)
+        return add_range(0.0, TURN, ranges, count)
     middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
     low = seen_inside(radius, away, middle - row[HALF_EXTENT])
     high = seen_inside(radius, away, middle + row[HALF_EXTENT])
@@ -110,11 +114,32 @@ def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> in
 
 @inner
 def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Write the ranges of directions in which a point that moves straight away meets a piece, coming from outside, be it at
-    once; the new count."""
+    """Write the ranges of directions in which a point that moves straight away meets a piece, coming from outside; the new
+    count."""
     if row[IS_ARC] == 0.0:
         return add_line(row, x, y, ranges, count)
-    return add_convex(row, x, y, ranges, count) if row[SIGN] > 0.0 else add_concave(row, x, y, ranges, count)
+    if row[SIGN] < 0.0:
+        return add_concave(row, x, y, ranges, count)
+    dx, dy = x - row[X], y - row[Y]
+    away = length(dx, dy)
+    return count if away <= row[RADIUS] else add_side(row, away, atan2(dy, dx), True, ranges, count)
+
+
+@inner
+def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array, count: int) -> int:
+    """Write the ranges of a peg at a place, for the pieces of its boundary: into those that it touches, and seen from beside
+    them all others; the new count."""
+    beside_x, beside_y = x, y
+    for k in range(first, end):
+        if is_touched(rows[k], x, y) and (rows[k, IS_ARC] == 0.0 or rows[k, SIGN] > 0.0):
+            nx, ny = normal_at(rows[k], x, y)
+            count = add_range(atan2(ny, nx) + pi / 2.0 + HAIR, pi - 2.0 * HAIR, ranges, count)
+            beside_x, beside_y = beside_x + LIFTED * nx, beside_y + LIFTED * ny
+    for k in range(first, end):
+        # What bends away from where it is touched is met nowhere else.
+        if (rows[k, IS_ARC] != 0.0 and rows[k, SIGN] < 0.0) or not is_touched(rows[k], x, y):
+            count = add_piece(rows[k], beside_x, beside_y, ranges, count)
+    return count
 
 
 @inner
@@ -127,6 +152,8 @@ def way_left(ranges: Array, count: int) -> float:
     while gone <= TURN:
         farthest = 0.0
         for k in range(count):
+            if ranges[k, 1] >= TURN:
+                return nan
             within = at - ranges[k, 0]
             within -= TURN * floor(within / TURN)
             if ROUNDING < within < ranges[k, 1] - ROUNDING:
@@ -145,10 +172,8 @@ def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
         # The part moves the other way than pegs do on it, and nothing moves toward the wall.
         count = add_range(atan2(obstacles.wall[1], obstacles.wall[0]) - config[0] - pi / 2.0, pi, ranges, count)
     for peg in range(obstacles.pegs.shape[0]):
-        x, y = place_on_part(config, obstacles, peg)
-        side = obstacles.right[peg]
-        for piece in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
-            count = add_piece(obstacles.rows[piece], x, y, ranges, count)
+        (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
+        count = add_peg(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1], ranges, count)
     return way_left(ranges, count)
 
 
