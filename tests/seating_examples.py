@@ -15,9 +15,10 @@ from scipy.optimize import root
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import CONFIG, PEG, PIECE
+from workhold.kernels.seating.columns import CONFIG, HOLDING, PEG, PIECE
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
+from workhold.seating.holdings import Holdings
 from workhold.seating.seating import Solver
 
 Array = NDArray[np.float64]
@@ -173,6 +174,14 @@ def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array
             if trust < 1e-6 or sign * config[3] < sign * stop + 1e-6:
                 return config
     return config
+
+
+def cells_by_holding(holdings: Holdings, right: int) -> tuple[Array, Array]:
+    """The cells of one jaw's holdings and their middles, heights from its own first peg."""
+    known, before, _ = holdings.jaws[right]
+    cells = np.array(known.cells)
+    cells[:, HOLDING] += before
+    return cells, known.middles
 
 
 def on_pieces(row, given, config):

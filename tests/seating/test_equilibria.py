@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from seating_examples import moved, solved
+from seating_examples import cells_by_holding, moved, solved
 from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
@@ -21,7 +21,7 @@ def told_by(holdings, locus, pattern, discs, stop):
     """Candidates of three contacts above the stop, and of three with one jaw."""
     stack, work, three, third = np.empty((DEPTH, 2)), np.empty((5, len(discs))), [], []
     for side in holdings.jaws:
-        given = *holdings.by_holding(side), holdings.sought, discs
+        given = *cells_by_holding(holdings, side), holdings.sought, discs
         three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
         third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
     three, third = np.concatenate(three), np.concatenate(third)

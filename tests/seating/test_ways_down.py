@@ -14,6 +14,7 @@ from workhold.kernels.seating.columns import (
     CONFIG,
     CONTACTS,
     COSINE,
+    FORCE,
     MOVED,
     NODE_LENGTH,
     PEG,

@@ -29,7 +29,6 @@ from workhold.kernels.seating.columns import (
     CELL_LENGTH,
     FIRST_PEG,
     HIGH,
-    HOLDING,
     HOLDING_LENGTH,
     KIND,
     LOW,
@@ -203,14 +202,6 @@ class Holdings:
         rows, slides = (known.holdings, known.slides) if group.sides[0] == side else known.after_one
         given = given_of(locus, group.pattern, rows, known.curves, known.reals)
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
-
-    def by_holding(self, right: int) -> tuple[Array, Array]:
-        """The cells of one jaw's holdings and their middles, those of one after each other, heights from its own first
-        peg."""
-        known, before, _ = self.jaws[right]
-        cells = np.array(known.cells)
-        cells[:, HOLDING] += before
-        return cells, known.middles
 
     def of_jaw(self, right: int) -> JawCells:
         """The cells of one jaw's holdings in order."""

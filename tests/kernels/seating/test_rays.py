@@ -8,7 +8,7 @@ from math import cos, hypot, sin
 import numpy as np
 import pytest
 
-from seating_examples import solved
+from seating_examples import cells_by_holding, solved
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, HOLDING, KIND, LOW, SOURCE, VAGUE
@@ -43,7 +43,7 @@ def cells_of(number):
     kept = [
         (cell, middle)
         for side in holdings.jaws
-        for cell, middle in zip(*holdings.by_holding(side), strict=True)
+        for cell, middle in zip(*cells_by_holding(holdings, side), strict=True)
         if cell[VAGUE] == 0.0 and kinds[int(cell[HOLDING])] == 0.0 and ray_in(middle)[0] > 0.0
     ]
     assert len(kept) > 200
