@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
 from math import isfinite, isnan
 from typing import ClassVar
 
@@ -117,7 +116,7 @@ class Vise(Toolkit):
         refuse_boundless(self)
         refuse_blocked(self)
 
-    @cached_property
+    @property
     def carriers(self) -> tuple[Carrier, Carrier]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         left = Carrier(
