@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sharpness import changed
-from workhold.kernels.seating import leaving, pieces
+from workhold.kernels.seating import leaving, pieces, roots
 from workhold.kernels.seating.leaving import way_left
 
 # Columns of a piece: arc, place, axis, half its extent, radius, sign.
@@ -20,7 +20,8 @@ ARCS = [np.array([*ARC, half, 5.0, sign, 0.0, 0.0]) for half in (0.4, 1.5, 2.6, 
 INNER: dict[str, Any] = {}
 for module, names in (
     (pieces, ("length", "angle_from_middle", "on_piece", "normal_at")),
-    (leaving, ("add_range", "off_carrier", "is_touched", "add_line", "seen_outside", "seen_inside", "add_side")),
+    (roots, ("gap",)),
+    (leaving, ("add_range", "is_touched", "add_line", "seen_outside", "seen_inside", "add_side")),
     (leaving, ("add_concave", "add_piece", "add_peg")),
 ):
     for name in names:

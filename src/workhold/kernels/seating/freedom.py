@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
@@ -23,6 +22,7 @@ from workhold.kernels.seating.columns import (
     Ways,
 )
 from workhold.kernels.seating.pieces import nearest_piece, on_piece, place_on_part
+from workhold.kernels.seating.roots import gap
 from workhold.kernels.seating.walls import SUPPORTS, beside_wall, off_wall
 
 Array = NDArray[np.float64]
@@ -185,10 +185,8 @@ def touched_piece(config: Array, peg: int, around: Obstacles) -> int:
     side = around.right[peg]
     nearest, best = around.parts[side, 0], inf
     for k in range(around.parts[side, 0], around.parts[side, 1]):
-        row = around.rows[k]
-        dx, dy = x - row[X], y - row[Y]
-        away = abs(dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else hypot(dx, dy) - row[RADIUS])
-        if away < best and on_piece(row, x, y, END_SLACK):
+        away = abs(gap(around.rows[k], x, y))
+        if away < best and on_piece(around.rows[k], x, y, END_SLACK):
             nearest, best = k, away
     return nearest
 

@@ -16,6 +16,7 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.pieces import length, normal_at, on_piece, place_on_part
+from workhold.kernels.seating.roots import gap
 
 Array = NDArray[np.float64]
 # mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way down begins.
@@ -38,22 +39,15 @@ def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
 
 
 @inner
-def off_carrier(row: Array, x: float, y: float) -> float:
-    """Distance in mm of a point from the carrier of a piece, negative where it is seen from the part's side."""
-    dx, dy = x - row[X], y - row[Y]
-    return dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else row[SIGN] * (length(dx, dy) - row[RADIUS])
-
-
-@inner
 def is_touched(row: Array, x: float, y: float) -> bool:
     """Whether a peg at a place touches a piece."""
-    return -ENTERED < off_carrier(row, x, y) < TOUCHED and on_piece(row, x, y, TOUCHED)
+    return -ENTERED < gap(row, x, y) < TOUCHED and on_piece(row, x, y, TOUCHED)
 
 
 @inner
 def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
     """Write the directions in which a point meets a line; see ``add_piece``."""
-    off = off_carrier(row, x, y)
+    off = gap(row, x, y)
     if off <= 0.0:
         return count
     axis, along = atan2(row[AXIS_Y], row[AXIS_X]), (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import SEPARATION, Families
-from workhold.kernels.seating.loose import lies_in
+from workhold.kernels.seating.loose import first_of, lies_in
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -81,10 +81,8 @@ def rest_at(
     seat = seat_at(config, seats, size)
     if seat >= 0:
         return numbers[seat]
-    for k in range(lying.shape[0]):
-        if lies_in(config, families, lying[k], size, SAME_LEVEL):
-            return first - lying.shape[0] + k
-    return UNKNOWN
+    loose = first_of(config, families, lying, size, SAME_LEVEL)
+    return first - lying.shape[0] + loose if loose >= 0 else UNKNOWN
 
 
 @inner
