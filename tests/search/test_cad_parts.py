@@ -1,0 +1,99 @@
+"""Parts as they come out of CAD on the toolkits that people own: no fault, nothing undecided, and every word verified.
+
+Their coincidences (concentric arcs, equal radii, a pitch that equals a dimension, symmetry) are what random outlines lack.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from test_fence import seen as seen_on_fence
+
+from cad_parts import SHAPES, cad_part
+from fixture_sets import Judge, assert_same, listed
+from slow_fence import slow_fence
+from slow_plate import seen, slow_plate
+from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design
+from workhold.algebra.engine import answer_by_algebra
+from workhold.completeness import verify
+from workhold.files.toolkit.presets import load_toolkit, preset_names
+
+PRESETS = preset_names()
+# Fixtures listed of each part.
+BEST = 20
+# No peg carries more than this many times the clamping force: what would is a clamp that grazes.
+MOST_FORCE = 1e6
+
+
+def forces(result: Result) -> list[float]:
+    """All contact forces per unit of a clamp's force."""
+    out = []
+    for fixture in result:
+        out += [peg.force for peg in fixture.pegs]
+        if fixture.pair is not None:
+            out += [force for pair in fixture.pair.reactions for force in pair]
+    return out
+
+
+def assert_sound(part: Workpiece, preset: str) -> None:
+    """A part on a preset: everything is decided, no force is absurd, and the result stands before its verification."""
+    result = design(part, load_toolkit(preset).toolkit, best=BEST)
+    assert result.complete and result.proof is not None
+    assert result.proof.undecided == (), (part.name, preset)
+    assert all(abs(force) <= MOST_FORCE for force in forces(result)), (part.name, preset)
+    outcome = verify(result)
+    assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), (part.name, preset)
+    assert outcome.faults == (), (part.name, preset)
+
+
+# Each shape once, each with another preset.
+@pytest.mark.parametrize("seed", range(len(SHAPES)))
+def test_every_shape_is_held_without_fault_or_doubt(seed: int) -> None:
+    assert_sound(cad_part(seed), PRESETS[seed % len(PRESETS)])
+
+
+@pytest.mark.prove
+@pytest.mark.parametrize("seed", range(220))
+def test_hundreds_of_parts_on_every_preset(seed: int) -> None:
+    for preset in PRESETS:
+        assert_sound(cad_part(seed), preset)
+
+
+@pytest.mark.parametrize(
+    ("seed", "pitch"),
+    [(6, 22.0), *(pytest.param(seed, 25.0, marks=pytest.mark.prove) for seed in (4, 5, 10, 17, 22, 24))],
+)
+def test_vises_agree_with_the_algebra(seed: int, pitch: float) -> None:
+    """The other engine shares no solver, and lists the same."""
+    part, vise = cad_part(seed), Vise(pitch, 1, 3)
+    ours, theirs = design(part, vise), answer_by_algebra(Query(part, vise))
+    assert len(ours) > 10
+    assert_same(listed(ours), listed(theirs), Judge(part, vise))
+
+
+ONE: dict[str, Any] = {"directions": ["-x", "-y"]}
+TWO: dict[str, Any] = {"directions": [("-x", "-y")], "clamps": 2}
+LONG = (
+    pytest.param(seed, 40.0, 3, fields, marks=pytest.mark.prove) for seed in (4, 5, 6, 7, 16) for fields in (ONE, TWO)
+)
+
+
+@pytest.mark.parametrize(("seed", "pitch", "columns", "fields"), [(6, 30.0, 2, ONE), (6, 30.0, 2, TWO), *LONG])
+def test_plates_agree_with_a_slow_search(seed: int, pitch: float, columns: int, fields: dict[str, Any]) -> None:
+    """One clamp and two, tips alone: the same fixtures to the last one."""
+    part = cad_part(seed)
+    plate = Plate(pitch, 3, columns=columns, rows=2, clamp_radius=5, **fields)
+    result = design(part, plate, **({"listing": "all"} if plate.clamps == 2 else {}))
+    assert len(seen(result)) == len(result) > 0
+    assert seen(result) == slow_plate(part, plate)
+
+
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (2, 4, 5, 6, 7, 8, 9, 10))]
+)
+def test_fences_agree_with_a_slow_search(seed: int) -> None:
+    part, fence = cad_part(seed), Fence(pitch=20, peg_radius=3, wall_offset=11, clamp_radius=5, rows=4)
+    result = design(part, fence)
+    assert len(result) > 0
+    assert seen_on_fence(result) == slow_fence(part, fence)
