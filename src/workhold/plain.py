@@ -1,8 +1,10 @@
-"""Text of others, such as the name of a part or a layer, made fit to be shown."""
+"""Text made fit to be shown: that of others, such as the name of a part or a layer, and words in a sentence."""
 
 from __future__ import annotations
 
-__all__ = ["plain", "shortened"]
+from collections.abc import Sequence
+
+__all__ = ["listed", "plain", "shortened"]
 
 # Letters of a sentence: enough for any of the program's own.
 LONGEST = 1000
@@ -32,3 +34,12 @@ def shortened(text: str, most: int = LONGEST) -> str:
         return text
     half = (most - len(CUT)) // 2
     return text[: most - len(CUT) - half] + CUT + text[len(text) - half :]
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words with commas and a last "and".
+
+    >>> listed(["a"]), listed(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

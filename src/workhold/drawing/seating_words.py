@@ -10,7 +10,7 @@ from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
 from workhold.model.fixture import Fixture
-from workhold.model.seating import CLOSE_READING, Seat, Seating
+from workhold.model.seating import CLOSE_READING, DRY_STEEL, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.place import Silhouette
@@ -18,8 +18,6 @@ from workhold.seating.reading import Gauge
 
 __all__ = ["SeatingWords", "down"]
 
-# What the friction of dry steel reaches.
-DRY_STEEL = 0.2
 # More than this is told without a bound, in degrees.
 ANY_TURN = 180.0
 

@@ -20,7 +20,6 @@ from workhold.drawing.sheet_writing import (
     heading,
     inside_words,
     lies_words,
-    listed,
     peg_rows,
     write_dowel,
     write_flats,
@@ -28,6 +27,7 @@ from workhold.drawing.sheet_writing import (
 )
 from workhold.model.holes import column_letters, hole_name
 from workhold.model.units import INCH
+from workhold.plain import listed
 
 __all__ = ["blocks_of"]
 

@@ -15,7 +15,6 @@ from workhold.drawing.sheet_writing import (
     heading,
     inside_words,
     lies_words,
-    listed,
     peg_rows,
     write_dowel,
     write_flats,
@@ -27,6 +26,7 @@ from workhold.model.setting import Setting, settings_of
 from workhold.model.shown import shown
 from workhold.model.tightening import clamp_names, clamp_shares, freedom_words, order_words
 from workhold.model.units import Unit
+from workhold.plain import listed
 
 __all__ = ["clamp_steps", "clamp_writers", "write_locators", "write_plate"]
 

@@ -32,7 +32,6 @@ __all__ = [
     "height_of",
     "inside_words",
     "lies_words",
-    "listed",
     "peg_rows",
     "write_dowel",
     "write_flats",
@@ -151,15 +150,6 @@ def write_table(column: Column, header: Sequence[str], rows: Sequence[Sequence[s
     column.row(header, ends, size, bold=True)
     for row in rows:
         column.row(row, ends, size)
-
-
-def listed(words: Sequence[str]) -> str:
-    """Words with commas and a last "and".
-
-    >>> listed(["a"]), listed(["a", "b", "c"])
-    ('a', 'a, b and c')
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[str]], str]:

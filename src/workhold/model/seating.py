@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 from workhold.model.fixture import Pose
 from workhold.model.toolkit import Toolkit
 
-__all__ = ["CLOSE_READING", "DECIMALS", "SMALL_CAPTURE", "Cage", "Contact", "Pass", "Seat", "Seating"]
+__all__ = ["CLOSE_READING", "DECIMALS", "DRY_STEEL", "SMALL_CAPTURE", "Cage", "Contact", "Pass", "Seat", "Seating"]
 
 # Of lengths in mm, angles in degrees and forces in files.
 DECIMALS = 9
@@ -20,6 +20,8 @@ DECIMALS = 9
 SMALL_CAPTURE = 1.0
 # mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
 CLOSE_READING = 0.1
+# The coefficient of friction that dry steel reaches.
+DRY_STEEL = 0.2
 # mm: less is none as it is written.
 SAME_READING = 5e-4
 # What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.

@@ -19,10 +19,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, OUTSIDE
+from workhold.model.fixture import Fixture
+from workhold.model.flat import standoff
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+from workhold.statics.contact_matrix import ContactMatrices, Touched
 
-__all__ = ["cone_edges", "possible_motions"]
+__all__ = ["cone_edges", "contacts_on_part", "possible_motions"]
 
 Array = NDArray[np.float64]
+
+
+def contacts_on_part(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
+) -> tuple[Array, Array, Array, Array]:
+    """Contacts, normals, what moves, and against which way it clamps, of a fixture as :func:`cone_edges` takes them.
+
+    Parameters
+    ----------
+    touched, matrices : what the toolkit's pegs touch of the part, and the contact matrix of the fixture.
+    """
+    carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
+    faces = {face.number: face.segment for face in workpiece.faces}
+    pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
+    radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
+    normals = matrices.normals[0]
+    against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
+    return matrices.points[0] - radii[:, None] * normals, normals, touched.moving[carriers], against
 
 
 def cone_edges(

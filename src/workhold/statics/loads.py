@@ -20,13 +20,12 @@ from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
 from workhold.limits import MOST_FRICTION, refuse_strong
 from workhold.model.fixture import Fixture
-from workhold.model.flat import standoff
 from workhold.model.load import Load
 from workhold.model.real import real
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.friction import possible_motions
+from workhold.statics.friction import contacts_on_part, possible_motions
 from workhold.statics.jaw import jaw_stiffness, shared_forces
 
 __all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
@@ -123,14 +122,8 @@ def load_cases(
     forces = shared_forces(forces, contact_matrices.closing[0], stiffness)
     motions = None
     if friction is not None:
-        carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
-        faces = {face.number: face.segment for face in workpiece.faces}
-        pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
-        radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
-        contacts = contact_matrices.points[0] - radii[:, None] * contact_matrices.normals[0]
-        against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
-        moving = touched.moving[carriers]
-        motions = possible_motions(contacts, contact_matrices.normals[0], moving, against, friction, touched.length)
+        on_part = contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)
+        motions = possible_motions(*on_part, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
     needs = [needed(forces, load, center) for load in loads]
     if jaw_force is None:

@@ -1,0 +1,158 @@
+"""How a part gets into its pose where two clamps hold it: it is pushed against its locators by hand, then clamped.
+
+The locators alone fix the pose, and neither clamp holds the part alone, so from where one of them would bring it home cannot
+be told: no opening, no reading, no cage. What can be told are the order of tightening, which locators each clamp alone leaves
+without force, and below which friction both together bring home a part that is a little off a locator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import floor, inf
+from typing import Any
+
+from attrs import frozen
+
+from workhold.conventions import NO_REACTION
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.seating import DRY_STEEL, length
+from workhold.model.setting import settings_of
+from workhold.model.tightening import clamp_names, first_clamps, order_words
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+from workhold.plain import listed
+from workhold.seating.sticking import LOCATORS, sticking_friction_of_two
+
+__all__ = ["WHY", "ByHand", "by_hand"]
+
+WHY = (
+    "Two clamps hold this part and neither holds it alone, so from where they bring it home is not known: put it in its place "
+    "by hand. The locators alone fix that place."
+)
+# Friction is told to so many decimals, rounded down.
+DECIMALS = 3
+
+
+@frozen
+class ByHand:
+    """What there is to know, and to do, of a part in two clamps.
+
+    Parameters
+    ----------
+    fixture, toolkit : what holds it.
+    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at their working
+        ratio; infinite where it always does, None for pegs with a flat.
+    """
+
+    fixture: Fixture
+    toolkit: Toolkit
+    sticking_friction: float | None
+
+    @property
+    def pair(self) -> Pair:
+        """What is particular to the two clamps."""
+        assert self.fixture.pair is not None
+        return self.fixture.pair
+
+    @property
+    def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
+        """For each clamp the locators, or ends of the contact with a fence, that it alone does not press the part on."""
+        known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
+        return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
+
+    def as_fields(self) -> dict[str, Any]:
+        """What there is to know as JSON has it: forces of clamps as shares of each other, names as on the terminal."""
+        return {
+            "clamps": list(clamp_names(self.fixture)),
+            "first": list(first_clamps(self.fixture)),
+            "unpressed": [[peg.hole for peg in pegs] for pegs in self.unpressed],
+            "ratio": [length(end) for end in self.pair.ratio],
+            "working_ratio": length(self.pair.working_ratio),
+            "sticking_friction": length(self.sticking_friction),
+        }
+
+    def steps(self, text: Callable[[float], str], with_order: bool = True) -> list[str]:
+        """What to do at the machine, and what to look at, one step each.
+
+        Parameters
+        ----------
+        text : writes a length in mm with its unit.
+        with_order : whether the order of tightening is told, which stands elsewhere on some papers.
+        """
+        order = [order_words(self.fixture)] if with_order else []
+        steps = [self.push_words(), self.touch_words(), " ".join([*order, self.hold_words()])]
+        return [*steps, *self.friction_words(), self.after_words(text)]
+
+    def push_words(self) -> str:
+        """How to put the part in."""
+        locators = [peg.hole for peg in self.fixture.pegs[:LOCATORS] if not peg.is_on_wall]
+        wall, noun = self.toolkit.wall, self.toolkit.carriers[0].peg
+        against = f"all three {noun}s, {listed(locators)}"
+        if wall is not None:
+            against = f"the {wall.noun}, flush, and against the {noun} in {listed(locators)}"
+        ways = (self.fixture.direction or "").split()
+        # Of clamps that push against each other neither shows the way.
+        way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.towards}"
+        return f"Draw both clamps back and push the part{way} by hand until it lies against {against}."
+
+    @property
+    def towards(self) -> str:
+        """Which way both clamps push, in words."""
+        return self.toolkit.arrangement(self.fixture.type, self.fixture.direction).towards
+
+    def touch_words(self) -> str:
+        """How to see that it lies right."""
+        touched = listed([f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]])
+        return f"Pull at a slip of paper at each: {touched}. If none comes out, the part is in its place."
+
+    def hold_words(self) -> str:
+        """Until when to hold the part."""
+        hold = "Hold the part in its place until both are tight"
+        first, names = first_clamps(self.fixture), clamp_names(self.fixture)
+        loose = [
+            f"{name} alone does not press it on {listed([place_of(peg, self.toolkit) for peg in pegs])}"
+            for name, pegs in zip(names, self.unpressed, strict=True)
+            if name in first
+        ]
+        return f"{hold}: {', and '.join(loose)}." if loose else f"{hold}."
+
+    def friction_words(self) -> list[str]:
+        """What friction does, one sentence or none."""
+        least, (first, second) = self.sticking_friction, clamp_names(self.fixture)
+        if least is None:
+            return []
+        together = f"{second} with {self.pair.working_ratio:.2f} times the force of {first}"
+        if least == inf:
+            return [f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."]
+        told = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
+        steel = "dry steel has 0.1 to 0.2"
+        if least >= DRY_STEEL:
+            return [
+                f"Tightened together, {together}, both bring home a part a little off a locator while friction is below "
+                f"{told}; {steel}."
+            ]
+        return [
+            f"From a friction of {told} on the part can stay a little off a locator also under both clamps, {together}; "
+            f"{steel}, so tap it home meanwhile."
+        ]
+
+    def after_words(self, text: Callable[[float], str]) -> str:
+        """What to look at in the end."""
+        settings = settings_of(self.fixture, self.toolkit)
+        names = clamp_names(self.fixture)
+        lengths = [f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)]
+        return f"Try the paper again. Right is {listed(lengths)}; if not, the part lies another way."
+
+
+def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
+    """What there is to know, and to do, of a part in the two clamps of a fixture."""
+    friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
+    return ByHand(fixture, toolkit, friction)
+
+
+def place_of(peg: Peg, toolkit: Toolkit) -> str:
+    """Where a locator is, or an end of the contact with a fence."""
+    if not peg.is_on_wall or toolkit.wall is None:
+        return peg.hole
+    return f"the {toolkit.wall.noun}, {peg.hole.rpartition(' ')[2]}"
+
