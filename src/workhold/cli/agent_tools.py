@@ -185,7 +185,12 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
     shown = fixture_data(fixture, result.toolkit, asked.rank)
-    if asked.seating and fixture.seating is None:
+    if asked.seating and fixture.pair is not None:
+        from workhold.model.units import MILLIMETRE
+        from workhold.seating.by_hand import by_hand
+
+        shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields(MILLIMETRE.text)
+    elif asked.seating and fixture.seating is None:
         from workhold.seating.seating import Solver
 
         shown["seating"] = Solver(result.workpiece, result.toolkit).of(fixture).as_fields()

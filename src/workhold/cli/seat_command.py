@@ -22,11 +22,9 @@ if TYPE_CHECKING:
     from workhold.model.units import Unit
     from workhold.seating.reading import Gauge
 
-__all__ = ["seat", "seating_words"]
+__all__ = ["by_hand_words", "seat", "seating_words"]
 
 SIDES = ("both", "drawn", "turned-over")
-# What the friction of dry steel reaches.
-DRY_STEEL = 0.2
 FLUSH = "flush on the fence"
 KINDS = {
     "fixture": "all four pegs on faces",
@@ -72,13 +70,16 @@ def seat(
     from workhold.cli.tables import print_tables
     from workhold.seating.reading import Gauge
 
+    if fixture.pair is not None:
+        tell_by_hand(result, rank, picture, shown_unit, json_)
+        return
     gauge, told = Gauge(fixture, result.toolkit), fixture.seating
     if told is None:
         from workhold.cli.warming import compile_seating
         from workhold.seating.pattern import refuse_unseated
         from workhold.seating.seating import Solver
 
-        refuse_unseated(result.toolkit, fixture)
+        refuse_unseated(result.toolkit)
         compile_seating(Event())
         told = Solver(result.workpiece, result.toolkit).of(fixture)
     seats = shown_seats(told, shown_side, opened, result)
@@ -106,6 +107,36 @@ def seat(
         print_json(rank=rank, seating=told.as_fields(), written=[] if picture is None else [str(picture)])
 
 
+def tell_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
+    """Tell how the part gets into its place under two clamps, and draw how it lies there."""
+    from workhold.cli.tables import print_tables
+    from workhold.drawing.fixture_picture import draw_fixture
+    from workhold.drawing.render import render
+    from workhold.files.atomic import write_bytes
+    from workhold.seating.by_hand import by_hand
+
+    fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
+    if picture is not None:
+        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=unit)
+        write_bytes(picture, render(svg, picture_ending(picture)))
+    if json_:
+        told = by_hand(fixture, result.workpiece, result.toolkit)
+        print_json(rank=rank, seating=None, by_hand=told.as_fields(unit.text), written=written)
+        return
+    print_tables(
+        f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}", *by_hand_words(rank, result, unit)
+    )
+    print_tables(*(f"Drawn in {path}." for path in written))
+
+
+def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:
+    """What to do with a part that two clamps hold, in numbered steps."""
+    from workhold.seating.by_hand import WHY, by_hand
+
+    steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.text)
+    return ["", WHY, "", *(f"{number}. {step}" for number, step in enumerate(steps, 1))]
+
+
 def shown_seats(told: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
     """The seats that can be reached, that of the fixture first."""
     own = [one for one in told.seats if one.is_own]
@@ -129,6 +160,8 @@ def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
 
 def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     """What to do, and what to read when it went right."""
+    from workhold.model.seating import DRY_STEEL
+
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
     named = f"a {setting.name} of " if carrier.on else ""
     more, less = ("more", "less") if gauge.grows else ("less", "more")

@@ -104,4 +104,8 @@ def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Un
         from workhold.cli.seat_command import seating_words
 
         print_tables(*seating_words(fixture, result, unit))
+    elif fixture.pair is not None and rank <= (result.query.seating or 0):
+        from workhold.cli.seat_command import by_hand_words
+
+        print_tables(*by_hand_words(rank, result, unit))
     print_tables(*load_tables(cases, fixture, toolkit, unit))

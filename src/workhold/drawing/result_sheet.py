@@ -17,6 +17,7 @@ from workhold.model.part_zero import part_zero
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.seating.by_hand import by_hand
 from workhold.seating.seating import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
@@ -93,7 +94,10 @@ def result_details(
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
     fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
     told, not_seated = result[rank - 1].seating if seating is not False else None, ""
-    if seating and told is None:
+    if seating is None and fixture.pair is not None:
+        seating = rank <= (result.query.seating or 0)
+    put_in = by_hand(fixture, workpiece, toolkit) if seating and fixture.pair is not None else None
+    if seating and told is None and put_in is None:
         try:
             told = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:
@@ -119,6 +123,7 @@ def result_details(
         dowel=dowel,
         others=result.table.same_holes(rank - 1) if others is None else others,
         seating=told,
+        by_hand=put_in,
         not_seated=not_seated,
     )
     return fixture, details

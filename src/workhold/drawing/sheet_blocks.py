@@ -44,7 +44,7 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
         needed.append(write_cautions)
     if sheet.seating is not None:
         others += [write_seating, write_wrong_seats]
-    elif sheet.details.not_seated:
+    elif sheet.details.by_hand is not None or sheet.details.not_seated:
         others.append(write_seating)
     if sheet.details.loads:
         others.append(write_loads)

@@ -10,6 +10,7 @@ from workhold.model.part_zero import PartZero
 from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
 from workhold.model.units import MILLIMETRE, Unit
+from workhold.seating.by_hand import ByHand
 from workhold.statics.loads import LoadCase
 
 __all__ = ["PAPERS", "SheetDetails"]
@@ -42,7 +43,8 @@ class SheetDetails:
     dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
     others : how many other fixtures of the result use the same holes.
     seating : what else the pegs can do with the part; None where the sheet does not tell.
-    not_seated : why it is not told though it was asked for, in a sentence.
+    by_hand : how the part is put into two clamps; None where the sheet does not tell.
+    not_seated : why seating is not told though it was asked for, in a sentence.
     """
 
     number: int
@@ -65,4 +67,5 @@ class SheetDetails:
     dowel: str | None = None
     others: int = 0
     seating: Seating | None = None
+    by_hand: ByHand | None = None
     not_seated: str = ""

@@ -9,6 +9,7 @@ from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.seats_picture import RIGHT, Placed, draw_lying
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.model.seating import Seat
+from workhold.seating.by_hand import WHY
 
 __all__ = ["write_seating", "write_wrong_seats"]
 
@@ -20,12 +21,18 @@ LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 
 def write_seating(column: Column, sheet: Sheet) -> None:
-    """Write how far to open, how near to put the part, and what to read."""
+    """Write how far to open, how near to put the part, and what to read; or how to put it into two clamps."""
     heading(column, "Will it end up there?")
-    if sheet.seating is None:
+    put_in, steps = sheet.details.by_hand, list[str]()
+    if sheet.seating is not None:
+        steps = sheet.seating.steps(sheet.workpiece)
+    elif put_in is not None:
+        column.paragraph(WHY, BODY)
+        # The order of tightening has a block of its own.
+        steps = put_in.steps(sheet.lengths.words, with_order=False)
+    else:
         column.paragraph(sheet.details.not_seated, BODY)
-        return
-    for number, step in enumerate(sheet.seating.steps(sheet.workpiece), 1):
+    for number, step in enumerate(steps, 1):
         column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
         column.paragraph(step, BODY, indent=18)
         column.y += 2

@@ -21,6 +21,7 @@ from workhold.model.holes import hole_name
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.plain import listed
 
 __all__ = [
     "BODY",

@@ -9,6 +9,7 @@ from workhold.model.toolkit import Wording
 
 __all__ = [
     "best_note",
+    "by_hand_note",
     "cut_note",
     "fitted_note",
     "kept_note",
@@ -83,6 +84,14 @@ def seated_note(looked_at: int, kept: int) -> str:
     return (
         f"The seating of the first {looked_at:,} fixtures was worked out: {kept:,} of them are as asked, and no other is "
         "listed. Of fixtures beyond these nothing is known, and some may be as asked: look at more of them to see."
+    )
+
+
+def by_hand_note() -> str:
+    """Of a search that asks for seating with two clamps, of which there is none to order fixtures by."""
+    return (
+        "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order as without "
+        "seating. How to put the part in is told of each fixture."
     )
 
 

@@ -200,6 +200,8 @@ class Query:
         """What is to be found before any seating is worked out: as many as that needs, in an order that does without."""
         if self.seating is None:
             return self
+        if self.toolkit.needs_pairs:
+            return evolve(self, seating=None)
         known = [key for key in self.ranking if key not in SEATING_KEYS]
         needed = len(known) < len(self.ranking)
         return evolve(

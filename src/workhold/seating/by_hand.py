@@ -1,13 +1,13 @@
 """How a part gets into its pose where two clamps hold it: it is pushed against its locators by hand, then clamped.
 
 The locators alone fix the pose, and neither clamp holds the part alone, so from where one of them would bring it home cannot
-be told: no opening, no reading, no cage. What can be told are the order of tightening, which locators each clamp alone leaves
-without force, and below which friction both together bring home a part that is a little off a locator.
+be told: no opening, no reading, no cage. What can be told are the order of tightening, which locators each clamp alone does
+not press the part on, and below which friction both together bring home a part that is a little off a locator.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import floor, inf
 from typing import Any
 
@@ -21,14 +21,14 @@ from workhold.model.tightening import clamp_names, first_clamps, order_words
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
-from workhold.seating.sticking import LOCATORS, sticking_friction_of_two
 
 __all__ = ["WHY", "ByHand", "by_hand"]
 
 WHY = (
-    "Two clamps hold this part and neither holds it alone, so from where they bring it home is not known: put it in its place "
-    "by hand. The locators alone fix that place."
+    "Neither of the two clamps holds the part alone, so from where they bring it home is not known: put it in its place by "
+    "hand. The locators alone fix that place."
 )
+LOCATORS = 3
 # Friction is told to so many decimals, rounded down.
 DECIMALS = 3
 
@@ -60,8 +60,13 @@ class ByHand:
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
-    def as_fields(self) -> dict[str, Any]:
-        """What there is to know as JSON has it: forces of clamps as shares of each other, names as on the terminal."""
+    def as_fields(self, text: Callable[[float], str]) -> dict[str, Any]:
+        """What there is to know and to do as JSON has it, clamps and locators by their names.
+
+        Parameters
+        ----------
+        text : writes a length in mm with its unit.
+        """
         return {
             "clamps": list(clamp_names(self.fixture)),
             "first": list(first_clamps(self.fixture)),
@@ -69,6 +74,8 @@ class ByHand:
             "ratio": [length(end) for end in self.pair.ratio],
             "working_ratio": length(self.pair.working_ratio),
             "sticking_friction": length(self.sticking_friction),
+            "why": WHY,
+            "steps": self.steps(text),
         }
 
     def steps(self, text: Callable[[float], str], with_order: bool = True) -> list[str]:
@@ -103,14 +110,14 @@ class ByHand:
     def touch_words(self) -> str:
         """How to see that it lies right."""
         touched = listed([f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]])
-        return f"Pull at a slip of paper at each: {touched}. If none comes out, the part is in its place."
+        return f"Pull at a slip of paper at each: {touched}. If none comes out, the part lies against all of them."
 
     def hold_words(self) -> str:
         """Until when to hold the part."""
         hold = "Hold the part in its place until both are tight"
         first, names = first_clamps(self.fixture), clamp_names(self.fixture)
         loose = [
-            f"{name} alone does not press it on {listed([place_of(peg, self.toolkit) for peg in pegs])}"
+            f"{name} alone does not press it on {listed(places_of(pegs, self.toolkit))}"
             for name, pegs in zip(names, self.unpressed, strict=True)
             if name in first
         ]
@@ -123,7 +130,9 @@ class ByHand:
             return []
         together = f"{second} with {self.pair.working_ratio:.2f} times the force of {first}"
         if least == inf:
-            return [f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."]
+            return [
+                f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."
+            ]
         told = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
         steel = "dry steel has 0.1 to 0.2"
         if least >= DRY_STEEL:
@@ -141,11 +150,13 @@ class ByHand:
         settings = settings_of(self.fixture, self.toolkit)
         names = clamp_names(self.fixture)
         lengths = [f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)]
-        return f"Try the paper again. Right is {listed(lengths)}; if not, the part lies another way."
+        return f"Try the paper again. Right is {listed(lengths)}; if not, the part lies against them another way."
 
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
     """What there is to know, and to do, of a part in the two clamps of a fixture."""
+    from workhold.seating.sticking_of_two import sticking_friction_of_two
+
     friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
     return ByHand(fixture, toolkit, friction)
 
@@ -154,5 +165,12 @@ def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """Where a locator is, or an end of the contact with a fence."""
     if not peg.is_on_wall or toolkit.wall is None:
         return peg.hole
-    return f"the {toolkit.wall.noun}, {peg.hole.rpartition(' ')[2]}"
+    return f"the {toolkit.wall.noun} on the {peg.hole.rpartition(' ')[2]}"
 
+
+def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
+    """Where some are; both ends of the contact with a fence are the fence."""
+    walls = sum(peg.is_on_wall for peg in pegs)
+    if toolkit.wall is None or walls < 2:
+        return [place_of(peg, toolkit) for peg in pegs]
+    return [f"the {toolkit.wall.noun}", *(peg.hole for peg in pegs if not peg.is_on_wall)]

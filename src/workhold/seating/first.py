@@ -19,16 +19,17 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
+from workhold.errors import InputError
 from workhold.listing.listed import stage
 from workhold.listing.ranking import rank
-from workhold.model.notes import best_note, cut_note, seated_note
+from workhold.model.notes import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.quality import SEATING_FIGURES, WARNINGS
-from workhold.model.query import Query
+from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
 from workhold.seating.pattern import refuse_unseated
 
-__all__ = ["Receiver", "receive_seated", "seated_answer"]
+__all__ = ["Receiver", "receive_seated", "refuse_unasked", "seated_answer"]
 
 # The part of the work, as progress tells it, that is the search.
 SEARCHED = 0.3
@@ -86,9 +87,11 @@ def seated_answer(
     Raises
     ------
     InputError
-        For a toolkit of which no seating is worked out, and what the search raises.
+        As :func:`refuse_unasked`, and what the search raises.
     """
-    refuse_unseated(query.toolkit)
+    refuse_unasked(query)
+    if query.toolkit.needs_pairs:
+        return put_in_by_hand(search(query.without_seating, progress), query)
     result = search(query.without_seating, stage(progress, 0.0, SEARCHED))
     return seated(result, Seats(query, threads, stage(progress, SEARCHED, 1.0), cancel))
 
@@ -113,11 +116,37 @@ def receive_seated(
     InputError
         As :func:`seated_answer`.
     """
-    refuse_unseated(query.toolkit)
+    refuse_unasked(query)
+    if query.toolkit.needs_pairs:
+        by_hand = SeatedReceiver(receiver, Seats(query, threads, None, cancel))
+        return put_in_by_hand(search(query.without_seating, progress, by_hand), query)
     told = None if progress is None else rising(progress)
     work = Seats(query, threads, stage(told, SEARCHED, 1.0), cancel)
     result = search(query.without_seating, stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work))
     return evolve(result, query=query)
+
+
+def refuse_unasked(query: Query) -> None:
+    """Refuse what cannot be asked of seating.
+
+    Raises
+    ------
+    InputError
+        As ``refuse_unseated``, but that with two clamps only figures of seating cannot be asked for.
+    """
+    if not query.toolkit.needs_pairs:
+        refuse_unseated(query.toolkit)
+    elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.ranking):
+        raise InputError(
+            "with two clamps the part is put against its locators by hand, so no opening, reading or other figure of "
+            "seating can choose or rank fixtures: ask for the seating alone."
+        )
+
+
+def put_in_by_hand(result: Result, query: Query) -> Result:
+    """A result of two clamps as that of the query with seating: the same fixtures, and how the part is put in."""
+    notes = (*result.reasons, by_hand_note()) if sum(result.found.values()) else result.reasons
+    return evolve(result, query=query, notes=notes)
 
 
 def rising(progress: Progress) -> Progress:
@@ -216,6 +245,9 @@ class SeatedReceiver:
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
         """Take a result and its fixtures, so many, best first, in tables one after the other."""
+        if self.work.query.toolkit.needs_pairs:
+            self.receiver.receive(put_in_by_hand(result, self.work.query), listed, tables)
+            return
         rest = iter(tables)
         held = list(taken(rest, self.work.query.seating or 0)) or [result.table]
         made = seated(evolve(result, table=FixtureTable.joined(held)), self.work, listed)

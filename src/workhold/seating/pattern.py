@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
-from workhold.model.tightening import first_clamps
 from workhold.model.toolkit import Toolkit
 from workhold.seating.door import Door
 
@@ -61,9 +60,9 @@ class Pattern:
         Raises
         ------
         InputError
-            With two clamps, saying which may be tightened first, for pegs with a flat, and for pegs without a radius.
+            With two clamps, for pegs with a flat, and for pegs without a radius.
         """
-        refuse_unseated(toolkit, fixture)
+        refuse_unseated(toolkit)
         numbers = tuple(k for k, peg in enumerate(fixture.pegs) if not peg.is_on_wall)
         carriers = [toolkit.carrier(fixture.pegs[k].carrier) for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)
@@ -159,8 +158,8 @@ class Pattern:
         return out
 
 
-def refuse_unseated(toolkit: Toolkit, fixture: Fixture | None = None) -> None:
-    """Refuse toolkits of which seating is not told, perhaps because of a fixture in it.
+def refuse_unseated(toolkit: Toolkit) -> None:
+    """Refuse toolkits of which no seat of closing is told.
 
     Raises
     ------
@@ -169,23 +168,8 @@ def refuse_unseated(toolkit: Toolkit, fixture: Fixture | None = None) -> None:
     """
     asked = "what a part does while it is clamped is told"
     if toolkit.needs_pairs:
-        words = (
-            "neither of two holds the part alone." if fixture is None or fixture.pair is None else alone_words(fixture)
-        )
-        raise InputError(f"{asked} of one clamp: {words}")
+        raise InputError(f"{asked} of one clamp: with two the part is put against its locators by hand.")
     if toolkit.has_flats:
         raise InputError(f"{asked} of round pegs: those of this result have flats.")
     if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")
-
-
-def alone_words(fixture: Fixture) -> str:
-    """What each of two clamps alone does to a part in its pose: the end of a sentence, and what to do."""
-    first = first_clamps(fixture)
-    if not first:
-        return "either of the two alone lifts the part off a locator, so bring both up together, in small turns."
-    one = "either of the two" if len(first) > 1 else first[0]
-    return (
-        f"{one} may be tightened first, but alone does not press the part on every locator, so hold the part against all of "
-        "them until both are tight."
-    )

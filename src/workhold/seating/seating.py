@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import product
 from math import inf, isfinite, pi, radians, tau
 from threading import Event
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve, field
@@ -21,6 +22,7 @@ from workhold.model.seating import Cage, Contact, Pass, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.balance import contact_normals
+from workhold.seating.by_hand import by_hand
 from workhold.seating.cage import Surroundings
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
@@ -349,8 +351,11 @@ def unsettled_words(count: int) -> tuple[str, ...]:
     return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
 
 
-def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Seating]:
+def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
     """The seatings of fixtures of a result: from how wide open each catches the part, and where else it can rest.
+
+    Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
+    ``seating.by_hand.ByHand``, which tells how.
 
     Parameters
     ----------
@@ -360,7 +365,7 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     Raises
     ------
     InputError
-        As ``Pattern.of``: on a fence, with two clamps, for pegs with a flat and for pegs of radius 0.
+        As ``Pattern.of``: for pegs with a flat and for pegs of radius 0.
 
     Examples
     --------
@@ -372,4 +377,6 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     (0.03, 0.083)
     """
     chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
+    if result.toolkit.needs_pairs:
+        return [by_hand(fixture, result.workpiece, result.toolkit) for fixture in chosen]
     return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)

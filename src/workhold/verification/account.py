@@ -29,6 +29,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.notes import (
     best_note,
+    by_hand_note,
     cut_note,
     fitted_note,
     kept_note,
@@ -91,14 +92,15 @@ def count_faults(listing: Listing) -> Iterator[str]:
 def seating_faults(listing: Listing) -> Iterator[str]:
     """Contradictions between how many fixtures have their seating told and how many should."""
     query, listed = listing.query, len(listing.fixtures)
-    first = listing.fixtures[: query.seating or 0]
+    # With two clamps there is none to be told.
+    first = listing.fixtures[: 0 if query.toolkit.needs_pairs else query.seating or 0]
     told = sum(fixture.seating is not None for fixture in first)
     if query.has_seating_rules and (told < listed or listed > len(first)):
         yield f"{listed} fixtures are listed for their seating, but it is told of {told}"
     elif listing.complete and told < len(first):
         yield f"the seating of {len(first)} fixtures is asked for, but it is told of {told}"
     if any(fixture.seating is not None for fixture in listing.fixtures[len(first) :]):
-        yield f"the seating of more fixtures is told than of the {query.seating or 0} that it is asked of"
+        yield f"the seating of more fixtures is told than of the {len(first)} that it is asked of"
 
 
 def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
@@ -179,6 +181,8 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
         yield (undecided_note(undecided),)
     if found and listing.query.has_seating_rules:
         yield tuple(seated_notes(listing))
+    if found and listing.query.seating is not None and listing.query.toolkit.needs_pairs:
+        yield (by_hand_note(),)
     systems = listing.statistics.get("undecided", 0)
     yield from (tuple(n for n in listing.notes if n.startswith("Undecided: ")) or ("Undecided: ",),) * min(
         systems, MOST_NAMED + 1

@@ -69,6 +69,8 @@ class SeatingJudge:
         claim: Claim | None = fixture.seating
         if claim is None:
             return ""
+        if fixture.pair is not None:
+            return "its seating is told, and with two clamps there is none"
         return next((f"its seating: {words}" for words in Judged(self, fixture, claim).faults()), "")
 
 

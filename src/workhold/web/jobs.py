@@ -22,6 +22,7 @@ from workhold.model.explanation import Explanation
 from workhold.model.notes import cut_note, kept_note, stopped_note
 from workhold.model.result import Result
 from workhold.model.seating import Seating
+from workhold.seating.by_hand import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.limits import Limits
@@ -80,7 +81,7 @@ class Job:
     orders: dict[tuple[int, Selection], Entries] = field(factory=dict)
     result_hash: str | None = None
     family: FamilyFound | None = None
-    seatings: dict[tuple[int, int], Seating] = field(factory=dict)
+    seatings: dict[tuple[int, int], Seating | ByHand] = field(factory=dict)
 
     @property
     def compares(self) -> bool:
@@ -132,7 +133,7 @@ class Job:
             "table": list(self.table) if self.compares else None,
         }
 
-    def keep_seating(self, key: tuple[int, int], told: Seating) -> None:
+    def keep_seating(self, key: tuple[int, int], told: Seating | ByHand) -> None:
         """Keep the seating of a fixture, by revision and rank, instead of the oldest one kept."""
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))

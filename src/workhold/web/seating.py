@@ -17,6 +17,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
+from workhold.seating.by_hand import ByHand, by_hand
 from workhold.seating.pattern import Pattern
 from workhold.web.forms import LARGEST, Form, Number
 from workhold.web.worker import Order
@@ -57,28 +58,36 @@ class ClosingOrder:
 
 def words_of(held: Held, told: Seating, unit: str) -> SeatingWords:
     """What a seating means in words."""
-    fixture, _, toolkit = held
-    pitch = min(min(carrier.pitch) for carrier in toolkit.carriers)
-    return SeatingWords(told, fixture, toolkit, LengthUnit.suiting(unit_named(unit), pitch))
+    return SeatingWords(told, held[0], held[2], lengths_of(held, unit))
 
 
-def find_seating(held: Held, order: Order) -> Seating:
-    """The seating of a fixture, worked out where the result has none."""
+def lengths_of(held: Held, unit: str) -> LengthUnit:
+    """How lengths are written in a unit."""
+    return LengthUnit.suiting(unit_named(unit), min(min(carrier.pitch) for carrier in held[2].carriers))
+
+
+def find_seating(held: Held, order: Order) -> Seating | ByHand:
+    """The seating of a fixture, worked out where the result has none; with two clamps how the part is put in."""
     from workhold.seating.seating import Solver
 
     fixture, workpiece, toolkit = held
+    if fixture.pair is not None:
+        return by_hand(fixture, workpiece, toolkit)
     told: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
     return told
 
 
-def seating_answer(held: Held, told: Seating, unit: str) -> dict[str, Any]:
-    """The fields of a seating as a result file has them, with what they mean in words.
+def seating_answer(held: Held, told: Seating | ByHand, unit: str) -> dict[str, Any]:
+    """The fields of a seating as a result file has them, with what they mean in words; with two clamps, what to do in
+    ``by_hand``.
 
     ``own`` is the place of the fixture's own seat in ``seats``, ``nearest`` are the places of the wrong ones that the jaws
     open to, those that read most like it first; ``clamping`` is 1 where ``jaw_separation`` falls while the part is clamped,
     -1 where it rises; ``widest`` is how far in mm it can be opened beyond where it holds the part, and ``done`` that it is
     opened, in a word; ``captions`` are lines for each seat.
     """
+    if isinstance(told, ByHand):
+        return {"by_hand": told.as_fields(lengths_of(held, unit).words)}
     words, seats = words_of(held, told, unit), list(told.seats)
     travel = words.gauge.carrier.travel
     assert travel is not None

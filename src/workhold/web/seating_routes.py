@@ -6,7 +6,9 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
+from workhold.errors import InputError
 from workhold.model.seating import Seating
+from workhold.seating.by_hand import ByHand
 from workhold.web.fixture_routes import Rank, Revision, UnitName, ranked
 from workhold.web.job_routes import found_job, result_of_job
 from workhold.web.seating import ClosingForm, ClosingOrder, Held, seating_answer
@@ -17,8 +19,9 @@ __all__ = ["router"]
 router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
 
 
-async def seated(request: Request, name: str, rank: int, revision: int | None) -> tuple[Held, Seating]:
-    """A fixture with its seating, which is worked out once and kept with the job while it is used."""
+async def seated(request: Request, name: str, rank: int, revision: int | None) -> tuple[Held, Seating | ByHand]:
+    """A fixture with its seating, or how it is put into two clamps: worked out once and kept with the job while it is
+    used."""
     job = found_job(request, name)
     result = result_of_job(job, revision)
     held = result[ranked(result, rank)], result.workpiece, result.toolkit
@@ -48,5 +51,7 @@ async def closing(
     jaws are open beyond where they hold it, in mm, and what it ends in: ``right``,
     ``same place``, ``wrong``, ``elsewhere``, ``stop``, ``outside`` or ``lost``. Who hangs up has it stopped."""
     held, told = await seated(request, name, rank, revision)
+    if isinstance(told, ByHand):
+        raise InputError("no closing can be played with two clamps: the part is put against its locators by hand.")
     answer: dict[str, Any] | None = await at_desk_while_heard(request, "closing", ClosingOrder(held, told, form))
     return answer

@@ -156,14 +156,14 @@ def explanation(query: Query, order: Order) -> Explanation:
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> tuple[NamedQuery, ...]:
     """The queries of a request, after everything that can be known to be wrong with them is asked for."""
     from workhold.contact.problem import Problem
-    from workhold.seating.pattern import refuse_unseated
+    from workhold.seating.first import refuse_unasked
 
     form, most_segments = payload
     queries = form.queries(most_segments)
     if len(queries) == 1:
         Problem.of(queries[0][1])
         if queries[0][1].seating is not None:
-            refuse_unseated(queries[0][1].toolkit)
+            refuse_unasked(queries[0][1])
     return queries
 
 

@@ -130,12 +130,15 @@ async function learn() {
   try {
     const answer = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/seating?unit=${unit}`);
     if (known !== mine) return;
-    mine.told = answer;
     show(byId("seating-answer"), true);
-    const list = (sentences) => sentences.map((sentence) => make("li", {}, sentence));
-    byId("seating-steps").replaceChildren(...list(answer.steps));
+    for (const id of ["try-fields", "try-hint"]) show(byId(id), !answer.by_hand);
+    if (answer.by_hand) {
+      tellByHand(answer.by_hand);
+      return;
+    }
+    mine.told = answer;
+    writeSteps(answer.steps, answer.words);
     byId("try-done").textContent = answer.done;
-    byId("seating-words").textContent = answer.words.join(" ");
     writeSeats();
     if (!state.trial) return;
     const opening = Math.max(state.trial.opening, CAUGHT * Math.min(answer.capture_opening ?? 0, armOf(state.part)));
@@ -148,6 +151,22 @@ async function learn() {
     say("");
     drawing.show(state.part, null, 0, false);
   }
+  }
+
+/** Two clamps close on nothing by themselves: what to do by hand stands there instead, and the part stays where it lies. */
+function tellByHand(answer) {
+  writeSteps(answer.steps, []);
+  byId("seats").replaceChildren();
+  show(byId("seats-more"), false);
+  say(answer.why);
+  markEntered([]);
+  drawing.show(state.part, null, 0, false);
+}
+
+/** What to do, step by step, and what to beware of. @param {string[]} steps @param {string[]} words */
+function writeSteps(steps, words) {
+  byId("seating-steps").replaceChildren(...steps.map((step) => make("li", {}, step)));
+  byId("seating-words").textContent = words.join(" ");
 }
 
 /** Tell what happens. @param {string} words @param {string} [kind] "good" or "bad" */
