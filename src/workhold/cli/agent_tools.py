@@ -186,10 +186,9 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
     shown = fixture_data(fixture, result.toolkit, asked.rank)
     if asked.seating and fixture.pair is not None:
-        from workhold.model.units import MILLIMETRE
         from workhold.seating.by_hand import by_hand
 
-        shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields(MILLIMETRE.text)
+        shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()
     elif asked.seating and fixture.seating is None:
         from workhold.seating.seating import Solver
 

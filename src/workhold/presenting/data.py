@@ -21,6 +21,7 @@ from workhold.model.setting import settings_of
 from workhold.model.tightening import order_words
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.seating.by_hand import by_hand
 
 if TYPE_CHECKING:
     from workhold.files.toolkit.reader import LoadedToolkit
@@ -106,7 +107,16 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
         ),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
         **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
+        **by_hand_data(fixture, rank),
     }
+
+
+def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
+    """How the part is put into two clamps, where its result was asked for the seating of so many fixtures."""
+    result = None if fixture.listed is None else fixture.listed.result
+    if fixture.pair is None or result is None or rank is None or rank > (result.query.seating or 0):
+        return {}
+    return {"by_hand": by_hand(fixture, result.workpiece, result.toolkit).as_fields()}
 
 
 def load_case_data(case: LoadCase) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from workhold.model.seating import DRY_STEEL, length
 from workhold.model.setting import settings_of
 from workhold.model.tightening import clamp_names, first_clamps, order_words
 from workhold.model.toolkit import Toolkit
+from workhold.model.units import MILLIMETRE
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
 
@@ -33,7 +34,7 @@ LOCATORS = 3
 DECIMALS = 3
 
 
-@frozen
+@frozen(repr=False)
 class ByHand:
     """What there is to know, and to do, of a part in two clamps.
 
@@ -48,6 +49,10 @@ class ByHand:
     toolkit: Toolkit
     sticking_friction: float | None
 
+    def __repr__(self) -> str:
+        friction = "" if self.sticking_friction is None else f", sticks from a friction of {self.sticking_friction:.3f}"
+        return f"<ByHand of {self.fixture}{friction}>"
+
     @property
     def pair(self) -> Pair:
         """What is particular to the two clamps."""
@@ -60,7 +65,7 @@ class ByHand:
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
-    def as_fields(self, text: Callable[[float], str]) -> dict[str, Any]:
+    def as_fields(self, text: Callable[[float], str] = MILLIMETRE.text) -> dict[str, Any]:
         """What there is to know and to do as JSON has it, clamps and locators by their names.
 
         Parameters
@@ -78,7 +83,7 @@ class ByHand:
             "steps": self.steps(text),
         }
 
-    def steps(self, text: Callable[[float], str], with_order: bool = True) -> list[str]:
+    def steps(self, text: Callable[[float], str] = MILLIMETRE.text, with_order: bool = True) -> list[str]:
         """What to do at the machine, and what to look at, one step each.
 
         Parameters

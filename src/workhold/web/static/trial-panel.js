@@ -151,7 +151,7 @@ async function learn() {
     say("");
     drawing.show(state.part, null, 0, false);
   }
-  }
+}
 
 /** Two clamps close on nothing by themselves: what to do by hand stands there instead, and the part stays where it lies. */
 function tellByHand(answer) {
