@@ -75,6 +75,19 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     assert failed and "such as seating 100" in json.dumps(data)
 
 
+def test_with_two_clamps_agents_are_told_what_to_do_by_hand(folder: Path) -> None:
+    """Of the first of a design, of any fixture that is asked for, and on the sheet."""
+    plate = {"toolkit": "two-clamp-plate-20mm"}
+    made = told("design", folder, part="wedge.json", **plate, seating=1, count=2, out="some.json")
+    right, other = workhold.seatings(workhold.open("some.json"), 2)
+    assert made["fixtures"][0]["by_hand"] == right.as_fields() and "by_hand" not in made["fixtures"][1]
+    for asked in (True, False):
+        shown = told("show", folder, result_file="some.json", rank=2, seating=asked, picture=False)["fixture"]
+        assert shown.get("by_hand") == (other.as_fields() if asked else None) and "seating" not in shown
+    told("sheet", folder, result_file="some.json", rank=2, path="setup.svg", seating=True)
+    assert "Will it end up there?" in Path("setup.svg").read_text()
+
+
 def test_design_keeps_results_apart(folder: Path) -> None:
     first, second = (told("design", folder, part="wedge.json", **VISE, best=1)["result_file"] for _ in range(2))
     assert first != second and workhold.open(first) == workhold.open(second)

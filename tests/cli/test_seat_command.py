@@ -14,7 +14,8 @@ import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
-from workhold.model.units import MILLIMETRE
+from workhold.model.units import INCH, MILLIMETRE
+from workhold.seating.by_hand import WHY
 from workhold.seating.missed import WAS_NOT_FOUND
 from workhold.seating.seating import Solver
 
@@ -148,8 +149,10 @@ def test_refusals_are_one_sentence(run: Any, result_file: Path, arguments: tuple
     assert message in outcome.stderr and outcome.stderr.count("\n") == 1
 
 
-def test_another_toolkit_is_refused(run: Any, tmp_path: Path) -> None:
-    """Of two clamps, which may be tightened first is told, and why it is not enough; square, slanted, and of one of both."""
+def test_with_two_clamps_it_says_what_to_do_by_hand(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As an answer within 80 columns, its steps numbered, with lengths in the unit asked for, the same as JSON and with a
+    picture: of fixtures of which either clamp may be first, one of them, or none."""
+    monkeypatch.setenv("COLUMNS", "80")
     plate, square = (
         Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3),
         [[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]],
@@ -162,17 +165,38 @@ def test_another_toolkit_is_refused(run: Any, tmp_path: Path) -> None:
         if (kind := (low == 0.0, high == inf)) in seen:
             continue
         seen.add(kind)
-        outcome = run("seat", tmp_path / "p.json", rank)
-        text = " ".join(outcome.stderr.split())
-        assert outcome.exit_code == 2 and "told of one clamp: " in text
-        tips = [peg.hole for peg in fixture.pegs[-2:]]
-        first = {
-            (True, True): "either of the two may",
-            (True, False): f"{tips[0]} may",
-            (False, True): f"{tips[1]} may",
-        }
-        assert first.get(kind, "either of the two alone lifts the part off a locator") in text
+        outcome, picture = run("seat", tmp_path / "p.json", rank, "--unit", "inch"), tmp_path / f"{rank}.svg"
+        assert outcome.exit_code == 0 and not outcome.stderr
+        assert max(map(len, outcome.stdout.splitlines())) <= 80
+        [told], text = workhold.seatings(made, [fixture]), " ".join(outcome.stdout.split())
+        steps = told.steps(INCH.text)
+        assert f"Seating of fixture {rank} of {len(made)}: square {WHY}" in text
+        assert " ".join(f"{number}. {step}" for number, step in enumerate(steps, 1)) in text
+        shown = json.loads(run("seat", tmp_path / "p.json", rank, "--json", "--draw", picture, "--unit", "inch").stdout)
+        assert shown == {"rank": rank, "seating": None, "by_hand": told.as_fields(INCH.text), "written": [str(picture)]}
+        assert shown["by_hand"]["steps"] == steps and " in at clamp" in steps[-1]
+        assert f"Fixture {rank}" in picture.read_text()
+        outcome = run("seat", tmp_path / "p.json", rank, "--draw", picture, "--force")
+        assert str(picture) in "".join(outcome.stdout.split())
     assert len(seen) == 4
+
+
+def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path: Path) -> None:
+    """Of the first fixtures, as many as were asked, in words and as JSON; the search says so, and what it cannot do."""
+    (tmp_path / "square.json").write_text(
+        '{"name": "square", "units": "mm", "loops": [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]]}'
+    )
+    asked = ["design", tmp_path / "square.json", "--toolkit", "two-clamp-plate-20mm", "--best", 3, "--seating", 2]
+    outcome = run(*asked, "--out", tmp_path / "r.json")
+    assert outcome.exit_code == 0 and "pushed against its locators by hand" in " ".join(outcome.stderr.split())
+    result = workhold.open(tmp_path / "r.json")
+    for rank, [told] in ((rank, workhold.seatings(result, [result[rank - 1]])) for rank in (2, 3)):
+        text = " ".join(run("show", tmp_path / "r.json", rank).stdout.split())
+        shown = json.loads(run("show", tmp_path / "r.json", rank, "--json").stdout)["fixture"]
+        assert all((step in text) == (rank == 2) for step in told.steps()[:2])
+        assert shown.get("by_hand") == (told.as_fields() if rank == 2 else None)
+    refused = run(*asked, "--foolproof")
+    assert refused.exit_code == 2 and "ask for the seating alone" in refused.stderr
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class, texts
 
 import workhold
-from workhold import Plate, Vise, Workpiece
+from workhold import Fence, Plate, Vise, Workpiece
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.result_sheet import result_cautions, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM
@@ -21,6 +21,7 @@ from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.seating.by_hand import WHY
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="", version="1.2.3")
@@ -179,6 +180,26 @@ def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     with pytest.raises(workhold.InputError) as refusal:
         workhold.seatings(plate)
     assert str(refusal.value)[1:] in words
+
+
+@pytest.mark.parametrize(
+    "toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)]
+)
+def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> None:
+    """Each step but the order of tightening, which has a block of its own; where it is asked for, or the result was asked
+    for the seating of so many fixtures. What else lies in the same holes is still warned of, and nothing is cut off."""
+    result = workhold.design(WEDGE, toolkit, best=3, seating=2)
+    for rank in (2, 3):
+        [told] = workhold.seatings(result, [result[rank - 1]])
+        for seating in (True, None, False):
+            pages = result_sheet(result, rank, seating=seating)
+            words = " ".join(word for page in pages for word in texts(page))
+            wanted = seating or (seating is None and rank == 2)
+            steps = told.steps(LengthUnit.suiting(MILLIMETRE, 20.0).words, with_order=False)
+            assert all((part in words) == wanted for part in (WHY, *steps, "Will it end up there?"))
+            assert "What it looks like" not in words and not any(collisions(page) for page in pages)
+    [asked, plain] = [result_cautions(result, 1, seating=seating) for seating in (True, False)]
+    assert asked == plain
 
 
 def test_a_clamp_is_drawn_back_and_tightened() -> None:

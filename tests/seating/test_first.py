@@ -20,6 +20,7 @@ from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
 from workhold.files.result.seating_forms import figures_told
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
+from workhold.model.notes import by_hand_note
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import seating
@@ -240,8 +241,43 @@ def test_what_needs_seating_is_refused_without_it() -> None:
         workhold.design(WEDGE, VISE, seating=2, opening=-1.0)
     with pytest.raises(InputError, match=r"choose among .*capture-opening"):
         workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
-    with pytest.raises(InputError, match="neither of two holds the part alone"):
-        workhold.design(WEDGE, Plate(pitch=20, peg_radius=3, clamps=2), seating=2)
+
+
+def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is_put_in_by_hand(tmp_path: Path) -> None:
+    """In one go and through a file; what is read from the file holds, and asking is no search for figures that are none."""
+    part = Workpiece.from_loops("square", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]])
+    plate, heard = Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3), list[float]()
+    plain, asked = workhold.design(part, plate, best=3), Query(part, plate, best=3, seating=2)
+    made = workhold.answer(asked, progress=lambda done, _: heard.append(done))
+    assert made.table == plain.table and made.query == asked and made.complete and heard[-1] == 1.0
+    assert made.notes == (*plain.notes, by_hand_note()) and made.seating == () and made[0].seating is None
+    for name in ("a.json", "a.npz"):
+        streamed = workhold.answer_to_file(asked, tmp_path / name)
+        read = workhold.open(tmp_path / name)
+        assert streamed.notes == read.notes == made.notes and read.query == made.query and read.seating == ()
+        assert np.array_equal(read.table.face, made.table.face)
+        assert workhold.verify(tmp_path / name, complete=True).holds
+    for further in ({"opening": 1.0}, {"foolproof": True}, {"ranking": "reading"}):
+        with pytest.raises(
+            InputError, match=r"put against its locators by hand, so no opening.*ask for the seating alone"
+        ):
+            workhold.answer(attrs.evolve(asked, **further))
+    none = workhold.answer(Query(Workpiece.from_loops("tiny", [[[0, 0, 0], [2, 0, 0], [1, 2, 0]]]), plate, seating=2))
+    assert not len(none) and by_hand_note() not in none.notes
+
+
+def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) -> None:
+    """A file is refuted that tells one of them a seating, or leaves the note out."""
+    part = Workpiece.from_loops("square", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]])
+    plate, path = Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3), tmp_path / "a.json"
+    made = workhold.design(part, plate, seating=1, best=1)
+    workhold.save(attrs.evolve(made, notes=()), path)
+    assert any("the part in is told of each" in fault for fault in workhold.verify(path).faults)
+    [other] = workhold.design(WEDGE, VISE, seating=1, best=1).seating
+    workhold.save(attrs.evolve(made, seating=(other,)), path)
+    outcome = workhold.verify(path)
+    assert "with two clamps there is none" in outcome.unproven[0].reason
+    assert any("than of the 0 that it is asked of" in fault for fault in outcome.faults)
 
 
 def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -275,7 +275,7 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
         (Vise(8, 2, 0), "radius 0"),
         (Plate(pitch=8, peg_radius=2, clamp_radius=0), "radius 0"),
         (Vise(8, 2, 2, flat=(1, 1)), "round pegs"),
-        (Plate(pitch=8, peg_radius=2, clamps=2), "neither of two holds"),
+        (Plate(pitch=8, peg_radius=2, clamps=2), "of one clamp: with two the part is put against its locators"),
     ],
 )
 def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):

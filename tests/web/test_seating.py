@@ -14,7 +14,8 @@ from running_server import RunningServer, request
 from test_parts import refused
 
 import workhold
-from workhold import Vise, Workpiece
+from workhold import Plate, Vise, Workpiece
+from workhold.model.notes import by_hand_note
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.web.seating import ClosingForm, ClosingOrder, close
@@ -85,7 +86,27 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
     for asked in ({"opening": 1.0}, {"foolproof": True}, {"seating": 0}, {"seating": 3, "opening": -1}):
         refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=VISE, **asked)), 400)
-    refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=plate, seating=3)), 400)
+    for asked in ({"opening": 1.0}, {"foolproof": True}):
+        refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=plate, seating=3, **asked)), 400)
+
+
+def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) -> None:
+    """In the unit asked for, on the sheet too; a search may ask for it, and no closing is played."""
+    plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
+    job = server.done(request(workpiece=WEDGE, toolkit=plate, seating=3, best=3))
+    made = workhold.design(Workpiece.from_loops("wedge", [CORNERS]), Plate(20, 3, clamps=2), seating=3, best=3)
+    [told] = workhold.seatings(made, [made[1]])
+    answer = server.client.get(f"{job}/fixtures/2/seating").json()
+    assert answer == {"rank": 2, "by_hand": json.loads(json.dumps(told.as_fields()))}
+    inches = server.client.get(f"{job}/fixtures/2/seating", params={"unit": "inch"}).json()["by_hand"]
+    assert " in at clamp" in inches["steps"][-1] and inches["steps"][:-1] == answer["by_hand"]["steps"][:-1]
+    assert by_hand_note() in server.client.get(job).json()["notes"]
+    sheet = server.client.get(f"{job}/fixtures/2/sheet.svg")
+    assert sheet.status_code == 200 and "Will it end up there?" in sheet.text
+    start = {"theta_deg": 0.0, "x": 0.0, "y": 0.0, "opening": 1.0}
+    answer = server.client.post(f"{job}/fixtures/2/closing", json=start)
+    refused(answer, 400)
+    assert "put against its locators by hand" in answer.text
 
 
 def test_a_closing_comes_home_from_the_cage(server: RunningServer, place: str, result: Result, told: Seating) -> None:

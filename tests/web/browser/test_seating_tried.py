@@ -141,6 +141,31 @@ def test_keys_and_fields_do_what_the_hand_does(browser: Any, server: RunningServ
     assert [line for line in walk.troubles if "400" not in line] == []
 
 
+def test_with_two_clamps_it_is_said_what_to_do_by_hand(walk: Walk) -> None:
+    """In place of a part to drag; another toolkit's is dragged again, and words follow the unit."""
+    page = walk.page
+    walk.take()
+    page.select_option("#preset", "two-clamp-plate-20mm")
+    walk.search()
+    page.click("#try")
+    walk.seen("#seating-steps li:nth-child(5)")
+    row = walk.shown()
+    told = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/{row['rank']}/seating").json()["by_hand"]
+    assert page.locator("#seating-steps li").all_inner_texts() == told["steps"]
+    assert page.inner_text("#try-words") == told["why"]
+    assert page.locator("#try-fields").is_hidden() and page.locator("#try-hint").is_hidden()
+    assert page.locator("#seats .seat").count() == 0 and page.locator("#seats-more").is_hidden()
+    assert page.locator("#drawing-fixture .part.put").count() == 0
+    page.select_option("#unit", "inch")
+    walk.seen("#seating-steps li:has-text(' in at clamp')")
+    page.select_option("#unit", "mm")
+    page.click("#try")
+    page.select_option("#preset", "plate-20mm")
+    walk.search()
+    begin(walk)
+    assert page.locator("#try-fields").is_visible() and page.locator("#try-hint").is_visible()
+
+
 def test_a_search_asks_for_seating(walk: Walk) -> None:
     """Of the first fixtures, and only those that catch the part so far open; the list shows it, and a link keeps it."""
     page = walk.page
