@@ -93,8 +93,8 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
 def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) -> None:
     """In the unit asked for, on the sheet too; a search may ask for it, and no closing is played."""
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
-    job = server.done(request(workpiece=WEDGE, toolkit=plate, seating=3, best=3))
-    made = workhold.design(Workpiece.from_loops("wedge", [CORNERS]), Plate(20, 3, clamps=2), seating=3, best=3)
+    job = server.done(request(workpiece=WEDGE, toolkit=plate, seating=3))
+    made = workhold.design(Workpiece.from_loops("wedge", [CORNERS]), Plate(20, 3, clamps=2), seating=3)
     [told] = workhold.seatings(made, [made[1]])
     answer = server.client.get(f"{job}/fixtures/2/seating").json()
     assert answer == {"rank": 2, "by_hand": json.loads(json.dumps(told.as_fields()))}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from running_server import RunningServer
-from walking import Walk
+from walking import EXAMPLES, Walk
 
 AXE = Path(__file__).parent / "data" / "axe.min.js"
 MIDDLE = """async () => {
@@ -144,7 +144,8 @@ def test_keys_and_fields_do_what_the_hand_does(browser: Any, server: RunningServ
 def test_with_two_clamps_it_is_said_what_to_do_by_hand(walk: Walk) -> None:
     """In place of a part to drag; another toolkit's is dragged again, and words follow the unit."""
     page = walk.page
-    walk.take()
+    page.set_input_files("#file", EXAMPLES / "plate.json")
+    walk.seen("#faces button")
     page.select_option("#preset", "two-clamp-plate-20mm")
     walk.search()
     page.click("#try")
