@@ -20,6 +20,7 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
+from workhold.model.tightening import order_words
 from workhold.model.units import INCH, MILLIMETRE, Unit
 from workhold.seating.by_hand import WHY
 
@@ -197,6 +198,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
             wanted = seating or (seating is None and rank == 2)
             steps = told.steps(LengthUnit.suiting(MILLIMETRE, 20.0).words, with_order=False)
             assert all((part in words) == wanted for part in (WHY, *steps, "Will it end up there?"))
+            assert words.count(order_words(result[rank - 1])) == 2
             assert "What it looks like" not in words and not any(collisions(page) for page in pages)
     [asked, plain] = [result_cautions(result, 1, seating=seating) for seating in (True, False)]
     assert asked == plain
