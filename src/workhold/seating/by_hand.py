@@ -32,6 +32,8 @@ WHY = (
 LOCATORS = 3
 # Friction is told to so many decimals, rounded down.
 DECIMALS = 3
+# A ratio of forces below this is told to two digits, others to hundredths.
+SMALL = 0.1
 
 
 @frozen(repr=False)
@@ -133,7 +135,8 @@ class ByHand:
         least, (first, second) = self.sticking_friction, clamp_names(self.fixture)
         if least is None:
             return []
-        together = f"{second} with {self.pair.working_ratio:.2f} times the force of {first}"
+        ratio = self.pair.working_ratio
+        together = f"{second} with {ratio:{'.2f' if ratio >= SMALL else '.2g'}} times the force of {first}"
         if least == inf:
             return [
                 f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."
