@@ -21,6 +21,7 @@ ROWS = {
     "the body of a clamp may enter": (["BODY_SLACK"], ["BODY_SLACK"]),
     "past the end at a tangent joint": (["END_SLACK"], ["HAIR"]),
     "inside any other end": (["END_SLACK"], ["HAIR"]),
+    "a contact margin asked for": (["END_SLACK"], ["HAIR"]),
     "a straight piece of the convex hull": (["LEAST_HULL_EDGE"], ["LEAST_FLUSH"]),
     "an arc this near to its chord": (["READING"], []),
     "an arc of a bulge below this": (["STRAIGHT"], ["STRAIGHT"]),
@@ -29,6 +30,7 @@ ROWS = {
     "closure margin": (["LEAST_CLOSURE"], ["LEAST_SHARE"]),
     "clamping force": (["LEAST_CLAMPING"], ["LEAST_CLAMPING"]),
     "of two clamps each pushes": (["LEAST_PUSH", "LEAST_SEAT"], ["LEAST_PUSH", "LEAST_SEAT"]),
+    "no peg is pressed": (["MOST_FORCE"], ["MOST_FORCE"]),
     "a locator's force per unit": (["NO_REACTION"], ["NO_REACTION"]),
     "sizes of the four minors": (["LEAST_SPAN"], ["LEAST_SPAN"]),
     "same holes, orientation and place": (["SAME_POSE", "SAME_PLACE"], ["SAME", "SAME"]),
@@ -39,7 +41,7 @@ def table() -> list[tuple[str, list[float]]]:
     """What each row of the table is about, and its numbers."""
     text = BELIEF.read_text().partition("| what | number | why |\n|---|---|---|\n")[2].partition("\n\n")[0]
     cells = [[cell.strip() for cell in line.split("|")[1:3]] for line in text.splitlines()]
-    return [(what, [float(number) for number in re.findall(r"\d+e-\d+", numbers)]) for what, numbers in cells]
+    return [(what, [float(number) for number in re.findall(r"\d+e-?\d+", numbers)]) for what, numbers in cells]
 
 
 def test_every_row_is_known_once() -> None:

@@ -21,7 +21,8 @@ GAP_SLACK = 1e-9
 # mm. The body of a clamp may enter the part by this much: it touches it at the tip, and slots as wide as a clamp are drawn
 # with seven digits.
 BODY_SLACK = 1e-7
-# mm. A contact this near to the end of its feature is at the end; beyond a tangent joint it may be by as much.
+# mm. A contact this near to the end of its feature is at the end; beyond a tangent joint it may be by as much. A contact
+# margin or the distance from a keep-out zone, which a user asks for with "at least", is met when missed by at most this.
 END_SLACK = 1e-9
 # mm and no unit. Ends this near, with normals this near, are a tangent joint: bulges are written with few digits.
 JOINT = 1e-6
@@ -34,11 +35,14 @@ LEAST_CLOSURE = 1e-9
 # No unit. The clamping force exceeds this (model: condition 5): 0 at an exact double root, where the rounding of a drawing
 # makes it up to 1e-7 or so.
 LEAST_CLAMPING = 1e-6
-# No unit. With two clamps each pushes with more than this part of the force on its face, and the wrenches of the locators
-# have a larger determinant than the second: with less the pose is a double root, which a rounded drawing leaves at 1e-7 or
-# so.
-LEAST_PUSH = 1e-9
+# No unit. With two clamps each pushes with more than this part of the force on its face, for a clamp that grazes an arc
+# pushes with nothing; and the wrenches of the locators have a larger determinant than the second: with less the pose is a
+# double root, which a rounded drawing leaves at 1e-7 or so.
+LEAST_PUSH = 1e-6
 LEAST_SEAT = 1e-6
+# No unit. No peg is pressed with more than so many times the force of a clamp. With one clamp, and in a vise, the least
+# clamping force implies it: shares are below 1.
+MOST_FORCE = 1e6
 # No unit. A locator's force per unit of a clamp's this near to zero is zero: exact zeros are the rule in a square pose. A
 # clamp whose least such force, as a share of all, is above it holds the part without the other.
 NO_REACTION = 1e-9

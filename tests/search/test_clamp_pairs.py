@@ -328,7 +328,7 @@ def clamps_at(
         way = np.array(WAYS[name])
         start = np.array([0.0, line * plate.pitch[1]]) if way[0] else np.array([line * plate.pitch[0], 0.0])
         push = -float(way @ turn @ normals[side])
-        if push <= 1e-9:
+        if push <= 1e-6:
             continue
         move = far[side] + plate.clamp_radius - normals[side] @ (turn.T @ (start - shift))
         tip = start + way * float(move / (normals[side] @ (turn.T @ way)))

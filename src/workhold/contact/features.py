@@ -9,7 +9,7 @@ contact feature : a straight or circular piece of the locus that faces a face; o
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK, JOINT, TANGENT
@@ -43,10 +43,16 @@ class ContactFeature:
     ----------
     face : number of the face that the peg touches.
     segment : where the peg's centre may lie; its normals are those of the contact.
+    cut_from : the piece of the locus that keep-out zones cut it from; itself where none did.
     """
 
     face: int
     segment: Segment
+    cut_from: Segment = field()
+
+    @cut_from.default
+    def _not_cut(self) -> Segment:
+        return self.segment
 
 
 def contact_features(workpiece: Workpiece, peg_radius: float, flat: Flat | None = None) -> list[ContactFeature]:
@@ -105,7 +111,8 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
 
 def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
     """The parts of a contact feature on which a peg's body stays clear of a zone."""
-    return [ContactFeature(feature.face, part) for part in clear_parts(feature.segment, zone.segments, body_radius)]
+    parts = clear_parts(feature.segment, zone.segments, body_radius)
+    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
 
 
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
@@ -133,16 +140,38 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     return np.where((is_arc & (half >= np.pi))[..., None], np.inf, ends)
 
 
-def end_slacks(features: list[ContactFeature]) -> NDArray[np.float64]:
-    """How far in mm a contact may lie past each feature's low and high end, shape (F, 2).
+def end_slacks(
+    features: list[ContactFeature], margin: float = 0.0, locus: list[ContactFeature] | None = None
+) -> NDArray[np.float64]:
+    """How far in mm a contact may lie past the place ``margin`` mm inside each feature's low and high end, shape (F, 2).
 
     Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once), so rounding
-    is forgiven. Any other end does not count: there the peg also touches a second face or stands on a corner.
+    is forgiven. Any other end does not count: there the peg also touches a second face or stands on a corner. A margin is
+    met where it is met exactly. A keep-out zone cuts a feature where the peg's body touches it, which is allowed: the margin
+    counts from the ends that the feature has without zones.
+
+    Parameters
+    ----------
+    margin : smallest distance in mm from a contact to the end of its feature.
+    locus : all features, also those that are ruled out, if others are: a joint with one of them is a joint.
     """
-    ends = np.array([[f.segment.at(-f.segment.half_extent), f.segment.at(f.segment.half_extent)] for f in features])
-    normals = np.array(
-        [[f.segment.normal(-f.segment.half_extent), f.segment.normal(f.segment.half_extent)] for f in features]
-    )
+    everything = [feature.segment for feature in (features if locus is None else locus)]
+    ends = dict(zip(map(id, everything), np.minimum(joint_slacks(everything) + margin, END_SLACK), strict=True))
+    slack = np.array([ends[id(feature.cut_from)] for feature in features]).reshape(-1, 2)
+    for index, feature in enumerate(features):
+        piece = feature.cut_from
+        if feature.segment is not piece:
+            half = feature.segment.half_extent
+            points = np.array([feature.segment.at(-half), feature.segment.at(half)])
+            beyond = end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
+            slack[index] = np.minimum(slack[index] + beyond, margin + END_SLACK)
+    return slack
+
+
+def joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
+    """How far in mm a contact may lie past the low and the high end of pieces of the locus, shape (F, 2)."""
+    ends = np.array([[piece.at(-piece.half_extent), piece.at(piece.half_extent)] for piece in pieces])
+    normals = np.array([[piece.normal(-piece.half_extent), piece.normal(piece.half_extent)] for piece in pieces])
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     slack = np.full(len(points), -END_SLACK)
     together = max(TOGETHER // max(len(points), 1), 1)

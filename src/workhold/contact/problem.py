@@ -37,7 +37,8 @@ class Problem:
     ----------
     query : what is asked.
     loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out, ordered by face.
-    rows : (F, 12) contact features, with the slack of their ends (``contact.features.end_slacks``).
+    rows : (F, 12) contact features, with the slack of their ends beside the contact margin
+        (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the same for both
         where their pegs are alike, else those of the standing carrier come first.
@@ -83,14 +84,14 @@ class Problem:
                 for locus, carrier in zip(loci, carriers, strict=False)
             ]
         features = [feature for part in allowed for feature in part]
+        slacks = np.concatenate(
+            [end_slacks(part, query.contact_margin, locus) for part, locus in zip(allowed, loci, strict=True)]
+        )
         center = workpiece.center
         return cls(
             query,
             (tuple(loci[0]), tuple(loci[-1])),
-            rows=np.concatenate(
-                [centered(feature_rows(features), center), np.concatenate([end_slacks(part) for part in allowed])],
-                axis=1,
-            ),
+            rows=np.concatenate([centered(feature_rows(features), center), slacks], axis=1),
             faces=np.array([feature.face for feature in features], dtype=np.int64),
             standing=(0, len(allowed[0])),
             moving=(len(features) - len(allowed[-1]), len(features)),

@@ -18,7 +18,7 @@ from workhold.kernels.contact.clamp_pairs import Clamps
 from workhold.listing.canonical_form import changes, packed
 from workhold.listing.on_fence import Pressed, clear_holes, listed_once, turned
 from workhold.listing.paired import FAR, ChosenPairs, PairedFixtures
-from workhold.listing.seats import NAMES, clusters
+from workhold.listing.seats import NAMES, clusters, presses_too_much
 from workhold.model.result import FixtureTable
 
 __all__ = ["PairedOnFence", "SeatsOnFence", "seats_on_fence"]
@@ -102,11 +102,13 @@ def seats_on_fence(parts: Sequence[tuple[Pressed, Problem, str]]) -> SeatsOnFenc
 
 
 def one_direction(pressed: Pressed, problem: Problem, direction: str) -> tuple[Pressed, int, IntArray, IntArray]:
-    """Contacts of one direction, each once, without clamps that hold the part alone or have no hole; the direction's number;
-    and holes, with the numbers of their contacts in front."""
+    """Contacts of one direction, each once, without clamps that hold the part alone, press a locator too much
+    (:func:`presses_too_much`) or have no hole; the direction's number; and holes, with the numbers of their contacts in
+    front."""
     pressed = listed_once(pressed)
     taken = pressed.null[:, :3]
-    pressed = pressed.take(taken.min(axis=1, initial=1.0) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1)))
+    needed = taken.min(axis=1, initial=1.0) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
+    pressed = pressed.take(needed & ~presses_too_much(taken, pressed.push))
     index, hole = clear_holes(pressed, problem, every=True)
     kept = np.unique(index)
     return pressed.take(kept), NAMES.index(direction), np.searchsorted(kept, index), hole

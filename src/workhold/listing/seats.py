@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
-from workhold.conventions import NO_REACTION, SAME_PLACE, SAME_POSE
+from workhold.conventions import MOST_FORCE, NO_REACTION, SAME_PLACE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.clamp_pairs import Clamps
@@ -104,7 +104,8 @@ class Seats:
 
 
 def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contacts:
-    """Contacts that the search of one direction proved, without clamps that hold the part alone or have no hole."""
+    """Contacts that the search of one direction proved, without clamps that hold the part alone, press a locator with more
+    than ``MOST_FORCE`` times their own force, or have no hole."""
     frame = problem.frame
     rows = problem.rows[c.feature]
     wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
@@ -114,7 +115,9 @@ def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contac
     turned = np.stack(rotated(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
     push = (turned * wrench[:, TIP, :2]).sum(axis=1)
     doubt = doubts(inverse, taken, rows, problem)
-    alone = taken.min(axis=1, initial=np.inf) > NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
+    left_out = (taken.min(axis=1, initial=np.inf) > NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))) | presses_too_much(
+        taken, push
+    )
     column, row = frame.step_back(c.column[:, LOCATORS], c.row[:, LOCATORS])
     lowest = np.stack([column.min(axis=1, initial=1 << 30), row.min(axis=1, initial=1 << 30)], axis=1)
     column, row = column - lowest[:, :1], row - lowest[:, 1:]
@@ -126,7 +129,7 @@ def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contac
     across = 1 if frame.quarters % 2 == 0 else 0
     line = np.stack(frame.step_back(np.zeros(len(along), np.int64), c.row[:, TIP]), axis=1)[:, across]
     holes = np.stack(frame.step_back(hole, c.row[index, TIP]), axis=1) - lowest[index]
-    kept = ~alone
+    kept = ~left_out
     kept[np.setdiff1d(np.arange(len(kept)), index)] = False
     number = np.cumsum(kept) - 1
     order = np.lexsort((row, column), axis=1)
@@ -152,6 +155,17 @@ def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contac
         holes=holes[there],
         hole_of=number[index[there]],
     )
+
+
+def presses_too_much(taken: Array, push: Array) -> NDArray[np.bool_]:
+    """Which clamps (N,) press a locator with more than ``MOST_FORCE`` times their own force.
+
+    Parameters
+    ----------
+    taken : (N, 3) forces of the locators per unit of that on the clamp's face.
+    push : (N,) force of the clamp per unit of that on its face.
+    """
+    return np.asarray(np.abs(taken).max(axis=1, initial=0.0) > MOST_FORCE * push)
 
 
 def doubts(inverse: Array, taken: Array, rows: Array, problem: Problem) -> Array:

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from workhold.contact.features import end_distances
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
+from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
 from workhold.limits import thread_count
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
@@ -72,7 +73,7 @@ class Contacts:
     margin : (N,) smallest entry of the null vector of sum of sizes 1, of the sign that makes it largest.
     null : (N, 4) that null vector.
     clamping : (N,) the clamping force for it.
-    end_distance : (N,) smallest distance in mm to the end of a feature.
+    end_distance : (N,) smallest distance in mm to the end of a feature, as the contact margin counts it.
     """
 
     candidates: Candidates
@@ -172,7 +173,9 @@ def all_contacts(problem: Problem, threads: int | None) -> Contacts:
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
         clamping=-problem.toolkit.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
-        end_distance=end_distances(rows, c.point).min(axis=(1, 2), initial=np.inf),
+        end_distance=(end_distances(rows, c.point) + rows[..., LOW_SLACK : HIGH_SLACK + 1] - END_SLACK).min(
+            axis=(1, 2), initial=np.inf
+        ),
     )
 
 
@@ -231,7 +234,7 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
     if margin > 0.0:
-        out.append(("contact margin", lambda c: c.end_distance >= margin, partial(short_of_margin, margin, unit)))
+        out.append(("contact margin", lambda c: c.end_distance >= margin - END_SLACK, partial(short_of_margin, margin, unit)))
     if frame.toolkit.gap is not None:
         out.append(
             ("smallest gap", lambda c: c.candidates.gap >= frame.gap - GAP_SLACK, partial(too_near, frame, unit))

@@ -184,7 +184,7 @@ class ToolkitSearch:
         """The search of a problem, with its chord curves, or some of them once ``cancel`` is set; ``counting`` leaves the
         contact margin out."""
         if counting:
-            problem = evolve(problem, query=evolve(problem.query, contact_margin=0.0))
+            problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
         loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
         return cls(problem, loose, tables_of(problem, loose, threads, cancel), counting, most_listed)
 

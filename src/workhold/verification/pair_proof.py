@@ -26,7 +26,7 @@ from workhold.verification.pair_balance import PairBalance, push_of, seat_of
 from workhold.verification.pair_plate import PairRules, directions_of, line_of
 from workhold.verification.placing import gap_findings, proven_places, written_pose
 from workhold.verification.plate import LOCATORS, direction_of, in_holes
-from workhold.verification.rules import HAIR, LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, NO_REACTION, SAME_FREEDOM
+from workhold.verification.rules import HAIR, LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, MOST_FORCE, NO_REACTION, SAME_FREEDOM
 from workhold.verification.seat import Ratio, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, SeatPair, Standing, choices, pieces_apart
 from workhold.verification.touching import touching_findings
@@ -72,6 +72,12 @@ def pair_findings(
             push.push - LEAST_PUSH,
             f"{name} does not push the part: its share is {number(push.push)}",
             f"the push of {name} is exactly at its limit",
+        )
+        most = largest([abs(entry) for entry in push.taken])
+        yield from rule(
+            MOST_FORCE * push.push - most,
+            f"{name} presses a locator with {number(most / push.push)} times its own force",
+            f"the force of a locator under {name} is exactly at its limit",
         )
         yield from rule(
             NO_REACTION - push.alone,

@@ -25,7 +25,7 @@ from workhold.verification.contacts import Contact, Pose, standing_contact
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.hardware import Hardware, Key, Place, Rank, from_anchor
 from workhold.verification.outline import Outline
-from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_PUSH, SAME, WALL
+from workhold.verification.rules import AGREEMENT, BODY_SLACK, HAIR, LEAST_CLAMPING, SAME, WALL
 from workhold.verification.sides import Side
 
 __all__ = [
@@ -58,7 +58,7 @@ class PlateRules(Hardware):
     wider_words: ClassVar[str] = (
         "a smaller contact margin, a longer stroke, more columns or rows, fewer restrictions or more directions"
     )
-    least_clamping: ClassVar[float] = LEAST_PUSH
+    least_clamping: ClassVar[float] = LEAST_CLAMPING
     kinds: ClassVar[str] = "clamp"
     pegs_wanted: ClassVar[str] = "three locators and then a clamp"
     # Of columns and rows, those that count from the lowest that is used.

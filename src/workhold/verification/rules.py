@@ -29,6 +29,7 @@ __all__ = [
     "LEAST_SHARE",
     "LEAST_SPAN",
     "MAIN_DIRECTION",
+    "MOST_FORCE",
     "NEAR_EDGE",
     "NO_REACTION",
     "POINTS_PER_DECADE",
@@ -54,8 +55,8 @@ __all__ = [
     "WHOLE",
 ]
 
-# mm. A gap or an opening is met when it is missed by at most this; a contact may lie so far past a tangent joint, and lies
-# more than this inside any other end.
+# mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at most this; a
+# contact may lie so far past a tangent joint, and lies more than this inside any other end.
 HAIR = 1e-9
 # mm. The body of a clamp, which touches the part at its tip, may enter it by at most this.
 BODY_SLACK = 1e-7
@@ -70,8 +71,10 @@ LEAST_SHARE = 1e-9
 # No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact equations, where the
 # rounding of a drawing alone leaves up to 1e-7 or so.
 LEAST_CLAMPING = 1e-6
-# No unit. The same of a clamp that slides on a plate: what is told apart from none. A search lists from LEAST_CLAMPING on.
-LEAST_PUSH = 1e-9
+# No unit. Of two clamps each pushes with more than this part of the force on its face; with less it grazes the workpiece.
+LEAST_PUSH = 1e-6
+# No unit. The most a peg is pressed with per unit of a clamp's force.
+MOST_FORCE = 1e6
 # No unit. With two clamps the wrenches of the locators, moments in parts of L, have a larger determinant than this: with
 # less the pose is a double root, which a rounded drawing leaves at 1e-7 or so.
 LEAST_SEAT = 1e-6

@@ -16,14 +16,14 @@ from flint import arb
 
 from workhold.model.fixture import Peg
 from workhold.model.query import Query
-from workhold.verification.balls import Point, dot, exact_point, norm, turned
+from workhold.verification.balls import Point, dot, exact_point, largest, norm, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.ends import on_line
 from workhold.verification.findings import Finding
 from workhold.verification.outline import Outline
 from workhold.verification.pair_balance import push_of
 from workhold.verification.plate import WAYS, PlateRules
-from workhold.verification.rules import AGREEMENT, HAIR, LEAST_PUSH, LEAST_SHARE, NO_REACTION, SAME
+from workhold.verification.rules import HAIR, LEAST_PUSH, LEAST_SHARE, MOST_FORCE, NO_REACTION, SAME
 from workhold.verification.seat import Push, Seat, closure_margin, ratio_of
 from workhold.verification.sides import ArcSide, LineSide, Side
 from workhold.verification.touching import touching_findings
@@ -184,14 +184,17 @@ class Standing:
         if touches is False:
             return None
         push = push_of(contact, self.pose, self.seat)
-        sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION)]
         if push.push < LEAST_PUSH or push.alone > NO_REACTION:
             return None
+        most = largest([abs(force) for force in push.taken]) - MOST_FORCE * push.push
+        if most > 0:
+            return None
+        sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION), bool(most < 0)]
         for zone in self.query.restrictions.zones:
-            off = zone_distance(zone, contact.in_part(self.pose)) - contact.radius
-            if off < -AGREEMENT:
+            off = zone_distance(zone, contact.in_part(self.pose)) - contact.radius + HAIR
+            if off < 0:
                 return None
-            sure.append(bool(off > AGREEMENT))
+            sure.append(bool(off > 0))
         holes = list(self.holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 

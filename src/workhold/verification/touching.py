@@ -2,10 +2,11 @@
 
 Rules, with the hair of ``findings``:
 
-- ends: a contact lies more than margin + hair inside the ends of the face, at a tangent joint more than margin - hair;
-- elsewhere: as far as margin + hair along its feature to both sides the peg, as if it had no flat, keeps clear of every
-  other segment (``clearance`` says what clear is). So where the feature is trimmed, because the peg comes to touch a second
-  face across its own, the contact lies more than margin + hair inside too.
+- ends: a contact lies at least margin - hair inside the ends of the face, and more than a hair at an end that is no tangent
+  joint: a margin that is met exactly is met, and without one a contact at an end is none;
+- elsewhere: as far as that along its feature to both sides the peg, as if it had no flat, keeps clear of every other segment
+  (``clearance`` says what clear is). So where the feature is trimmed, because the peg comes to touch a second face across
+  its own, the contact lies so far inside too.
 
 Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, its foot inside the
 face, and every other segment farther than rho (of a flat: than the peg radius, which is no less). Then p lies on the
@@ -34,15 +35,16 @@ def touching_findings(
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
     joined = outline.smooth_ends(face, contact.body is not None)
+    # A margin below two hairs asks for no less than none does.
+    reach = max(margin - HAIR, HAIR)
     for slack, smooth in zip(contact.side.slacks(center, contact.radius), joined, strict=False):
-        inside = slack - margin + (HAIR if smooth else -HAIR)
+        inside = slack - margin + HAIR if smooth else slack - reach
         if inside > 0:
             continue
         past = f"{name} lies {number(-slack)} mm past the end of face {face}"
         at = f"{name} touches face {face} exactly at its end"
         broken = past if slack < -HAIR else at if slack < HAIR else close
         yield from rule(inside, broken, edge if margin else at)
-    reach = margin + HAIR
     near = []
     for index, side in outline.others[face]:
         clearance = side.distance(center) - contact.clear_radius

@@ -1,0 +1,151 @@
+"""Bounds that are met exactly, as whole numbers meet them: "at least" means at least, to within a hair.
+
+Listed under a restriction is just what is listed without any and keeps it, told of each fixture by itself (``bounds``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from random import Random
+from typing import Any
+
+import pytest
+
+from test_restrictions import identities
+
+from bounds import WITHIN, avoids, clear_of_box, clear_of_circle, keeps_margin, lies_within
+from workhold import Fence, InputError, OpeningVise, Plate, Query, Restrictions, Result, Vise, Workpiece, design
+from workhold.algebra.engine import answer_by_algebra
+from workhold.model.fixture import Fixture
+from workhold.model.restrictions import circle_zone, polygon_zone
+from workhold.search.explaining import explain
+from workhold.verification import verify
+
+Loop = list[tuple[float, ...]]
+Keeps = Callable[..., bool]
+L: Loop = [(0, 0), (60, 0), (60, 20), (20, 20), (20, 50), (0, 50)]
+SQUARE: Loop = [(0, 0), (100, 0), (100, 60), (0, 60)]
+# Straight below, a half circle on the right: both joints are tangent.
+ROUND: Loop = [(0, 0), (40, 0, 1), (40, 34), (0, 34)]
+EAR: Loop = [(0, 0), (50, 0), (50, 14), (40, 14), (40, 24, 1), (20, 24), (20, 14), (0, 14)]
+KITS: dict[str, Any] = {
+    "vise": Vise(pitch=10, columns=2, peg_radius=3),
+    "opening": OpeningVise(pitch=10, columns=2, peg_radius=3, min_gap=6),
+    "plate": Plate(20, 3, columns=5, rows=4),
+    "wide tip": Plate(20, 3, columns=4, rows=4, clamp_radius=5, directions=["-x"]),
+    "fence": Fence(10, 3, wall_offset=10, columns=8, rows=6),
+    "two clamps": Plate(20, 3, columns=4, rows=4, clamps=2),
+    "two on a fence": Fence(10, 3, wall_offset=5, columns=8, rows=6, clamps=2),
+}
+
+
+def drawn(loop: Loop) -> Workpiece:
+    """A part of one loop, whose bulges are 0 if not given."""
+    return Workpiece.from_loops("part", [[(*vertex, 0.0)[:3] for vertex in loop]])
+
+
+def asked(part: Workpiece, kit: Any, **limits: Any) -> Result:
+    """Every fixture, of two clamps every pair."""
+    listing = "all" if getattr(kit, "clamps", 1) == 2 else None
+    return design(part, kit, listing=listing, **limits)
+
+
+@cache
+def everything(vertices: tuple[tuple[float, ...], ...], kit: str) -> Result:
+    """Every fixture of a part without a restriction."""
+    return asked(drawn(list(vertices)), KITS[kit])
+
+
+def identity(fixture: Fixture) -> tuple[Any, ...]:
+    """A fixture by its holes and pose, from the first peg; of a contact at a joint another face may be told."""
+    first = fixture.pegs[0]
+    holes = [(p.carrier, p.column - first.column, p.row - first.row) for p in fixture.pegs]
+    x, y = fixture.pose.x - first.x, fixture.pose.y - first.y
+    return fixture.type, fixture.direction, *holes, *(round(v, 4) + 0.0 for v in (fixture.pose.theta_deg % 360, x, y))
+
+
+def box_zone(box: tuple[float, float, float, float]) -> Restrictions:
+    """A zone from (x0, y0) to (x1, y1)."""
+    x0, y0, x1, y1 = box
+    return Restrictions(zones=(polygon_zone([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]),))
+
+
+def margin(size: float) -> tuple[dict[str, Any], Keeps]:
+    """A contact margin, and who keeps it."""
+    return {"contact_margin": size}, lambda f, r, w: keeps_margin(f, r, size, w)
+
+
+def box(*corners: float) -> tuple[dict[str, Any], Keeps]:
+    """A keep-out box, and who keeps clear of it."""
+    return {"restrictions": box_zone(corners)}, lambda f, r, w: clear_of_box(f, r, corners, w)  # type: ignore[arg-type]
+
+
+def circle(x: float, y: float, radius: float) -> tuple[dict[str, Any], Keeps]:
+    """A keep-out circle, and who keeps clear of it."""
+    zone = Restrictions(zones=(circle_zone(x, y, radius),))
+    return {"restrictions": zone}, lambda f, r, w: clear_of_circle(f, r, (x, y, radius), w)
+
+
+def angle(low: float, high: float) -> tuple[dict[str, Any], Keeps]:
+    """A range of angles, and who lies in it."""
+    return {"restrictions": Restrictions(angles=((low, high),))}, lambda f, r, w: lies_within(f, (low, high), w)
+
+
+def avoid(*faces: int) -> tuple[dict[str, Any], Keeps]:
+    """Faces to avoid, and who does."""
+    return {"restrictions": Restrictions(avoid=faces)}, lambda f, r, w: avoids(f, r, faces, w)
+
+
+def both(one: tuple[dict[str, Any], Keeps], other: tuple[dict[str, Any], Keeps]) -> tuple[dict[str, Any], Keeps]:
+    """Two restrictions at once."""
+    return {**one[0], **other[0]}, lambda f, r, w: one[1](f, r, w) and other[1](f, r, w)
+
+
+def assert_kept(vertices: Loop, kit: str, restriction: tuple[dict[str, Any], Keeps]) -> tuple[Result, int]:
+    """What is listed under a restriction keeps it, and nothing that keeps it is lost; how many are at its edge."""
+    limits, keeps = restriction
+    full = everything(tuple(vertices), kit)
+    chosen = [keeps(fixture, full, WITHIN) for fixture in full]
+    try:
+        result = asked(full.workpiece, KITS[kit], **limits)
+    except InputError:
+        assert not any(chosen)
+        return full.take([]) if hasattr(full, "take") else full, 0
+    assert result.proof is not None and result.proof.undecided == ()
+    if full.toolkit.symmetries and result.query.restrictions.angles:
+        # The half turn that swaps the jaws may be listed in its place.
+        assert identities(result) == identities(full, chosen)
+    else:
+        kept = [identity(fixture) for fixture, is_kept in zip(full, chosen, strict=True) if is_kept]
+        assert sorted(map(identity, result), key=str) == sorted(kept, key=str)
+    return result, sum(chosen) - sum(keeps(fixture, full, -WITHIN) for fixture in full)
+
+
+@pytest.mark.parametrize(
+    ("loop", "kit", "restriction", "at_edge"),
+    [
+        (L, "vise", margin(1), True),
+        (L, "vise", both(box(10, -20, 30, -3), margin(3)), True),
+        (L, "vise", angle(0, 45), False),
+        (EAR, "opening", margin(1), False),
+        (L, "plate", margin(1), True),
+        (L, "plate", both(box(23, 23, 40, 40), margin(1)), True),
+        (L, "wide tip", margin(3), False),
+        (L, "fence", both(box(10, -40, 30, -3), margin(1)), False),
+        (ROUND, "two clamps", margin(3), True),
+        (ROUND, "two clamps", both(box(-16, 10, -6, 24), margin(1)), True),
+        (ROUND, "two clamps", angle(90, 180), True),
+        (ROUND, "two clamps", avoid(1), True),
+        (ROUND, "two clamps", avoid(0), True),
+        (ROUND, "two on a fence", circle(20, 37, 7), False),
+    ],
+)
+def test_a_bound_that_is_met_is_kept(
+    loop: Loop, kit: str, restriction: tuple[dict[str, Any], Keeps], at_edge: bool
+) -> None:
+    """In every kind of toolkit, with fixtures at the edge of the bound; and verification agrees."""
+    result, count = assert_kept(loop, kit, restriction)
+    assert (count > 0) == at_edge
+    verdict = verify(result)
+    assert (verdict.refuted, verdict.undecided, verdict.faults) == (0, 0, ())
