@@ -234,7 +234,9 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
     if margin > 0.0:
-        out.append(("contact margin", lambda c: c.end_distance >= margin - END_SLACK, partial(short_of_margin, margin, unit)))
+        out.append(
+            ("contact margin", lambda c: c.end_distance >= margin - END_SLACK, partial(short_of_margin, margin, unit))
+        )
     if frame.toolkit.gap is not None:
         out.append(
             ("smallest gap", lambda c: c.candidates.gap >= frame.gap - GAP_SLACK, partial(too_near, frame, unit))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from flint import arb
 
 from workhold.model.restrictions import Zone
-from workhold.verification.balls import Point, cross, dot, turned
+from workhold.verification.balls import Point, cross, dot, least, turned
 from workhold.verification.sides import ArcSide, Side, vertex_side
 
 __all__ = ["zone_distance", "zone_low"]
@@ -35,11 +35,15 @@ def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
 def zone_distance(zone: Zone, point: Point) -> arb:
     """Distance in mm from a point to a zone, 0 inside."""
     sides = zone_sides(zone)
-    if turns_around(sides, point) > arb.pi():
-        return arb(0)
-    nearest = sides[0].distance(point)
-    for side in sides[1:]:
-        nearest = nearest.min(side.distance(point))
+    nearest = least([side.distance(point) for side in sides])
+    # On the chord of an arc, as at a circle's centre, turns are not told. Nearer than any side all is inside, or none is.
+    reach = nearest.abs_lower()
+    for across, along in ((0.0, 0.0), (0.5, 0.25), (-0.25, 0.5)):
+        turns = turns_around(sides, (point[0] + across * reach, point[1] + along * reach))
+        if turns > arb.pi():
+            return arb(0)
+        if turns < arb.pi():
+            break
     return nearest
 
 
