@@ -8,13 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from math import asin, pi, sqrt, tan
+from random import Random
 from typing import Any
 
 import pytest
 from test_restrictions import identities
 
 from bounds import WITHIN, avoids, clear_of_box, clear_of_circle, keeps_margin, lies_within
-from workhold import Fence, InputError, OpeningVise, Plate, Restrictions, Result, Vise, Workpiece, design
+from workhold import Fence, InputError, OpeningVise, Plate, Query, Restrictions, Result, Vise, Workpiece, answer, design
+from workhold.algebra.engine import answer_by_algebra
 from workhold.model.fixture import Fixture
 from workhold.model.restrictions import circle_zone, polygon_zone
 from workhold.verification import verify
@@ -174,3 +176,45 @@ def test_a_clamp_that_grazes_an_arc_is_none(short: float, grazes: bool) -> None:
         assert "does not push" not in ruling.reason
         ruling = verify_fixture(fixture, lollipop(9.604e-12), plate)
         assert ruling.verdict == "refuted" and "does not push the part: its share is 9.8" in ruling.reason
+
+
+def whole_part(random: Random) -> Loop:
+    """A rectangle, L, T or D of whole numbers."""
+    w, h = random.randrange(40, 76, 2), random.randrange(30, 56, 2)
+    a, b = random.randrange(10, w - 20, 2), random.randrange(10, h - 12, 2)
+    return random.choice(
+        [
+            [(0, 0), (w, 0), (w, h), (0, h)],
+            [(0, 0), (w, 0), (w, b), (a, b), (a, h), (0, h)],
+            [(0, 0), (w, 0), (w, b), (a + 14, b), (a + 14, h), (a, h), (a, b), (0, b)],
+            [(0, 0), (w, 0, 1), (w, h), (0, h)],
+        ]
+    )
+
+
+@pytest.mark.prove
+@pytest.mark.parametrize("kit", ["vise", "opening", "plate", "wide tip", "fence", "two clamps", "two on a fence"])
+@pytest.mark.parametrize("seed", range(8))
+def test_parts_of_whole_numbers_under_every_restriction(seed: int, kit: str) -> None:
+    """As above, for eight restrictions each."""
+    random = Random(seed)
+    loop = whole_part(random)
+    x, y, size = random.randrange(0, 40, 2), random.randrange(-20, 40, 2), random.randrange(4, 20)
+    for restriction in (
+        margin(1),
+        margin(random.randrange(2, 8)),
+        box(x, y, x + size, y + size),
+        both(box(x, y, x + size, y + size), margin(random.randrange(1, 5))),
+        circle(x, y, size),
+        angle(0, 90),
+        angle(90, 270),
+        avoid(random.randrange(4)),
+    ):
+        assert_kept(loop, kit, restriction)
+
+
+def test_the_algebra_takes_the_same_bounds() -> None:
+    """A margin that is met exactly, in the second engine."""
+    query = Query(drawn(L), Vise(pitch=20, columns=2, peg_radius=3), contact_margin=1.0)
+    fast, slow = answer(query), answer_by_algebra(query)
+    assert len(fast) > 0 and identities(fast) == identities(slow)
