@@ -13,12 +13,13 @@ from exact_chords import exactly
 from strategies import outlines, vises
 from workhold import load
 from workhold.contact import features
-from workhold.contact.features import contact_features, end_slacks, feature_rows
+from workhold.contact.features import allowed_features, contact_features, end_slacks, feature_rows
 from workhold.contact.problem import Problem
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
 from workhold.model.diameter import outline_diameter, segments_diameter
 from workhold.model.query import Query
+from workhold.model.restrictions import Restrictions, polygon_zone
 from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.proof.interval_newton import contact_value
@@ -160,3 +161,17 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
         assert outline_distances(place[None], row[None])[0] < size
         with exactly():
             assert abs(contact_value(row.tolist(), (arb(place[0]), arb(place[1])))) < size
+
+
+@pytest.mark.parametrize(("margin", "beyond"), [(0.0, 0.0), (20.0, 20.0), (50.0, 43.0)])
+def test_a_zone_may_be_touched_and_the_margin_counts_from_the_ends_of_the_uncut_feature(
+    margin: float, beyond: float
+) -> None:
+    """A box cuts the feature of a side from 0 to 60 at 17 and 33: a peg may stand there if it is so far from 0 and 60."""
+    square = Workpiece.from_loops("square", [[[0, 0, 0], [60, 0, 0], [60, 60, 0], [0, 60, 0]]])
+    locus = contact_features(square, 3.0)
+    box = polygon_zone([(20, -10), (30, -10), (30, -2), (20, -2)])
+    left = allowed_features(locus, square, Restrictions(zones=(box,)), 3.0)
+    slack = end_slacks(left, margin, locus)[:2]
+    assert slack[0, 1] == pytest.approx(beyond + 1e-9, abs=1e-11)
+    assert slack[0, 0] == slack[1, 1] == (1e-9 if margin else -1e-9)
