@@ -10,7 +10,7 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, number
 from workhold.geometry.segment import Point
 
-__all__ = ["angle_mark", "dimension", "round_length", "scale_bar"]
+__all__ = ["BEYOND", "angle_mark", "dimension", "round_length", "scale_bar"]
 
 TIGHT = 34.0
 # How far beyond the end of a line a text too long for it stands, page units.

@@ -39,6 +39,10 @@ __all__ = [
 
 # Size of the name of a fact, and the least room between it and the value.
 FACT_NAME, FACT_GAP = 13.0, 8.0
+# The least size of the type of a table.
+SMALLEST = 7.0
+# The size of that of the pegs.
+TABLE = 13.5
 NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
@@ -91,6 +95,25 @@ class Column:
         for cell, end in zip(cells[1:], ends, strict=True):
             self.scene.text((self.x + end * self.width, self.y), cell, size, "end", bold=bold, middle=False)
         self.y += 0.7 * size
+
+    def table(self, header: Sequence[str], rows: Sequence[Sequence[str]], size: float) -> None:
+        """Write a table, its first column from the left and the others flush right, in type that fits the width."""
+        while True:
+            widths = [
+                max(text_width(header[k], size, bold=True), *(text_width(row[k], size, bold=k == 0) for row in rows))
+                for k in range(len(header))
+            ]
+            gap = (self.width - sum(widths)) / (len(header) - 1)
+            if gap >= 0.6 * size or size <= SMALLEST:
+                break
+            size -= 0.5
+        ends, x = [], widths[0]
+        for width in widths[1:]:
+            x += gap + width
+            ends.append(x / self.width)
+        self.row(header, ends, size, bold=True)
+        for row in rows:
+            self.row(row, ends, size)
 
 
 def closure_margin(fixture: Fixture) -> str:
@@ -162,7 +185,9 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, moving, settings = toolkit.carriers[0], toolkit.moving, settings_of(fixture, toolkit)
+    first, settings = toolkit.carriers[0], settings_of(fixture, toolkit)
+    # What moves in this fixture, which of several clamps the toolkit has need not be its first.
+    moving = settings[0].carrier
     for setting in settings:
         column.words(setting.title[0].upper() + setting.title[1:], 13, fill=GREY, gap=0.8)
         column.words(lengths.words(setting.length), 32 if len(settings) == 1 else 22, bold=True, gap=0.4)
@@ -219,16 +244,17 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 
 def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write the pegs: hole, face, place and force."""
-    ends, first = (0.32, 0.575, 0.82, 1.0), toolkit.carriers[0]
-    places = [(lengths.number(peg.x), lengths.number(peg.y)) for peg in fixture.pegs]
-    widest = max(text_width(cell, 14) for place in places for cell in place)
-    size = 14 if widest < 0.24 * column.width else 11
-    where = "Peg in" if first.letter else "In hole"
-    column.row([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], ends, 13, bold=True)
-    for peg, place in zip(fixture.pegs, places, strict=True):
+    first, rows = toolkit.carriers[0], []
+    for peg in fixture.pegs:
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
-        named = peg.hole if carrier.on is None or fixture.pair is not None else carrier.noun
-        column.row([named, peg.touched, *place, force], ends, size)
+        named = peg.hole
+        if carrier.on is not None and fixture.pair is None:
+            named = carrier.noun
+        elif not carrier.has_a_hole:
+            named = clamp_place(peg, carrier)[1]
+        rows.append([named, peg.touched, lengths.number(peg.x), lengths.number(peg.y), force])
+    where = "Peg in" if first.letter else "In hole"
+    column.table([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], rows, TABLE)
     column.y += 2
     origin = hole_name(first.name, 0, 0)
     away = f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}."

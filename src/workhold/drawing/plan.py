@@ -12,7 +12,7 @@ import numpy as np
 
 from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow
 from workhold.drawing.clamps import avoid_clamp, block_arrow
-from workhold.drawing.dimensions import angle_mark, dimension
+from workhold.drawing.dimensions import BEYOND, angle_mark, dimension
 from workhold.drawing.fonts import text_width
 from workhold.drawing.inset import draw_zero
 from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
@@ -31,11 +31,14 @@ LEFT, TOP, RIGHT, BOTTOM = 48.0, 84.0, 48.0, 82.0
 LONGEST_ARROW = 62.0
 
 LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
+# Of the words of a length to set.
+SETTING_SIZE = 17.0
 TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
 ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
-# From the plates to the line of a dimension, and to a second one along the same way, page units.
-DIMENSION, FARTHER = 42.0, 24.0
+# From the plates to the line of a dimension above them, where columns are named, or beside them, and how much farther a
+# second one along the same way is, page units.
+ABOVE, BESIDE, FARTHER = 42.0, 22.0, 24.0
 RIM_WORD = 10.0
 # Between the names of carriers, page units.
 CAPTION_GAP = 16.0
@@ -66,7 +69,7 @@ def draw_plan(
     frame = view.box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
-    names += draw_travel(scene, bench, view, frame, lengths)
+    names += draw_travel(scene, bench, view, frame, bounds, lengths)
     names += draw_captions(scene, bench, view, frame, bounds)
     center = view(bench.fixture.pose.apply(*workpiece.center))
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
@@ -84,12 +87,12 @@ def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[
     group, names = scene.group("hole-names"), []
     for shown in bench.shown.carriers:
         plate = view.box(shown.plate)
-        rows = [(row, view((0.0, y))[1]) for row, y in zip(shown.rows, shown.y, strict=True)]
+        rows = [(row, view((0.0, y))[1]) for row, y in shown.named_rows]
         for row, y, used in labelled(rows, shown.used_rows, 15.0):
             rim, inner, way = (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
             ruling(group, (rim, y), (inner, y))
             names.append(((rim + 10 * way, y), str(row + 1), used, "end" if way < 0 else "start"))
-        columns = [(column, view((x, 0.0))[0]) for column, x in zip(shown.columns, shown.x, strict=True)]
+        columns = [(column, view((x, 0.0))[0]) for column, x in shown.named_columns]
         rims = (("top", frame.y0, plate.y0, -1), ("bottom", frame.y1, plate.y1, 1))
         for column, x, used in labelled(columns, shown.used_columns, 17.0):
             anchor = inner_anchor(shown, column, bench.fixture.jaw_separation * view.scale)
@@ -156,26 +159,35 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
     return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
 
 
-def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, lengths: LengthUnit) -> list[Box]:
-    """Dimension the lengths to set, above the plates or at their right, and return where the words stand.
+def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit) -> list[Box]:
+    """Dimension the lengths to set, above the plates or at their right, and return where the words stand, all of them within
+    the bounds.
 
     Of two along the same way the second stands farther out.
     """
-    group, boxes = scene.group("opening"), []
+    group, boxes, lines = scene.group("opening"), [], []
     for number, measured in enumerate(bench.shown.measured):
-        upright, setting = measured.is_upright, measured.setting
-        out = DIMENSION + FARTHER * sum(one.is_upright == upright for one in bench.shown.measured[:number])
+        upright = measured.is_upright
+        out = FARTHER * sum(one.is_upright == upright for one in bench.shown.measured[:number])
+        out += BESIDE if upright else ABOVE
         start, end = (
             (frame.x1 + out, y) if upright else (x, frame.y0 - out)
             for x, y in (view(high) for _, high in measured.axes)
         )
         for x, y in (start, end):
-            group.line([(x - out + 23, y), (x + 3, y)] if upright else [(x, y + out - 23), (x, y - 3)], BLACK, 0.7)
+            group.line([(frame.x1 + 3, y), (x + 3, y)] if upright else [(x, frame.y0 - 23), (x, y - 3)], BLACK, 0.7)
+        lines.append((upright, measured.setting, start, end))
+    # The words come last: they are read where a line passes below them.
+    for upright, setting, start, end in lines:
         words = f"{setting.sign} = {lengths.words(setting.length)}"
-        # The upper right corner has room for the words of one length only.
+        # The upper right corner has room for the words of one length only, and no words may end beyond the drawing.
         shared = any(one.is_upright != upright for one in bench.shown.measured)
-        beyond: Literal["upper", "lower"] = "lower" if shared and start[1] + end[1] < frame.y0 + frame.y1 else "upper"
-        boxes.append(dimension(group, start, end, words, 17, bold=True, beyond=beyond))
+        room = text_width(words, SETTING_SIZE, bold=True) + BEYOND
+        top, bottom = sorted((start[1], end[1]))
+        beyond: Literal["upper", "lower"] | None = "upper"
+        if top - room < (frame.y0 if shared else bounds.y0):
+            beyond = "lower" if bottom + room <= bounds.y1 else None
+        boxes.append(dimension(group, start, end, words, SETTING_SIZE, bold=True, beyond=beyond))
     return boxes
 
 

@@ -23,7 +23,6 @@ from workhold.drawing.sheet_writing import (
     peg_rows,
     write_dowel,
     write_flats,
-    write_table,
 )
 from workhold.model.holes import column_letters, hole_name
 from workhold.model.units import INCH
@@ -81,7 +80,7 @@ def write_pegs(column: Column, sheet: Sheet) -> None:
     header, rows, per = peg_rows(sheet, [peg.hole for peg in sheet.fixture.pegs])
     stands_on = [first.noun, *(peg.carrier for peg in sheet.fixture.pegs)]
     table = [[row[0], word, *row[1:]] for row, word in zip([header, *rows], stands_on, strict=True)]
-    write_table(column, table[0], table[1:])
+    column.table(table[0], table[1:], BODY)
     column.paragraph(
         f"x, y: centre of the peg, from the centre of hole {sheet.origin} of the fixed {first.noun}"
         f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",

@@ -18,7 +18,6 @@ from workhold.drawing.sheet_writing import (
     peg_rows,
     write_dowel,
     write_flats,
-    write_table,
 )
 from workhold.model.fixture import Pair
 from workhold.model.holes import column_letters
@@ -45,7 +44,7 @@ def write_locators(column: Column, sheet: Sheet) -> None:
     clamps = {setting.carrier.name for setting in clamps_of(sheet)}
     names = [noun if peg.carrier in clamps and not several else peg.hole for peg in sheet.fixture.pegs]
     header, rows, per = peg_rows(sheet, names)
-    write_table(column, header, rows)
+    column.table(header, rows, BODY)
     column.paragraph(
         f"x, y: centre of the {plate.peg} or of {'a' if several else 'the'} {noun}'s tip, from {sheet.origin_words}"
         f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",

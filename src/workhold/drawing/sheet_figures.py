@@ -5,7 +5,7 @@ from __future__ import annotations
 from workhold.drawing.fonts import shortened
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import Column, pegs_words
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading, write_table
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.model.load import ANY_DIRECTION, Load
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -90,7 +90,7 @@ def write_loads(column: Column, sheet: Sheet) -> None:
         held = case.needed_with_friction
         more = [] if details.friction is None else ["–" if held is None else unit.force_above(held)]
         rows.append([name, unit.force_above(case.needed.value), *more, *map(unit.force_above, case.largest)])
-    write_table(column, header, rows)
+    column.table(header, rows, BODY)
     for number, case in cases[:MOST_LOADS]:
         column.paragraph(f"{case.load.name or f'load {number}'}: {load_words(case.load, sheet.lengths)}.", NOTE)
     if len(cases) > MOST_LOADS:

@@ -36,11 +36,9 @@ __all__ = [
     "peg_rows",
     "write_dowel",
     "write_flats",
-    "write_table",
 ]
 
 BODY, NOTE, HEADING = 12.5, 11.0, 14.0
-SMALLEST = 7.0
 KILO = 1000.0
 # Least and largest width of a field to fill in, page units.
 FIELD = 60.0, 150.0
@@ -130,27 +128,6 @@ def fact_or_field(column: Column, name: str, value: str | None) -> None:
     room = column.width - text_width(name, FACT_NAME) - 10
     column.scene.line([(right - min(max(room, least), most), column.y + 2), (right, column.y + 2)], BLACK, 0.8)
     column.y += 0.62 * HEADING
-
-
-def write_table(column: Column, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Write a table, its first column from the left and the others flush right, in type that fits the width."""
-    size = BODY
-    while True:
-        widths = [
-            max(text_width(header[k], size, bold=True), *(text_width(row[k], size, bold=k == 0) for row in rows))
-            for k in range(len(header))
-        ]
-        gap = (column.width - sum(widths)) / (len(header) - 1)
-        if gap >= 0.6 * size or size <= SMALLEST:
-            break
-        size -= 0.5
-    ends, x = [], widths[0]
-    for width in widths[1:]:
-        x += gap + width
-        ends.append(x / column.width)
-    column.row(header, ends, size, bold=True)
-    for row in rows:
-        column.row(row, ends, size)
 
 
 def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[str]], str]:

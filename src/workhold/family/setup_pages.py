@@ -205,13 +205,14 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
 def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
     """What stands below the table: what signs mean, what is a part's zero, and whose pegs stand in other columns."""
     zeros = {one.member.zero.words for one in holdings}
-    origin = hole_name(holdings[0].member.query.toolkit.carriers[0].name, 0, 0)
+    toolkit = holdings[0].member.query.toolkit
+    origin, wall = hole_name(toolkit.carriers[0].name, 0, 0), toolkit.wall
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
-    wall = holdings[0].member.query.toolkit.wall
     start = f"hole {origin}" if wall is None else f"column A and the {wall.noun}"
     yield f"X0 Y0 is {first}, x and y from {start}, θ counter-clockwise. Fixture: its number in the part's list."
     if any(one.turned for one in holdings):
-        yield "′: that fixture after half a turn of everything, which swaps the jaws."
+        swapped = ", which swaps the jaws" if toolkit.moving.on is None else ""
+        yield f"′: that fixture after half a turn of everything{swapped}."
     for one in holdings:
         if not one.in_place:
             yield f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}."

@@ -5,7 +5,8 @@ Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this 
 Glossary
 --------
 reach : the extent of part and pegs, one pitch or a fourteenth of the extent more, and as far along the travel as carriers
-    slide; the holes within it show.
+    slide; the holes within it show. Columns and rows of which no number is given go on beyond column A and row 1, so that
+    the plate lies under the whole part; those holes have no names, and their numbers are negative.
 plate : the rectangle around the holes that show, half a pitch beyond them.
 broken side : a side of a plate where the carrier goes on beyond what shows.
 facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
@@ -122,14 +123,14 @@ class ShownCarrier:
         return lines | {row for _, row in self.used}
 
     @property
-    def x(self) -> tuple[float, ...]:
-        """x of every column that shows."""
-        return tuple(self.carrier.place(column, 0, self.travelled)[0] for column in self.columns)
+    def named_columns(self) -> list[tuple[int, float]]:
+        """Every column that shows and has a name, and its x."""
+        return [(column, self.carrier.place(column, 0, self.travelled)[0]) for column in self.columns if column >= 0]
 
     @property
-    def y(self) -> tuple[float, ...]:
-        """y of every row that shows."""
-        return tuple(self.carrier.place(0, row, self.travelled)[1] for row in self.rows)
+    def named_rows(self) -> list[tuple[int, float]]:
+        """Every row that shows and has a name, and its y."""
+        return [(row, self.carrier.place(0, row, self.travelled)[1]) for row in self.rows if row >= 0]
 
     @property
     def names_at(self) -> Side:
@@ -263,7 +264,7 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
     carriers = [carrier for carrier in toolkit.carriers if carrier.on is None and not carrier.is_wall]
     clamps = tuple(shown_clamps(fixture, toolkit))
     reach = reach_of(part, fixture, carriers, clamps)
-    ranges = [cells_in_reach(carrier, travelled, reach) for carrier in carriers]
+    ranges = [cells_in_reach(carrier, travelled, reach, toolkit.wall is not None) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
     gaps = facing_gaps(spans)
     out = []
@@ -271,11 +272,10 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
         left, right = (min(half_x, SHARE_OF_GAP * facing.get(side, inf)) for side in ("left", "right"))
         bottom, top = (min(half_y, SHARE_OF_GAP * facing.get(side, inf)) for side in ("bottom", "top"))
-        endless = carrier.columns is None and carrier.rows is None
         ends: dict[Side, bool] = {
-            "left": columns.start > 0 or endless,
+            "left": carrier.columns is None or columns.start > 0,
             "right": carrier.columns is None or columns.stop < carrier.columns,
-            "bottom": rows.start > 0 or endless,
+            "bottom": carrier.rows is None or rows.start > 0,
             "top": carrier.rows is None or rows.stop < carrier.rows,
         }
         out.append(
@@ -344,8 +344,8 @@ def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier], clamps: S
     return reach
 
 
-def cells_in_reach(carrier: Carrier, travelled: float, reach: Box) -> tuple[range, range]:
-    """Columns and rows of a carrier in reach; at least one of each.
+def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, on_wall: bool) -> tuple[range, range]:
+    """Columns and rows of a carrier in reach; at least one of each. Rows that are counted from a wall begin there.
 
     Raises
     ------
@@ -354,7 +354,7 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box) -> tuple[rang
     """
     x, y = carrier.place(0, 0, travelled)
     columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns)
-    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows)
+    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, on_wall)
     if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
         raise InputError(
             f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to show: check "
@@ -363,12 +363,15 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box) -> tuple[rang
     return columns, rows
 
 
-def in_reach(low: float, high: float, pitch: float, count: int | None) -> range:
-    """Columns or rows between two distances in mm from the first one; at least one."""
+def in_reach(low: float, high: float, pitch: float, count: int | None, has_first: bool = False) -> range:
+    """Columns or rows between two distances in mm from the first one; at least one. None stands before the first one where
+    there is a number of them, or ``has_first`` says so."""
     last, first = floor(high / pitch + ROUNDING), ceil(low / pitch - ROUNDING)
     if count is not None:
         last, first = min(last, count - 1), min(first, count - 1)
-    return range(max(first, 0), max(last, first, 0) + 1)
+    if has_first or count is not None:
+        last, first = max(last, 0), max(first, 0)
+    return range(first, max(last, first) + 1)
 
 
 def span(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box:

@@ -231,10 +231,13 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
             space.add_circle(hole.center, radius, {"layer": "HOLES_USED" if hole.used else "HOLES"})
         beside = plate.x0 - half_x if each.names_at == "left" else plate.x1 + half_x
         below = plate.y1 + half_y if "bottom" in each.facing else plate.y0 - half_y
-        for column, x in {hole.column: hole.center[0] for hole in holes}.items():
-            add_text(space, column_letters(column), (x, below), seen)
-        for row, y in {hole.row: hole.center[1] for hole in holes}.items():
-            add_text(space, str(row + 1), (beside, y), seen)
+        columns, rows = {hole.column for hole in holes}, {hole.row for hole in holes}
+        for column, x in each.named_columns:
+            if column in columns:
+                add_text(space, column_letters(column), (x, below), seen)
+        for row, y in each.named_rows:
+            if row in rows:
+                add_text(space, str(row + 1), (beside, y), seen)
 
 
 def add_wall(space: Modelspace, seen: Shown) -> None:

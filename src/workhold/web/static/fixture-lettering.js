@@ -8,6 +8,7 @@ import { length, number } from "./units.js";
 
 const LONGEST = 62;
 const SHORTEST = 20;
+const FARTHER = 28;
 
 /**
  * Draw the lettering of a fixture for the view as it is.
@@ -69,7 +70,8 @@ function columnNames(drawing) {
     const names = [];
     const [dx, dy] = drawing.shift(carrier);
     const step = Math.max(1, Math.ceil(22 / (carrier.pitch[0] * view.k)));
-    for (let column = carrier.columns[0]; column <= carrier.columns[1]; column += 1) {
+    // Holes before column A and below row 1 have no names.
+    for (let column = Math.max(carrier.columns[0], 0); column <= carrier.columns[1]; column += 1) {
       const peg = carrier.used_columns.includes(column);
       if (!peg && column % step) continue;
       const [px, py] = view.page([place(carrier, column, 0)[0] + dx, carrier.plate[3] + dy]);
@@ -87,7 +89,7 @@ function rowNames(drawing) {
     const [dx, dy] = drawing.shift(carrier);
     const right = carrier.names_at === "right";
     const step = Math.max(1, Math.ceil(17 / (carrier.pitch[1] * view.k)));
-    for (let index = carrier.rows[0]; index <= carrier.rows[1]; index += 1) {
+    for (let index = Math.max(carrier.rows[0], 0); index <= carrier.rows[1]; index += 1) {
       const peg = carrier.used_rows.includes(index);
       if (!peg && (index + 1) % step) continue;
       const [px, py] = view.page([carrier.plate[right ? 2 : 0] + dx, place(carrier, 0, index)[1] + dy]);
@@ -110,7 +112,9 @@ function travels(drawing) {
     const [dx, dy] = drawing.shift(carrier);
     const [start, end] = carrier.measured;
     const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
-    const rim = upright ? right + 16 : top - 30;
+    // Of two along the same way the second stands farther out.
+    const nearer = sliding.slice(0, number).filter((each) => each.measured && (Math.abs(each.clamping[1]) > Math.abs(each.clamping[0])) === upright).length;
+    const rim = upright ? right + 16 + FARTHER * nearer : top - 30 - FARTHER * nearer;
     const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
     const text = `${setting.sign} = ${length(drawing.open ? (b - a) / view.k : setting.length)}`;
     const wide = 8.2 * text.length + 10;
