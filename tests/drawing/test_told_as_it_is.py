@@ -154,7 +154,7 @@ def test_arrows_and_names_stand_at_what_they_tell_of(held: Held) -> None:
     """Each clamp's block arrow points its way, and the name of each hole stands at, or leads to, its peg or bolt."""
     svg = picture(HELD.index(held))
     arrows = []
-    for group in by_class(svg, "clamp"):
+    for group in by_class(svg, "clamp-push"):
         # The arrow is the polygon of seven corners, its tip first and the ends of its shaft amid the others.
         shapes = [shape for shape in group if shape.tag in (f"{NAMESPACE}polygon", f"{NAMESPACE}path")]
         corners = [numbers(shape.attrib.get("points") or shape.attrib.get("d", "")) for shape in shapes]
@@ -374,6 +374,7 @@ def test_the_page_is_sent_the_fixture(held: Held) -> None:
     assert sent["title"] == title.replace("-", "−")
     assert [(one["sign"], pytest.approx(one["length"])) for one in sent["settings"]] == settings(held)
     assert sent["holes"] == [peg.hole for peg in fixture.pegs] and sent["faces"] == [peg.face for peg in fixture.pegs]
+    assert sent["touched"] == [touched(peg) for peg in fixture.pegs]
     assert sent["pegs"] == [[peg.x, peg.y] for peg in fixture.pegs]
     assert sent["forces"] == [peg.force for peg in fixture.pegs]
     assert (sent["theta_deg"], sent["x"], sent["y"]) == (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y)

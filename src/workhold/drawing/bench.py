@@ -8,7 +8,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.clamps import draw_clamp
+from workhold.drawing.clamps import draw_clamp, draw_push
 from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
 from workhold.drawing.plates import draw_holes, draw_plate, draw_wall, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
@@ -125,6 +125,8 @@ def draw_bench(
     for clamp in bench.shown.clamps:
         draw_clamp(scene, clamp, bench.shown.carriers[0], view, weight)
     draw_part(scene, bench, view, weight)
+    for clamp in bench.shown.clamps:
+        draw_push(scene, clamp, view, weight)
     arrows = scene.group("forces")
     for index in range(len(bench.fixture.pegs)):
         tail, tip = force_arrow(bench, index, view, longest)

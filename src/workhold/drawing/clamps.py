@@ -12,7 +12,7 @@ from workhold.geometry.segment import Point
 from workhold.model.clamp import ShownClamp
 from workhold.model.shown import ShownCarrier
 
-__all__ = ["avoid_clamp", "block_arrow", "draw_clamp", "draw_sign"]
+__all__ = ["avoid_clamp", "block_arrow", "draw_clamp", "draw_push", "draw_sign"]
 
 BOLT = "#c3c9d1"
 # An arrow to the left about its middle, its length and its width, page units.
@@ -61,8 +61,12 @@ def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View,
         group.line([hole, tip], edge, width, stroke_linecap="round", **{"class": "clamp-body"})
         group.line([hole, tip], fill, max(width - 3.0 * weight, 0.6 * width), stroke_linecap="round")
         draw_bolt(group, hole, min(view.scale * plate.hole_radius, 0.8 * width / 2), weight)
+
+
+def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> None:
+    """Draw the arrow behind a clamp that tells which way it pushes; over the part, as it may stand in a hole of it."""
     middle, size = clamp_arrow(clamp, view, weight)
-    block_arrow(group, middle, clamp.clamping, size, weight)
+    block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
 
 
 def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:

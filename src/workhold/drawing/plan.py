@@ -38,7 +38,7 @@ ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
 # From the plates to the line of a dimension above them, where columns are named, or beside them, and how much farther a
 # second one along the same way is, page units.
-ABOVE, BESIDE, FARTHER = 42.0, 22.0, 24.0
+ABOVE, BESIDE, FARTHER = 42.0, 26.0, 24.0
 RIM_WORD = 10.0
 # Between the names of carriers, page units.
 CAPTION_GAP = 16.0

@@ -8,7 +8,7 @@ from functools import reduce
 from attrs import evolve
 
 from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
-from workhold.drawing.clamps import draw_clamp
+from workhold.drawing.clamps import draw_clamp, draw_push
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.fonts import shortened
 from workhold.drawing.length_unit import LengthUnit
@@ -68,6 +68,8 @@ def draw_copies(
         for clamp in bench.shown.clamps:
             draw_clamp(group, clamp, bench.shown.carriers[0], view, WEIGHT)
         draw_part(group, bench, view, WEIGHT)
+        for clamp in bench.shown.clamps:
+            draw_push(group, clamp, view, WEIGHT)
         draw_pegs(group, bench, view, WEIGHT)
         group.text(view(bench.fixture.pose.apply(*workpiece.center)), str(number), 16, "middle", bold=True, halo=3)
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.suiting(unit, min(plate.pitch)))

@@ -320,6 +320,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "origin": origin_name(toolkit),
         "holes": [peg.hole for peg in fixture.pegs],
         "faces": [peg.face for peg in fixture.pegs],
+        "touched": [peg.touched for peg in fixture.pegs],
         "corners": [number for number, peg in enumerate(fixture.pegs) if peg.beside is not None],
         "flush": [number for number, peg in enumerate(fixture.pegs) if peg.is_on_wall],
         "theta_deg": fixture.pose.theta_deg,

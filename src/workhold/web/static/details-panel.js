@@ -2,6 +2,7 @@
  * Below the drawing: the table of pegs, which says in words what the drawing shows, and the figures of quality.
  */
 import { byId, make } from "./dom.js";
+import { forceOf } from "./pose.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
 import { bareLength, figureText, length, number } from "./units.js";
@@ -34,11 +35,11 @@ function write() {
 /** The table of pegs. */
 function writePegs(row) {
   byId("force-title").textContent = loaded ? "Force N" : "Force";
-  byId("force-title").title = loaded ? "Under the load" : `For each newton of ${row.mover} force`;
+  byId("force-title").title = loaded ? "Under the load" : `For each newton of ${forceOf(row)}`;
   byId("pegs").replaceChildren(
     ...row.holes.map((hole, k) =>
       make("tr", {},
-        make("td", {}, hole), make("td", {}, String(row.faces[k])),
+        make("td", {}, hole), make("td", {}, row.touched[k]),
         make("td.number", {}, bareLength(row.pegs[k][0])), make("td.number", {}, bareLength(row.pegs[k][1])),
         make("td.number", {}, loaded ? number(loaded[k], 0) : number(row.forces[k], 3)),
       ),
@@ -46,7 +47,7 @@ function writePegs(row) {
   );
   byId("pose-words").textContent =
     `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
-    `${bareLength(row.x)}, ${length(row.y)} from hole ${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${row.mover} force.`);
+    `${bareLength(row.x)}, ${length(row.y)} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
 }
 
 /** What there is to set, with its length; of several clamps with the name of each. */
@@ -78,7 +79,9 @@ function writeQuality(row, pinned) {
     });
   if (pinned) {
     const cells = [pinned, row].map((each) => make("td.number", {}, each.settings.map((one) => length(one.length, 2)).join(", ")));
-    lines.push(make("tr", {}, make("th", { scope: "row" }, row.settings[0].name), ...cells));
+    // Clamps that push other ways are told by other lengths.
+    const names = [...new Set([pinned, row].map((each) => each.settings[0].name))];
+    lines.push(make("tr", {}, make("th", { scope: "row" }, names.join(" or ")), ...cells));
   }
   byId("quality").replaceChildren(...lines);
 }

@@ -6,7 +6,7 @@
 import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
-import { contactsOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
+import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
 import { lyingMatrix } from "./trial.js";
 import { Viewport } from "./viewport.js";
 
@@ -111,7 +111,11 @@ export class FixtureDrawing {
     this.underPegs = draw("g.under-pegs");
     const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
     this.plates = groups((each) => (each.clamp ? this.clamp(each) : this.plate(each)));
-    this.pegs = groups((each) => each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)));
+    // Arrows lie over the part, for clamps that stand in a hole of it.
+    this.pegs = groups((each) => [
+      ...(each.clamp ? [this.push(each)] : []),
+      ...each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)),
+    ]);
     this.view.world.replaceChildren(...this.plates, this.ghost, shape, ...this.pegs);
     this.slide(this.open);
   }
@@ -147,32 +151,37 @@ export class FixtureDrawing {
     return [plate, draw("path.holes", { d: holes })];
   }
 
-  /** A clamp: its body and bolt, or the line of holes that its tip is on, and an arrow behind it in the way it pushes. */
-  clamp({ clamp, clamping: [dx, dy], pitch, peg_radius: size }) {
+  /** A clamp: its body and bolt, or the line of holes that its tip is on. */
+  clamp({ clamp, clamping: [dx], pitch, peg_radius: size }) {
     const { hole, tip, bolt_radius: bolt } = clamp;
     const [x0, y0, x1, y1] = clamp.line;
-    const pitchAlong = dx ? pitch[0] : pitch[1];
-    const radius = Math.max(size, pitchAlong / 12);
-    const [x, y] = hole ?? tip;
-    const at = (away, aside) => `${x - away * dx - aside * dy} ${y - away * dy + aside * dx}`;
-    const [near, far, neck, wing, shaft] = [radius * 1.1, pitchAlong * 0.95, radius * 1.1 + pitchAlong * 0.24, pitchAlong * 0.13, pitchAlong * 0.055];
-    const corners = [[near, 0], [neck, wing], [neck, shaft], [far, shaft], [far, -shaft], [neck, -shaft], [neck, -wing]];
-    const push = draw("path.clamp-push", { d: `M${corners.map(([away, aside]) => at(away, aside)).join("L")}Z` });
-    if (!hole) return [draw("path.clamp-line", { d: dx ? `M${x0} ${tip[1]}H${x1}` : `M${tip[0]} ${y0}V${y1}` }), push];
+    const radius = Math.max(size, (dx ? pitch[0] : pitch[1]) / 12);
+    if (!hole) return [draw("path.clamp-line", { d: dx ? `M${x0} ${tip[1]}H${x1}` : `M${tip[0]} ${y0}V${y1}` })];
     const ends = { x1: hole[0], y1: hole[1], x2: tip[0], y2: tip[1] };
     return [
       draw("line.clamp-edge.clamp-body", { ...ends, "stroke-width": 2 * radius }),
       draw("line.clamp-fill.clamp-body", { ...ends, "stroke-width": 1.8 * radius }),
       draw("circle.bolt", { cx: hole[0], cy: hole[1], r: Math.min(bolt, 0.8 * radius) }),
-      push,
     ];
+  }
+
+  /** The arrow behind a clamp in the way it pushes. */
+  push({ clamp, clamping: [dx, dy], pitch, peg_radius: size }) {
+    const pitchAlong = dx ? pitch[0] : pitch[1];
+    const radius = Math.max(size, pitchAlong / 12);
+    const [x, y] = clamp.hole ?? clamp.tip;
+    const at = (away, aside) => `${x - away * dx - aside * dy} ${y - away * dy + aside * dx}`;
+    const [near, far, neck, wing, shaft] = [radius * 1.1, pitchAlong * 0.95, radius * 1.1 + pitchAlong * 0.24, pitchAlong * 0.13, pitchAlong * 0.055];
+    const corners = [[near, 0], [neck, wing], [neck, shaft], [far, shaft], [far, -shaft], [neck, -shaft], [neck, -wing]];
+    return draw("path.clamp-push", { d: `M${corners.map(([away, aside]) => at(away, aside)).join("L")}Z` });
   }
 
   /** A peg that can be pointed at and focused. */
   peg([x, y], k, { peg_radius: size, flat }, looks) {
     const radius = Math.max(size, Math.min(...this.toolkit.pitch) / 12);
     const { row, clearance } = this;
-    const words = `Peg in ${row.holes[k]}, on face ${row.faces[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${row.mover} force`;
+    const where = row.flush.includes(k) ? "Contact with" : "Peg in";
+    const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`;
     const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
     if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.toolkit.body_radius ?? size) + clearance }));
     if (looks === null || flat >= size) group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));

@@ -5,7 +5,7 @@
  */
 import { nearest, normalAt, pointAt, segmentsOf } from "./geometry.js";
 
-/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], corners: number[], flush: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[], title: string, setting: {sign: string, name: string, length: number}|null, mover: string, origin: string}} Row */
+/** @typedef {{theta_deg: number, x: number, y: number, holes: string[], faces: number[], touched: string[], corners: number[], flush: number[], pegs: number[][], forces: number[], jaw_separation: number, carriers: Carrier[], title: string, setting: {sign: string, name: string, length: number}|null, mover: string, order: string, origin: string}} Row */
 
 /**
  * What shows of a carrier of holes, as the server tells it: the hole in column 0 and row 0, first and last column and row,
@@ -114,4 +114,12 @@ export function columnLetters(column) {
     letters = String.fromCharCode(65 + ((rest - 1) % 26)) + letters;
   }
   return letters;
+}
+
+/**
+ * What the forces of a fixture are told for each newton of.
+ * @param {{mover: string, order: string}} row
+ */
+export function forceOf({ mover, order }) {
+  return order ? `${mover} force of both` : `${mover} force`;
 }

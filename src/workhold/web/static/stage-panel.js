@@ -6,6 +6,7 @@ import { DrawingTool } from "./drawing-tool.js";
 import { FixtureDrawing } from "./fixture-drawing.js";
 import { PartDrawing } from "./part-drawing.js";
 import { usePart } from "./part-panel.js";
+import { forceOf } from "./pose.js";
 import { step } from "./selection.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
@@ -189,8 +190,8 @@ function pegWords(k, at, row) {
   const box = byId("peg-words");
   show(box, k !== null && row !== null);
   if (k === null || !row) return;
-  const force = fixtureDrawing.load && row === state.selected ? `${number(fixtureDrawing.load.forces[k], 0)} N` : `${number(row.forces[k], 3)} N for each N of ${row.mover} force`;
-  box.textContent = `${row.holes[k]} · face ${row.faces[k]} · ${force}`;
+  const force = fixtureDrawing.load && row === state.selected ? `${number(fixtureDrawing.load.forces[k], 0)} N` : `${number(row.forces[k], 3)} N for each N of ${forceOf(row)}`;
+  box.textContent = `${row.holes[k]} · face ${row.touched[k]} · ${force}`;
   const wide = box.offsetWidth;
   box.style.left = `${Math.max(6, Math.min(innerWidth - wide - 6, at.left + at.width / 2 - wide / 2))}px`;
   box.style.top = `${at.bottom + 8 + box.offsetHeight > innerHeight ? at.top - box.offsetHeight - 8 : at.bottom + 8}px`;
