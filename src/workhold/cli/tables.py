@@ -256,7 +256,8 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """The name of a peg's hole or line, without the noun of a clamp."""
-    return peg.hole.removeprefix(f"{toolkit.carrier(peg.carrier).noun} ")
+    carrier = toolkit.carrier(peg.carrier)
+    return peg.hole if carrier.on is None else peg.hole.removeprefix(f"{carrier.noun} ")
 
 
 def heading(figure: Figure, unit: Unit) -> str:
