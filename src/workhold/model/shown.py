@@ -5,8 +5,8 @@ Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this 
 Glossary
 --------
 reach : the extent of part and pegs, one pitch or a fourteenth of the extent more, and as far along the travel as carriers
-    slide; the holes within it show. Columns and rows of which no number is given go on beyond column A and row 1, so that
-    the plate lies under the whole part; those holes have no names, and their numbers are negative.
+    slide; the holes within it show. Columns and rows of which no number is given go on before column A and row 1 as far as
+    the part lies, so that the plate is under the whole of it; those holes have no names, and their numbers are negative.
 plate : the rectangle around the holes that show, half a pitch beyond them.
 broken side : a side of a plate where the carrier goes on beyond what shows.
 facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
@@ -263,8 +263,9 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
     travelled = fixture.jaw_separation
     carriers = [carrier for carrier in toolkit.carriers if carrier.on is None and not carrier.is_wall]
     clamps = tuple(shown_clamps(fixture, toolkit))
-    reach = reach_of(part, fixture, carriers, clamps)
-    ranges = [cells_in_reach(carrier, travelled, reach, toolkit.wall is not None) for carrier in carriers]
+    held = held_box(part, fixture, clamps)
+    reach, on_wall = reach_of(held, fixture, carriers), toolkit.wall is not None
+    ranges = [cells_in_reach(carrier, travelled, reach, held, on_wall) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
     gaps = facing_gaps(spans)
     out = []
@@ -327,11 +328,15 @@ def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured
     return Measured(setting, (axis(setting.start, still), axis(setting.end, own or still)), upright)
 
 
-def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier], clamps: Sequence[ShownClamp]) -> Box:
-    """The reach, in mm; see the glossary."""
-    reach = part
-    for x, y in [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]:
-        reach = reach.union(Box(x, y, x, y))
+def held_box(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:
+    """The extent of part, pegs and clamps, in mm."""
+    places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]
+    return reduce(Box.union, (Box(x, y, x, y) for x, y in places), part)
+
+
+def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
+    """The reach about the extent of part, pegs and clamps, in mm; see the glossary."""
+    reach = held
     more = max(reach.width, reach.height) / 14
     more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
     reach = Box(reach.x0 - more_x, reach.y0 - more_y, reach.x1 + more_x, reach.y1 + more_y)
@@ -344,8 +349,9 @@ def reach_of(part: Box, fixture: Fixture, carriers: Sequence[Carrier], clamps: S
     return reach
 
 
-def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, on_wall: bool) -> tuple[range, range]:
-    """Columns and rows of a carrier in reach; at least one of each. Rows that are counted from a wall begin there.
+def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Box, on_wall: bool) -> tuple[range, range]:
+    """Columns and rows of a carrier in reach, at least one of each; before the first ones, where there are some, as many as
+    lie under what is held. Rows that are counted from a wall begin there.
 
     Raises
     ------
@@ -353,8 +359,8 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, on_wall: bool
         For so many holes that no fixture of a search has them in reach.
     """
     x, y = carrier.place(0, 0, travelled)
-    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns)
-    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, on_wall)
+    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held.x0 - x)
+    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, 0.0 if on_wall else held.y0 - y)
     if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
         raise InputError(
             f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to show: check "
@@ -363,14 +369,14 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, on_wall: bool
     return columns, rows
 
 
-def in_reach(low: float, high: float, pitch: float, count: int | None, has_first: bool = False) -> range:
-    """Columns or rows between two distances in mm from the first one; at least one. None stands before the first one where
-    there is a number of them, or ``has_first`` says so."""
-    last, first = floor(high / pitch + ROUNDING), ceil(low / pitch - ROUNDING)
+def in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
+    """Columns or rows between two distances in mm from the first one; at least one. Where there is no number of them, they
+    begin half a pitch or less beside what is ``held`` from a distance on, if that is before the first one."""
+    last, first = max(floor(high / pitch + ROUNDING), 0), max(ceil(low / pitch - ROUNDING), 0)
     if count is not None:
         last, first = min(last, count - 1), min(first, count - 1)
-    if has_first or count is not None:
-        last, first = max(last, 0), max(first, 0)
+    elif held < 0:
+        first = min(first, floor(held / pitch + 0.5 + ROUNDING))
     return range(first, max(last, first) + 1)
 
 
