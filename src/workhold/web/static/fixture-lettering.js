@@ -8,7 +8,7 @@ import { length, number } from "./units.js";
 
 const LONGEST = 62;
 const SHORTEST = 20;
-const FARTHER = 28;
+const NEXT_LINE = 28;
 
 /**
  * Draw the lettering of a fixture for the view as it is.
@@ -114,7 +114,7 @@ function travels(drawing) {
     const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
     // Of two along the same way the second stands farther out.
     const nearer = sliding.slice(0, number).filter((each) => each.measured && (Math.abs(each.clamping[1]) > Math.abs(each.clamping[0])) === upright).length;
-    const rim = upright ? right + 16 + FARTHER * nearer : top - 30 - FARTHER * nearer;
+    const rim = upright ? right + 16 + NEXT_LINE * nearer : top - 30 - NEXT_LINE * nearer;
     const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
     const text = `${setting.sign} = ${length(drawing.open ? (b - a) / view.k : setting.length)}`;
     const wide = 8.2 * text.length + 10;
