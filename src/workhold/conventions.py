@@ -16,6 +16,9 @@ SAME_CENTER = 1e-9
 # mm. Lengths that agree to this are a coincidence, beside which general formulas divide zero by zero: the rounding of
 # coordinates. Chords beside it are those of a part in which they agree.
 EXACT = 1e-11
+# Radians, and a share of L. Where the lengths of part and lattice allow contacts only with normals this near to parallel, to
+# one line, or to one point, they are so: nearer than what LEAST_SEAT asks of them.
+DEPENDENT = 3e-7
 # mm. Right pegs may stand nearer than the smallest gap by this much: rounding of a gap that is met exactly.
 GAP_SLACK = 1e-9
 # mm. The body of a clamp may enter the part by this much: it touches it at the tip, and slots as wide as a clamp are drawn
@@ -30,6 +33,9 @@ TANGENT = 1e-5
 # mm. A piece of an offset may come nearer to the outline than the radius by this much, and shorter ones are dropped: what
 # cutting leaves over. The outline itself is held to TOUCHING, which is coarser, because its coordinates are a user's.
 CLEARANCE = 1e-9
+# mm. A concave arc whose radius exceeds a peg's by no more than this is a corner that the peg fills: it touches the arc from
+# end to end, and no place on it is its contact. The digits of a bulge leave so much of equal radii.
+FILLED = 5e-7
 # No unit. The smallest entry of the null vector exceeds this (model: condition 4): 0 when three normals meet in one point.
 LEAST_CLOSURE = 1e-9
 # No unit. The clamping force exceeds this (model: condition 5): 0 at an exact double root, where the rounding of a drawing

@@ -19,7 +19,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import CLEARANCE
+from workhold.conventions import CLEARANCE, FILLED
 from workhold.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
 from workhold.geometry.segment import Arc, Line, Point, Segment, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
@@ -28,12 +28,12 @@ __all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
 
 
 def raw_offset(segment: Segment, radius: float) -> Segment | None:
-    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes."""
+    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes or that the disc fills."""
     if isinstance(segment, Line):
         nx, ny = segment.normal()
         (x0, y0), (x1, y1) = segment.start, segment.end
         return Line((x0 + radius * nx, y0 + radius * ny), (x1 + radius * nx, y1 + radius * ny))
-    if segment.radius + segment.sign * radius <= CLEARANCE:
+    if segment.radius + segment.sign * radius <= FILLED:
         return None
     return segment.grown(segment.sign * radius)
 

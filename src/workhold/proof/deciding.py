@@ -12,7 +12,6 @@ leaves with the first that decides it:
 
 from __future__ import annotations
 
-from itertools import combinations
 from math import inf, isfinite
 from operator import le
 from threading import Event, Lock
@@ -24,14 +23,13 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.conventions import PARALLEL
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.base.given import Lattice, Setting
 from workhold.kernels.contact import record
 from workhold.kernels.contact.equations import WORK_LENGTH
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
 from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.proof.degenerate import hold_nothing
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import Outcome
@@ -166,7 +164,7 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
     lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
     chosen = records[~given_up] if lost else records
     proven, rest = sifted(chosen, problem, problem.setting)
-    rest = rest[~has_three_parallels(rest, problem)]
+    rest = rest[~hold_nothing(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
     found, reasons, left = escalated(rest, problem, course)
     if len(found):
@@ -187,24 +185,6 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
     proven = records.take(is_proven, axis=0)
     proven[:, record.PSI : record.REACH] = solutions.take(is_proven, axis=0)
     return proven, records[verdicts == OPEN]
-
-
-def has_three_parallels(records: Array, problem: Problem) -> NDArray[np.bool_]:
-    """Which records (N,) have three pegs on lines that are parallel: the fourth peg then has no share in any closure.
-
-    Lines parallel within ``PARALLEL`` are parallel (model). Where rounding makes them not quite so, the exact contact may be
-    anywhere along them, which takes long to decide and means nothing.
-    """
-    rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
-    x, y, is_line = rows[..., AXIS_X], rows[..., AXIS_Y], rows[..., IS_ARC] == 0.0
-    out = np.zeros(len(records), np.bool_)
-    # Of one of two clamps it is the standing pegs that must fix the pose.
-    for triple in combinations(range(3 if problem.pairing else 4), 3):
-        parallel = is_line[:, triple].all(axis=1)
-        for i, j in combinations(triple, 2):
-            parallel &= np.abs(x[:, i] * y[:, j] - y[:, i] * x[:, j]) <= PARALLEL
-        out |= parallel
-    return out
 
 
 def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
@@ -233,9 +213,10 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
 
 def interval_newton_in_doubles(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
     """Open records contracted: the fixtures found, and the boxes that stay open."""
-    bounded = np.isfinite(records).all(axis=1)
+    slopes = jacobians(records, problem.rows, setting)
+    bounded = np.isfinite(records).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     known = records[bounded]
-    left, _, right = np.linalg.svd(jacobians(known, problem.rows, setting))
+    left, _, right = np.linalg.svd(slopes[bounded])
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
     verdicts, roots = interval_newton(known, problem.rows, setting, frames)
     proven, still_open = sifted(roots, problem, setting)
@@ -303,7 +284,7 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | N
 
     length = problem.wrench_length
     turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])
-    if not np.isfinite([turn, right, up, along]).all():
+    if not np.isfinite(row).all():
         return Outcome((), UNBOUNDED)
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
     box = Box(

@@ -45,6 +45,8 @@ PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
+# A place is looked at again when a step leaves less than this of a side.
+SMALLER = 0.7
 
 
 @frozen
@@ -255,11 +257,23 @@ class Frame:
         slopes = self.combining * arb_mat(scaled) * self.turning
         return [[slopes[i, j] for j in range(4)] for i in range(4)]
 
-    def step(self, place: list[arb], here: Places) -> tuple[list[arb] | None, bool]:
+    def step(self, place: list[arb], here: Places, regular: bool = False) -> tuple[list[arb] | None, bool]:
         """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
-        whether it holds exactly one. ``here`` are the contacts at the place."""
+        whether it holds exactly one. ``here`` are the contacts at the place.
+
+        A ``regular`` step combines the equations by the inverse of their own Jacobian at the place's middle, where it has
+        one: near a simple solution next to a double one that of the whole box's middle does not tell the directions apart.
+        """
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(self.places(middle)), self.slopes(here)
+        if regular:
+            try:
+                inverse = arb_mat(slopes).mid().inv().mid()
+            except ZeroDivisionError:
+                return place, False
+            values = list((inverse * arb_mat(4, 1, values)).entries())
+            combined = inverse * arb_mat(slopes)
+            slopes = [[combined[i, j] for j in range(4)] for i in range(4)]
         out, inside = list(place), True
         for k in range(4):
             rest = values[k] + sum((slopes[k][j] * (out[j] - middle[j]) for j in range(4) if j != k), arb(0))
@@ -299,16 +313,23 @@ def solutions_in(box: Box, limits: Limits, is_stopped: Callable[[], bool] = neve
             if is_empty(box, here, limits):
                 continue
             smaller, unique = frame.step(place, here)
+            if smaller is not None and not unique and not is_smaller(smaller, place):
+                smaller, unique = frame.step(smaller, frame.places(smaller), regular=True)
             if smaller is None:
                 continue
             if unique:
                 roots.append(smaller)
                 continue
-            if any(s.rad() < 0.7 * p.rad() for s, p in zip(smaller, place, strict=True)):
+            if is_smaller(smaller, place):
                 waiting.append(smaller)
                 continue
             waiting += halves(smaller)
     return judged(frame, roots, limits)
+
+
+def is_smaller(part: list[arb], place: list[arb]) -> bool:
+    """Whether a step has made a place so much smaller that it is worth another."""
+    return any(one.rad() < SMALLER * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
 def is_empty(box: Box, here: Places, limits: Limits) -> bool:
@@ -361,7 +382,14 @@ def refined(frame: Frame, root: list[arb]) -> list[arb]:
     """A proven solution to the precision in force."""
     for _ in range(12):
         closer, _ = frame.step(root, frame.places(root))
-        if closer is None or not any(c.rad() < 0.5 * r.rad() for c, r in zip(closer, root, strict=True)):
+        if closer is not None and not is_closer(closer, root):
+            closer, _ = frame.step(root, frame.places(root), regular=True)
+        if closer is None or not is_closer(closer, root):
             break
         root = closer
     return root
+
+
+def is_closer(closer: list[arb], root: list[arb]) -> bool:
+    """Whether a step has found at least one more binary digit."""
+    return any(one.rad() < 0.5 * whole.rad() for one, whole in zip(closer, root, strict=True))

@@ -32,7 +32,7 @@ from workhold.verification.findings import Finding, rule
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
 from workhold.verification.outline import Outline
 from workhold.verification.pair_balance import PairBalance
-from workhold.verification.rules import FIGURE_AGREEMENT, HAIR, ROUNDING, SAME_END, TANGENT
+from workhold.verification.rules import FIGURE_AGREEMENT, FILLED, HAIR, ROUNDING, SAME_END, TANGENT
 from workhold.verification.sides import ArcSide
 
 __all__ = ["Measure", "box_center", "figure_missing", "parts_spared", "written", "written_numbers"]
@@ -197,8 +197,9 @@ class Measure:
         joined = outline.smooth_ends(face, contact.body is not None)
         for side, smooth, turn in zip(outline.neighbours[face], joined, outline.turns[face], strict=True):
             length, sure = length_of(side, radius), bool(turn > 2 * TANGENT or turn * radius < SAME_END)
-            open_way = smooth and bool(length > HAIR)
-            sure &= not (smooth and bool(HAIR / 10 < length < 10 * HAIR))
+            reach = side.reach(radius) if isinstance(side, ArcSide) else arb(1)
+            open_way = smooth and bool(length > HAIR) and not reach < FILLED
+            sure &= not (smooth and bool(HAIR / 10 < length < 10 * HAIR or 0.99 * FILLED < reach < 1.01 * FILLED))
             readings.append((open_way, open_way) if sure else (False, True))
         found = []
         for one, two in zip(*readings, strict=True):

@@ -22,6 +22,7 @@ __all__ = [
     "GENTLE_PEG",
     "HAIR",
     "LARGE_LOCATION_ERROR",
+    "FILLED",
     "LEAST_CLAMPING",
     "LEAST_FLUSH",
     "LEAST_PUSH",
@@ -66,6 +67,8 @@ TANGENT = 1e-5
 # mm. An edge or none may be told at a joint that is tangent, or nearly so, where the ends of contact features are farther
 # apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
 SAME_END = 9e-7
+# mm. A peg fills a hollow whose radius exceeds its own by no more than this: no place there is a contact.
+FILLED = 5e-7
 # No unit. The least share of a peg in the closure, the shares scaled to sum 1: 0 when three normals meet in one point.
 LEAST_SHARE = 1e-9
 # No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact equations, where the

@@ -375,6 +375,9 @@ def balances(wrenches: Array, spare: float = 1e-9) -> bool:
     Where any do, then some that are independent: no more than four.
     """
     target = np.array([0.0, 0.0, 0.0, 1.0])
+    if not np.isfinite(wrenches).all():
+        # A peg told to stand in the centre of an arc has no normal.
+        return False
     for size in range(1, min(wrenches.shape[1], 4) + 1):
         for chosen in combinations(range(wrenches.shape[1]), size):
             some = wrenches[:, chosen]

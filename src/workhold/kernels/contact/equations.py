@@ -68,8 +68,9 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
             w[OFF, k], gx, gy = off_shallow(row, x, y)
         else:
             size = hypot(dx, dy)
-            gx, gy = dx / size, dy / size
             w[OFF, k] = size - row[RADIUS]
+            # In its very centre no direction of an arc is nearer than another, and none is told.
+            gx, gy = (dx / size, dy / size) if size > 0.0 else (0.0, 0.0)
         w[SLOPES + k, 0] = (gy * turned_x - gx * turned_y) / length
         w[SLOPES + k, 1], w[SLOPES + k, 2] = gx, gy
         w[SLOPES + k, 3] = w[MOVING, k] * (gx * cosine + gy * sine)

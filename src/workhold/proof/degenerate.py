@@ -1,0 +1,186 @@
+r"""Contacts that hold nothing wherever they are, told from what they touch and from the holes that their pegs stand in.
+
+Four wrenches close only if every three of them are independent (``kernels.contact.closure``), and with two clamps those of
+the three standing pegs must be. Where lengths of a part and of a lattice agree exactly, some three are dependent in the
+only place where they can touch. Such a place is a double root of the contact equations or one of a continuum of solutions:
+what the rounding of a drawing makes of it takes long to decide, and means nothing. Each family is a theorem:
+
+parallels : on three parallel lines all normals are parallel.
+centre : on three arcs about one centre all normals pass through it.
+squeezed : two pegs of one carrier as far apart, or as near, as two features allow touch them on a common normal, so that
+    both wrenches lie on one line. For arcs of radii r and s whose centres are D apart the most is D + r + s, the least
+    2 max(D, r, s) - (D + r + s); for a line h from an arc's centre the least is h - r, for parallel lines their distance.
+turning : two of three pegs of one carrier, on arcs about one centre, fix where it is on the carrier; a turn about it is
+    left. The third peg goes around it at a distance D. It meets a line h from the centre where D cos phi = h, and an arc
+    of radius r about a point e from the centre where it is r from that, which is between \|D - e\| and D + e. With D = h,
+    or r at an end of its range, it is there at phi = 0 alone, and its normal passes through the centre as the others do.
+sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. When
+    the third peg's way is just the radius from an arc's centre, it touches that arc where its normal is square to the way,
+    as the others are.
+
+Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the exact one by m,
+normals are off by sqrt(2 m / r), with r the smallest length that bends; in ``turning`` the third passes the centre at
+sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most ``DEPENDENT``, or this part of L.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import DEPENDENT, PARALLEL, SAME_CENTER
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.given import Lattice
+from workhold.kernels.contact import record
+from workhold.kernels.proof.newton_kantorovich import LEAST_REACH
+
+__all__ = ["hold_nothing"]
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Points = NDArray[np.complex128]
+
+
+class Touched(NamedTuple):
+    """What one peg touches in each of N records; points and directions of the plane are complex numbers.
+
+    Parameters
+    ----------
+    is_arc : (N,) whether that is an arc.
+    middle, axis, radius : (N,) an arc's centre and radius in mm; a point of a line, its direction, and 0.
+    place : (N,) of the peg's hole on its carrier, in mm.
+    """
+
+    is_arc: Bools
+    middle: Points
+    axis: Points
+    radius: Array
+    place: Points
+
+    def take(self, numbers: NDArray[np.int64]) -> Touched:
+        """The same of some records."""
+        is_arc, middle, axis, radius, place = self
+        return Touched(is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers])
+
+
+def hold_nothing(records: Array, problem: Problem) -> Bools:
+    """Which records (N, 19) are of contacts that hold nothing, whatever solution is in their boxes."""
+    rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
+    pegs = touched(records, rows, problem.frame.lattice)
+    standing = records[:, record.STANDING]
+    # Of one of two clamps it is the standing pegs that must fix the pose.
+    asked = range(3 if problem.pairing else 4)
+    out = np.zeros(len(records), np.bool_)
+    for one, other in combinations(asked, 2):
+        together = (one >= standing) == (other >= standing)
+        out |= together & squeezed(pegs[one], pegs[other])
+    for triple in combinations(asked, 3):
+        a, b, c = (pegs[n] for n in triple)
+        out |= parallel(a, b) & parallel(b, c) & parallel(a, c)
+        out |= concentric(a, b) & concentric(b, c) & concentric(a, c)
+    # No carrier but the one that stands still has three pegs.
+    left = np.flatnonzero(~out & (standing == 3.0))
+    if len(left):
+        some, three = records[left], [peg.take(left) for peg in pegs[:3]]
+        for k in range(3):
+            a, b, c = three[k - 2], three[k - 1], three[k]
+            out[left] |= turning(some, a, b, c, problem.wrench_length) | sliding(some, a, b, c)
+    return out
+
+
+def touched(records: Array, rows: Array, lattice: Lattice) -> list[Touched]:
+    """What each of the four pegs of records touches, given the rows (N, 4, 12) of their features."""
+    is_arc = rows[..., IS_ARC] != 0.0
+    middle, axis = rows[..., X] + 1j * rows[..., Y], rows[..., AXIS_X] + 1j * rows[..., AXIS_Y]
+    radius = np.where(is_arc, rows[..., RADIUS], 0.0)
+    columns, lines = records[:, record.COLUMNS : record.ROWS], records[:, record.ROWS : record.PSI]
+    place = columns * lattice.pitch_x + 1j * lines * lattice.pitch_y
+    return [Touched(is_arc[:, k], middle[:, k], axis[:, k], radius[:, k], place[:, k]) for k in range(4)]
+
+
+def cross(a: Points, b: Points) -> Array:
+    """Cross products of vectors."""
+    return np.asarray((np.conj(a) * b).imag)
+
+
+def agree(one: Array, other: Array, bends: Array) -> Bools:
+    """Which lengths agree, given what bends where they do not, all in mm."""
+    return np.asarray(np.abs(one - other) <= DEPENDENT**2 / 2.0 * bends)
+
+
+def parallel(a: Touched, b: Touched) -> Bools:
+    """Where both are lines, and parallel."""
+    return np.asarray(~a.is_arc & ~b.is_arc & (np.abs(cross(a.axis, b.axis)) <= PARALLEL))
+
+
+def concentric(a: Touched, b: Touched) -> Bools:
+    """Where both are arcs about one centre."""
+    return np.asarray(a.is_arc & b.is_arc & (np.abs(a.middle - b.middle) <= SAME_CENTER))
+
+
+def squeezed(a: Touched, b: Touched) -> Bools:
+    """Where two pegs of one carrier are as far apart or as near as what they touch allows."""
+    between, apart = np.abs(b.place - a.place), np.abs(b.middle - a.middle)
+    whole = apart + a.radius + b.radius
+    one, two = (np.where(each.is_arc, each.radius, np.inf) for each in (a, b))
+    bends = np.minimum(between, np.minimum(one, two))
+    least = 2.0 * np.maximum(apart, np.maximum(a.radius, b.radius)) - whole
+    arcs = a.is_arc & b.is_arc & (agree(between, whole, bends) | agree(between, least, bends))
+    axis = np.where(a.is_arc, b.axis, a.axis)
+    gap = np.abs(cross(axis, b.middle - a.middle)) - a.radius - b.radius
+    lines = (parallel(a, b) | (a.is_arc != b.is_arc)) & agree(between, gap, bends)
+    return np.asarray(arcs | lines)
+
+
+def both(known: Array) -> Iterator[Array]:
+    """The two values of a square root, of what is less than 0 by rounding that of 0."""
+    root = np.sqrt(np.maximum(known, 0.0))
+    yield root
+    yield -root
+
+
+def turning(records: Array, a: Touched, b: Touched, c: Touched, length: float) -> Bools:
+    """Where the pegs of a and b turn about one centre, and that of c reaches what it touches at one place of its way."""
+    chord = b.place - a.place
+    apart = np.where(chord == 0.0, 1.0, np.abs(chord))
+    along = (apart + (a.radius - b.radius) * (a.radius + b.radius) / apart) / 2.0
+    psi, first = records[:, record.PSI], records[:, record.TAIL_X] + 1j * records[:, record.TAIL_Y]
+    away = a.middle - first
+    seen = away * np.exp(-1j * psi)
+    turn, off = records[:, record.REACH] + LEAST_REACH / length, records[:, record.LARGEST_RADIUS] + LEAST_REACH
+    reach = 1.5 * off + turn * np.abs(away)
+    to_center = a.middle - c.middle
+    far = np.where(c.is_arc, np.abs(to_center), np.abs(cross(c.axis, to_center)))
+    some, every = np.zeros(len(records), np.bool_), np.ones(len(records), np.bool_)
+    for beside in both((a.radius - along) * (a.radius + along)):
+        center = a.place + (along + 1j * beside) * chord / apart
+        distance = np.abs(center - c.place)
+        lever = np.where(c.is_arc, distance * far, distance)
+        bends = length**2 * np.where(c.is_arc, c.radius, 1.0) / np.where(lever == 0.0, 1.0, lever)
+        ends = agree(c.radius, np.abs(distance - far), bends) | agree(c.radius, distance + far, bends)
+        here = np.abs(center - seen) <= reach
+        some |= here
+        every &= ~here | np.where(c.is_arc, ends, agree(distance, far, bends))
+    return np.asarray(concentric(a, b) & some & every)
+
+
+def sliding(records: Array, a: Touched, b: Touched, c: Touched) -> Bools:
+    """Where the pegs of a and b slide along parallel lines, and that of c on a way that touches an arc."""
+    chord, third = b.place - a.place, c.place - a.place
+    size = np.where(chord == 0.0, 1.0, np.abs(chord))
+    gap, height = cross(b.middle - a.middle, a.axis), cross(c.middle - a.middle, a.axis)
+    ahead, aside = (np.conj(chord) * third).real / size**2, cross(chord, third) / size**2
+    turn = records[:, record.REACH] + LEAST_REACH
+    some, every = np.zeros(len(records), np.bool_), np.ones(len(records), np.bool_)
+    for along in both((size - gap) * (size + gap)):
+        # The chord lies ``along`` the axis and by the gap to its right.
+        psi = np.angle((along - 1j * gap) * a.axis / np.where(chord == 0.0, 1.0, chord))
+        here = np.abs(np.exp(1j * (records[:, record.PSI] - psi)) - 1.0) <= turn
+        some |= here
+        every &= ~here | agree(np.abs(ahead * gap - aside * along - height), c.radius, c.radius)
+    return np.asarray(parallel(a, b) & c.is_arc & some & every)
