@@ -99,3 +99,15 @@ def test_what_takes_too_many_boxes_is_told(monkeypatch: pytest.MonkeyPatch) -> N
     outcome = solutions_in(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
     assert outcome.fixtures == ()
     assert outcome.reason
+
+
+@pytest.mark.parametrize("rest", [1e-10, 1e-11])
+@pytest.mark.parametrize("turn", [-3e-3, 1e-3])
+def test_a_simple_solution_next_to_a_double_one_is_found_off_the_middle(rest: float, turn: float) -> None:
+    """Where the Jacobian at the middle of the box does not tell the directions at the solutions apart, that there does."""
+    low, high = solutions(-2.5 + rest)
+    outcome = solutions_in(box(-2.5 + rest, turn, 4e-3), LIMITS)
+    assert outcome is not None and outcome.reason == ""
+    found = [fixture[0] for fixture in outcome.fixtures]
+    assert len(found) == 1
+    assert min(abs(found[0] - low), abs(found[0] - high)) < 1e-13

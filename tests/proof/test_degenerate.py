@@ -1,0 +1,194 @@
+"""Contacts whose wrenches exact lengths make dependent are told from their features and holes, and no others are."""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from workhold import Plate, Vise, Workpiece, answer, design
+from workhold.contact.problem import Problem
+from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
+from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, REACH, RECORD_LENGTH, TAIL_X, TAIL_Y
+from workhold.kernels.proof.interval_newton import jacobians
+from workhold.listing import finish
+from workhold.model.query import Query
+from workhold.model.toolkit import Toolkit
+from workhold.proof import deciding
+from workhold.proof.degenerate import Touched, hold_nothing, sliding, squeezed, turning
+
+Array = NDArray[np.float64]
+LENGTH = 60.0
+PSI_OF_ALL = 0.3
+# A length off by this much is another length, and what rounding makes of one is not.
+OFF, ROUNDED = 1e-6, 1e-14
+
+
+def arc(center: complex, radius: float, place: complex) -> Touched:
+    """A peg on an arc."""
+    return Touched(*(np.array([value]) for value in (True, center + 0j, 1.0 + 0j, radius, place + 0j)))
+
+
+def line(point: complex, axis: complex, place: complex) -> Touched:
+    """A peg on a line."""
+    return Touched(*(np.array([value]) for value in (False, point + 0j, axis / abs(axis) + 0j, 0.0, place + 0j)))
+
+
+def near(tail: complex, psi: float = PSI_OF_ALL) -> Array:
+    """The record of pegs that turn by psi, the first of them at a place on the part."""
+    row = np.zeros((1, RECORD_LENGTH))
+    row[0, PSI:] = psi, tail.real, tail.imag, 0.0, 1e-4, 1e-3
+    return row
+
+
+@pytest.mark.parametrize("apart", [0.0, 7.0, 50.0])
+@pytest.mark.parametrize(("one", "two"), [(20.0, 20.0), (12.0, 5.0), (5.0, 30.0)])
+@pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
+def test_a_pair_as_far_apart_or_as_near_as_two_arcs_allow_is_squeezed(
+    apart: float, one: float, two: float, off: float
+) -> None:
+    """The ends of the range are those that trying shows."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 721)
+    ends = np.abs(apart + two * np.exp(1j * angles)[:, None] - one * np.exp(1j * angles)[None, :])
+    for length in (ends.min(), ends.max()):
+        # A least of 0 is taken at no angle tried, and by no two pegs.
+        if length > 0.5:
+            found = squeezed(arc(0, one, 3), arc(1j * apart, two, 3 + (length + off) * 1j))
+            assert bool(found[0]) == (abs(off) <= ROUNDED)
+
+
+@pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
+def test_a_pair_as_near_as_a_line_and_an_arc_allow_is_squeezed(off: float) -> None:
+    """So is one across parallel lines; a pair on one line or on lines at an angle is not."""
+    exact = abs(off) <= ROUNDED
+    for pair in (
+        (line(0, 1 + 1j, 0), arc(9 * (1j - 1) / sqrt(2), 4.0, (5 + off) * 1j)),
+        (
+            line(2, 1 + 1j, 0),
+            line(2 + 7 * (1j - 1), 1 + 1j, 7 * sqrt(2) + off),
+        ),
+    ):
+        assert bool(squeezed(*pair)[0]) == bool(squeezed(*pair[::-1])[0]) == exact
+    assert not squeezed(line(0, 1, 0), line(20, 1, 20))[0]
+    assert not squeezed(line(0, 1, 0), line(20, 1 + 1j, 20))[0]
+
+
+def turned(third: Touched) -> bool:
+    """Whether a third peg, at (20, 0), goes past what it touches: the others are at (0, 0), 5 mm from a centre that is 3 mm
+    to their right and 4 mm up, and at (3, 24), 20 mm from it. Parts' frames are turned by psi."""
+    seen = complex(cos(PSI_OF_ALL), sin(PSI_OF_ALL)) * (3 + 4j)
+    one, two = arc(7 - 2j, 5.0, 0), arc(7 - 2j, 20.0, 3 + 24j)
+    record = near(7 - 2j - seen)
+    found = {bool(turning(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
+    assert len(found) == 1
+    return found.pop()
+
+
+@pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
+def test_a_third_peg_that_turns_past_a_feature_passes_its_normal_through_the_centre(off: float) -> None:
+    """Lines as far from the centre as the peg; arcs outside, inside and around its way, and about the centre itself."""
+    way, center, exact = hypot(17, 4) + off, 7 - 2j, abs(off) <= ROUNDED
+    beside = complex(cos(1.0), sin(1.0))
+    assert turned(line(center + way * beside + 3j * beside, 1j * beside, 20)) == exact
+    assert turned(arc(center + (way + 6.0) * beside, 6.0, 20)) == exact
+    assert turned(arc(center + (way - 6.0) * beside, 6.0, 20)) == exact
+    assert turned(arc(center + 6.0 * beside, way + 6.0, 20)) == exact
+    assert turned(arc(center, way, 20)) == exact
+    # On the other side of the chord the centre is another.
+    mirrored = abs(3 + 4j - 2 * (3 + 4j)) + off
+    assert not turned(line(center + mirrored * beside, 1j * beside, 20))
+
+
+@pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
+@pytest.mark.parametrize("gap", [0.0, 6.0, -6.0])
+@pytest.mark.parametrize("outside", [1, -1])
+def test_a_third_peg_that_slides_past_an_arc_has_a_parallel_normal(off: float, gap: float, outside: int) -> None:
+    """Pegs on one line or on two parallel ones, and one on an arc whose centre is its radius from the peg's way."""
+    axis, radius = complex(cos(0.4), sin(0.4)), 11.0
+    # Pegs (0, 0), (10, 0), (3, 20), turned so that the second is off the first's line by the gap.
+    along = sqrt(100.0 - gap * gap)
+    turn = (along - 1j * gap) * axis / 10
+    way = (turn * (3 + 20j) / axis).imag
+    center = (5 + 1j * (way + outside * (radius + off))) * axis
+    one, two = line(4 * axis, axis, 0), line((9 - 1j * gap) * axis, -axis, 10)
+    for psi, expected in ((np.angle(turn), abs(off) <= ROUNDED), (np.angle(turn) + 0.1, False)):
+        found = {
+            bool(sliding(near(0, float(psi)), *pair, arc(center, radius, 3 + 20j))[0])
+            for pair in ((one, two), (two, one))
+        }
+        assert found == {expected}
+
+
+def rod(radius: float, half_width: float, half_length: float, hole: float) -> Workpiece:
+    """Two round ends about holes, and a straight bar between them."""
+    beside = sqrt(radius**2 - half_width**2)
+    # tan of a quarter of the sweep, 2 pi less the angle that the bar takes.
+    bulge = (radius + beside) / half_width
+    x = half_length - beside
+    outer = [(-x, -half_width, 0), (x, -half_width, bulge), (x, half_width, 0), (-x, half_width, bulge)]
+    holes = [[(c - hole, 0, 1), (c + hole, 0, 1)] for c in (-half_length, half_length)]
+    return Workpiece.from_loops("rod", [np.array(loop, float) for loop in (outer, *holes)])
+
+
+# Round ends of 20 mm with a peg: two of its pegs stand across one, and a third where the other end is tangent to a column.
+ACROSS = rod(17, 8, 50, 13)
+# A clamp of radius 5 in the hole of 8 mm just grazes it where the part lies in a triangle of 3, 4 and 5.
+GRAZED = rod(16, 6, 70, 8)
+
+
+@pytest.mark.parametrize(
+    ("part", "toolkit"),
+    [
+        (ACROSS, Plate(pitch=20, peg_radius=3, clamp_radius=5)),
+        (GRAZED, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2)),
+    ],
+)
+def test_nothing_about_a_symmetric_rod_is_undecided(part: Workpiece, toolkit: Toolkit) -> None:
+    result = design(part, toolkit, best=1)
+    assert result.complete
+    assert result.proof is not None
+    assert result.proof.undecided == ()
+
+
+@pytest.mark.parametrize(
+    "toolkit", [Plate(pitch=20, peg_radius=3, clamp_radius=5), Vise(pitch=20, columns=3, peg_radius=3)]
+)
+def test_no_proven_fixture_is_of_such_a_family(toolkit: Toolkit, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Certificates know nothing of the families, and prove no member of one; of what they leave open many are."""
+    counts = np.zeros(2, int)
+
+    def both(records: Array, problem: Problem, *rest: Any) -> tuple[Array, Array]:
+        proven, left = sifted(records, problem, *rest)
+        counts[:] += hold_nothing(proven, problem).sum(), hold_nothing(left, problem).sum()
+        return proven, left
+
+    sifted = deciding.sifted
+    monkeypatch.setattr(deciding, "sifted", both)
+    design(GRAZED, toolkit, best=1)
+    assert counts[0] == 0
+
+
+def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
+    """A peg in the centre of an arc has no normal, so that nothing can be told of the place; what is around it stays."""
+    problem = Problem.of(Query(rod(16, 6, 70, 3.25), Vise(pitch=20, columns=3, peg_radius=3)))
+    found: list[Array] = []
+    original = deciding.decided
+    rows = problem.rows
+    small = np.flatnonzero((rows[:, IS_ARC] != 0.0) & (rows[:, RADIUS] < 0.5))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(finish, "decided", lambda *given: found.append(original(*given)[0]) or original(*given))
+        answer(problem.query)
+    proven = np.concatenate(found)
+    touches = np.isin(proven[:, FEATURES], small)
+    assert touches.any()
+    for row in proven[touches][:20]:
+        center = rows[int(row[FEATURES]), [X, Y]]
+        box = row[None].copy()
+        box[0, TAIL_X : TAIL_Y + 1], box[0, REACH], box[0, LARGEST_RADIUS] = center, 1e-9, 0.3
+        assert np.isfinite(jacobians(box, rows, problem.setting)).all()
+        kept, left = deciding.interval_newton_in_doubles(box, problem, problem.setting)
+        distances = [np.abs(one[PSI:REACH] - row[PSI:REACH]).max() for one in kept]
+        assert len(left) or min(distances, default=1.0) < 1e-9
