@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, pi, tan
+from math import hypot, pi, sqrt, tan
 
 import numpy as np
 import pytest
@@ -128,6 +128,25 @@ def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():
         inside = [f.segment for f in contact_features(part, 3.0) if f.face >= 4]
         assert [s.radius for s in inside] == pytest.approx(expected)
         assert all(s.is_full and s.sign == -1.0 for s in inside)
+
+
+@pytest.mark.parametrize(("excess", "count"), [(0.0, 0), (2e-8, 0), (4.9e-7, 0), (5.1e-7, 1), (1e-3, 1)])
+def test_a_hollow_that_the_peg_fills_has_no_feature(excess: float, count: int) -> None:
+    """A fillet or a hole of the peg's radius and a little more, as bulges of few digits leave it, is a corner to the peg."""
+    radius, quarter = 5.0 + excess, 1.0 - sqrt(2.0)
+    angle = [
+        [0, 0, 0],
+        [60, 0, 0],
+        [60, 20, 0],
+        [20 + radius, 20, quarter],
+        [20, 20 + radius, 0],
+        [20, 60, 0],
+        [0, 60, 0],
+    ]
+    part = Workpiece.from_loops("angle", [angle, [[40 - radius, 10, 1], [40 + radius, 10, 1]]])
+    arcs = [f.segment for f in contact_features(part, 5.0) if isinstance(f.segment, Arc)]
+    assert len(arcs) == 2 * count
+    assert [arc.radius for arc in arcs] == pytest.approx([excess] * len(arcs), abs=1e-9)
 
 
 @pytest.mark.parametrize(("turn", "tangent"), [(0.0, True), (3e-6, True), (3e-5, False), (1e-3, False), (0.05, False)])

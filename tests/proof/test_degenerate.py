@@ -9,10 +9,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold import Plate, Vise, Workpiece, answer, design
+from workhold import Plate, Vise, Workpiece, answer, design, verify
 from workhold.contact.problem import Problem
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
-from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, REACH, RECORD_LENGTH, TAIL_X, TAIL_Y
+from workhold.kernels.contact.record import (
+    COLUMNS,
+    FEATURES,
+    LARGEST_RADIUS,
+    PSI,
+    REACH,
+    RECORD_LENGTH,
+    ROWS,
+    TAIL_X,
+    TAIL_Y,
+)
 from workhold.kernels.proof.interval_newton import jacobians
 from workhold.listing import finish
 from workhold.model.query import Query
@@ -138,19 +148,42 @@ ACROSS = rod(17, 8, 50, 13)
 # A clamp of radius 5 in the hole of 8 mm just grazes it where the part lies in a triangle of 3, 4 and 5.
 GRAZED = rod(16, 6, 70, 8)
 
+# A boss about a hole, between fillets of 5 mm to the digits of a file, which a clamp of that radius fills.
+TEE = Workpiece.from_loops(
+    "tee",
+    [
+        [
+            (-60, 0, 0),
+            (60, 0, 0),
+            (60, 18, 0),
+            (14, 18, -0.41421356),
+            (9, 23, 0),
+            (9, 78, 1),
+            (-9, 78, 0),
+            (-9, 23, -0.41421356),
+            (-14, 18, 0),
+            (-60, 18, 0),
+        ],
+        [(-5, 78, 1), (5, 78, 1)],
+    ],
+)
+
 
 @pytest.mark.parametrize(
     ("part", "toolkit"),
     [
+        (TEE, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2)),
         (ACROSS, Plate(pitch=20, peg_radius=3, clamp_radius=5)),
         (GRAZED, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2)),
     ],
 )
-def test_nothing_about_a_symmetric_rod_is_undecided(part: Workpiece, toolkit: Toolkit) -> None:
-    result = design(part, toolkit, best=1)
+def test_nothing_about_a_symmetric_part_is_undecided(part: Workpiece, toolkit: Toolkit) -> None:
+    """No number that is not finite is met on the way, nothing is left, and what is listed holds."""
+    result = design(part, toolkit, best=10)
     assert result.complete
     assert result.proof is not None
     assert result.proof.undecided == ()
+    assert verify(result).proven == len(result) > 0
 
 
 @pytest.mark.parametrize(
@@ -182,12 +215,14 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
         patch.setattr(finish, "decided", lambda *given: found.append(original(*given)[0]) or original(*given))
         answer(problem.query)
     proven = np.concatenate(found)
-    touches = np.isin(proven[:, FEATURES], small)
-    assert touches.any()
-    for row in proven[touches][:20]:
-        center = rows[int(row[FEATURES]), [X, Y]]
+    numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))
+    assert len(numbers)
+    for row, peg in zip(proven[numbers[:20]], pegs[:20].tolist(), strict=True):
+        column, line_of = row[COLUMNS + peg], row[ROWS + peg]
+        reach = 20.0 * complex(column, line_of) * np.exp(1j * row[PSI])
+        tail = complex(*rows[int(row[FEATURES + peg]), [X, Y]]) - reach
         box = row[None].copy()
-        box[0, TAIL_X : TAIL_Y + 1], box[0, REACH], box[0, LARGEST_RADIUS] = center, 1e-9, 0.3
+        box[0, TAIL_X : TAIL_Y + 1], box[0, REACH], box[0, LARGEST_RADIUS] = (tail.real, tail.imag), 1e-9, 0.3
         assert np.isfinite(jacobians(box, rows, problem.setting)).all()
         kept, left = deciding.interval_newton_in_doubles(box, problem, problem.setting)
         distances = [np.abs(one[PSI:REACH] - row[PSI:REACH]).max() for one in kept]
