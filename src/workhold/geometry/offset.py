@@ -28,12 +28,12 @@ __all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
 
 
 def raw_offset(segment: Segment, radius: float) -> Segment | None:
-    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes or that the disc fills."""
+    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes."""
     if isinstance(segment, Line):
         nx, ny = segment.normal()
         (x0, y0), (x1, y1) = segment.start, segment.end
         return Line((x0 + radius * nx, y0 + radius * ny), (x1 + radius * nx, y1 + radius * ny))
-    if segment.radius + segment.sign * radius <= FILLED:
+    if segment.radius + segment.sign * radius <= CLEARANCE:
         return None
     return segment.grown(segment.sign * radius)
 
@@ -80,7 +80,8 @@ def trimmed_offsets(segments: Sequence[Segment], radius: float, flat: float | No
         piece, beside, sides = raw[index], rows, [raw]
         if flat is not None and isinstance(segment, Line):
             piece, beside, sides = raw_offset(segment, flat), np.delete(rows, index, 0), [raw, behind]
-        if piece is None:
+        # A hollow that the disc fills is none of its own, and cuts its neighbours all the same.
+        if piece is None or (isinstance(piece, Arc) and piece.radius <= FILLED):
             continue
         # Only what comes within a diameter of the segment can touch the disc beside it.
         near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
