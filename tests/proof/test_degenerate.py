@@ -20,6 +20,8 @@ from workhold.kernels.contact.record import (
     REACH,
     RECORD_LENGTH,
     ROWS,
+    SEPARATION,
+    STANDING,
     TAIL_X,
     TAIL_Y,
 )
@@ -218,12 +220,24 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
     numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))
     assert len(numbers)
     for row, peg in zip(proven[numbers[:20]], pegs[:20].tolist(), strict=True):
-        column, line_of = row[COLUMNS + peg], row[ROWS + peg]
-        reach = 20.0 * complex(column, line_of) * np.exp(1j * row[PSI])
-        tail = complex(*rows[int(row[FEATURES + peg]), [X, Y]]) - reach
-        box = row[None].copy()
-        box[0, TAIL_X : TAIL_Y + 1], box[0, REACH], box[0, LARGEST_RADIUS] = (tail.real, tail.imag), 1e-9, 0.3
+        solution = told_from(row, peg, 20.0)
+        box = solution[None].copy()
+        box[0, TAIL_X : TAIL_Y + 1] = rows[int(solution[FEATURES]), [X, Y]]
+        box[0, REACH], box[0, LARGEST_RADIUS] = 1e-9, 0.3
         assert np.isfinite(jacobians(box, rows, problem.setting)).all()
         kept, left = deciding.interval_newton_in_doubles(box, problem, problem.setting)
-        distances = [np.abs(one[PSI:REACH] - row[PSI:REACH]).max() for one in kept]
+        distances = [np.abs(one[PSI:REACH] - solution[PSI:REACH]).max() for one in kept]
         assert len(left) or min(distances, default=1.0) < 1e-9
+
+
+def told_from(row: Array, peg: int, pitch: float) -> Array:
+    """A record with another standing peg as the first, of a square lattice."""
+    out, standing = row.copy(), int(row[STANDING])
+    column, line_of = row[COLUMNS + peg], row[ROWS + peg]
+    tail = complex(row[TAIL_X], row[TAIL_Y]) + pitch * complex(column, line_of) * np.exp(1j * row[PSI])
+    out[COLUMNS : COLUMNS + standing] -= column
+    out[ROWS : ROWS + 4] -= line_of
+    for first in (FEATURES, COLUMNS, ROWS):
+        out[[first, first + peg]] = out[[first + peg, first]]
+    out[TAIL_X], out[TAIL_Y], out[SEPARATION] = tail.real, tail.imag, row[SEPARATION] - pitch * column
+    return out
