@@ -210,11 +210,16 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
     """A peg in the centre of an arc has no normal, so that nothing can be told of the place; what is around it stays."""
     problem = Problem.of(Query(rod(16, 6, 70, 3.25), Vise(pitch=20, columns=3, peg_radius=3)))
     found: list[Array] = []
-    original = deciding.decided
-    rows = problem.rows
+    original, rows = deciding.decided, problem.rows
+
+    def kept_as_well(*given: Any) -> Any:
+        outcome = original(*given)
+        found.append(outcome[0])
+        return outcome
+
     small = np.flatnonzero((rows[:, IS_ARC] != 0.0) & (rows[:, RADIUS] < 0.5))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(finish, "decided", lambda *given: found.append(original(*given)[0]) or original(*given))
+        patch.setattr(finish, "decided", kept_as_well)
         answer(problem.query)
     proven = np.concatenate(found)
     numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))
@@ -241,3 +246,17 @@ def told_from(row: Array, peg: int, pitch: float) -> Array:
         out[[first, first + peg]] = out[[first + peg, first]]
     out[TAIL_X], out[TAIL_Y], out[SEPARATION] = tail.real, tail.imag, row[SEPARATION] - pitch * column
     return out
+
+
+def test_only_pegs_of_one_carrier_are_a_fixed_length_apart() -> None:
+    """Holes of 16 mm, 140 mm apart, allow pegs of 6 mm to be 150 mm apart, five columns: of one jaw, not of two."""
+    problem = Problem.of(Query(GRAZED, Vise(pitch=30, columns=6, peg_radius=3)))
+    holes = np.flatnonzero((problem.rows[:, IS_ARC] != 0.0) & (problem.rows[:, RADIUS] < 6.0)).tolist()
+    sides = np.flatnonzero(problem.rows[:, IS_ARC] == 0.0).tolist()
+    for pegs, expected in ((0, 1), True), ((0, 2), False):
+        row = np.zeros((1, RECORD_LENGTH))
+        row[0, STANDING] = 2.0
+        row[0, FEATURES : FEATURES + 4] = *sides, *sides
+        for peg, hole, column in zip(pegs, holes, (0.0, 5.0), strict=True):
+            row[0, FEATURES + peg], row[0, COLUMNS + peg] = hole, column
+        assert hold_nothing(row, problem).tolist() == [expected]
