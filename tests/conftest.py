@@ -1,5 +1,6 @@
-"""Settings of the whole suite: property tests draw the same examples every time and know no deadline; kernels that only
-kernels call can be called by tests too, and are compiled once before several processes share the tests."""
+"""Settings of the whole suite: property tests draw the same examples every time, alone and after any other test, and know no
+deadline; kernels that only kernels call can be called by tests too, and are compiled once before several processes share the
+tests."""
 
 from __future__ import annotations
 
@@ -15,6 +16,8 @@ os.environ.pop("PYTHONUNBUFFERED", None)
 
 import pytest
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture.providers import HypothesisProvider
+from hypothesis.internal.constants_ast import Constants
 
 settings.register_profile(
     "workhold",
@@ -25,6 +28,8 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("workhold")
+# Hypothesis draws numbers from the sources of modules, too, those that the tests before happened to import.
+HypothesisProvider._local_constants = Constants()  # type: ignore[assignment]
 
 
 PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"

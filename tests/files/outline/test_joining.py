@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, read_dxf, rectangle
 
@@ -44,10 +44,14 @@ loops = st.integers(3, 12).flatmap(
 
 @settings(max_examples=60, deadline=None)
 @given(shape=loops, seed=st.integers(0, 10**6), gap=st.sampled_from([0.0, 1e-12, 1e-4]))
+@example(shape=([10.0, 45.0, 10.0], [-0.25, -0.25, 0.0]), seed=0, gap=0.0)
 def test_exploding_shuffling_and_joining_gives_the_loop_back(
     shape: tuple[list[float], list[float]], seed: int, gap: float
 ) -> None:
-    """Area and number of segments survive; with gaps the area changes by no more than gap times perimeter."""
+    """Area and number of segments survive; with gaps the area changes by no more than gap times perimeter.
+
+    Hollow sides may cross where a corner is narrow, so either sense may be that of the greater area.
+    """
     rows = star(*shape)
     randomly = random.Random(seed)
     chains = []
@@ -62,7 +66,7 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
     assert len(joined.loops) == 1
     assert not joined.strays
     assert len(joined.loops[0].labels) == len(rows)
-    expected = signed_area(loop_segments(rows))
+    expected = abs(signed_area(loop_segments(rows)))
     assert abs(signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(expected, abs=1e-6 + 1500 * gap)
     assert bool(joined.remarks) == (gap > 1e-9)
 

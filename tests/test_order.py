@@ -1,0 +1,26 @@
+"""A test draws the same examples alone and after any other."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+
+def test_examples_do_not_depend_on_what_is_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A module full of numbers that the strategy could draw changes nothing."""
+    drawn: list[list[float]] = []
+
+    @given(st.lists(st.floats(10.0, 50.0), min_size=5))
+    def draw(numbers: list[float]) -> None:
+        drawn.append(numbers)
+
+    draw()
+    (tmp_path / "full_of_numbers.py").write_text(f"NUMBERS = {[10.5 + k / 7 for k in range(200)]}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    import_module("full_of_numbers")
+    draw()
+    assert len(drawn) % 2 == 0 and drawn[: len(drawn) // 2] == drawn[len(drawn) // 2 :]
