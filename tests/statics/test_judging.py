@@ -8,13 +8,23 @@ import numpy as np
 import pytest
 
 from workhold import Workpiece
+from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import cautions_of, edge_distances
 from workhold.model.diameter import outline_diameter
 from workhold.model.load import Load
-from workhold.model.quality import JAW_FORCE_NEEDED, PENALTY, TILT, WARNINGS
+from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
+    JAW_FORCE_NEEDED,
+    LOCATION_ERROR,
+    PENALTY,
+    SMALLEST_FACE,
+    TILT,
+    WARNINGS,
+)
 from workhold.model.result import Result
+from workhold.statics.judging import Judging
 from workhold.statics.loads import load_cases
 from workhold.statics.lying import main_direction, tilts
 from workhold.statics.quality import quality_of
@@ -54,6 +64,25 @@ def test_the_penalty_is_the_sum_of_its_points(result: Result) -> None:
         points += 9 * (figures["tilt"] > 0) + 4 * (figures["clamp_amplification"] > 1.5)
         assert figures["penalty"] == points + 2 * (figures["smallest_face"] < small)
     assert PENALTY != TILT
+
+
+@pytest.mark.parametrize(
+    ("figure", "edge", "beyond", "points"),
+    [
+        (CLAMP_AMPLIFICATION, GENTLE_PEG, 1e-8, STRONG_POINTS),
+        (SMALLEST_FACE, 5.0, -1e-8, SMALL_FACE_POINTS),
+        (TILT, 0.0, 1e-8, TILTED_POINTS),
+        (LOCATION_ERROR, 0.02, 1e-8, 1),
+    ],
+)
+def test_a_figure_exactly_on_the_edge_costs_nothing(figure: int, edge: float, beyond: float, points: int) -> None:
+    """Points begin behind the edge; rounding in the tenth decimal does not count."""
+    quality = np.zeros((4, 12))
+    quality[:, [LOCATION_ERROR, SMALLEST_FACE]] = 0.02, 50.0
+    quality[:, figure] = edge, edge + beyond, edge - beyond, edge + beyond / 1000
+    penalty = Judging(0.02, 5.0, None).penalty(quality)
+    assert penalty[:2].tolist() == [0, points]
+    assert figure in (TILT, LOCATION_ERROR) or penalty[2:].tolist() == [0, 0]
 
 
 @pytest.mark.parametrize("turn", [0.0, 17.0, 89.999])

@@ -40,6 +40,9 @@ def outlines(body: str, root: str = MM) -> list[object]:
             f'{R} transform="translate(5 2) rotate(90) scale(.5 2)"/>',
         ),
         (f"<style>rect{{transform:skew(10deg) scaleX(-1)}}</style>{R}/>", f'{R} transform="skewX(10) scale(-1 1)"/>'),
+        (f'{R} transform="skewX(45)"/>', f'{R} transform="matrix(1 0 1 1 0 0)"/>'),
+        (f'{R} transform="skewY(45)"/>', f'{R} transform="matrix(1 1 0 1 0 0)"/>'),
+        (f'{R} style="transform:skew(45deg,-45deg)"/>', f'{R} transform="matrix(1 -1 1 1 0 0)"/>'),
         (
             f'{R} transform="scale(2)" style="transform-origin:10px 20px"/>',
             f'{R} transform="matrix(2 0 0 2 -10 -20)"/>',
