@@ -11,6 +11,7 @@ from attrs import evolve
 from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_POSE
+from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import Candidates, canonical_form, joined
 from workhold.listing.distinct import Turns
 from workhold.listing.finish import finish
@@ -38,19 +39,20 @@ def test_what_is_turned_has_the_same_smallest_form(corners: int) -> None:
     turns, c = Turns.of(problem), found(problem)
     assert len(turns.rotations) == corners and len(c.standing) > 100
     words, pose, kind = turns.smallest(c)
-    sets = turns.count((*words, pose, kind))
+    sets = turns.count((*words, *pose.T, kind))
     faces = {int(face): feature for feature, face in enumerate(problem.faces)}
     assert len(faces) == len(problem.faces) == corners
     everything = [c]
     for rotation in turns.rotations[1:]:
         carried = [faces[int(rotation.image[face])] for face in problem.faces]
-        turned = evolve(c, theta=c.theta - rotation.angle, feature=np.array(carried)[c.feature])
+        point = np.stack(rotated(*np.moveaxis(c.point - turns.kept, 2, 0), rotation.angle), axis=2) + turns.kept
+        turned = evolve(c, theta=c.theta - rotation.angle, feature=np.array(carried)[c.feature], point=point)
         everything.append(canonical_form(turned, problem.frame.swapped))
         again = turns.smallest(everything[-1])
         np.testing.assert_array_equal(again[0], words)
         np.testing.assert_allclose(again[1], pose, atol=SAME_POSE)
     words, pose, kind = turns.smallest(joined(everything))
-    np.testing.assert_array_equal(turns.count((*words, pose, kind)), sets)
+    np.testing.assert_array_equal(turns.count((*words, *pose.T, kind)), sets)
     # Each fixture of Type II is one of as many as there are rotations; one of Type I may be its own half turn.
     listed = np.bincount(kind[: len(c.standing)], minlength=2)
     assert sets[1] * corners == listed[1]

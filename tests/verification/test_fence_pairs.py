@@ -16,6 +16,7 @@ from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, InputError, Result, design
 from workhold.listing.paired import PairedFixtures
 from workhold.model.load import Load
+from workhold.model.notes import no_pair_note
 from workhold.model.proof import Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
@@ -36,6 +37,22 @@ def fence(**fields: Any) -> Fence:
     """A fence with two clamps."""
     given: Data = {"pitch": (20, 16), "peg_radius": 3, "wall_offset": 8, "columns": 6, "rows": 5, "clamps": 2}
     return Fence(**(given | fields))
+
+
+@pytest.mark.parametrize(
+    ("loop", "toolkit", "reason"),
+    [
+        ([[0, 0, 1], [40, 0, 1]], fence(), 0),
+        (BLOCK, fence(wall_offset=60), 1),
+    ],
+)
+def test_a_part_that_is_never_held_has_a_note_that_follows(loop: Any, toolkit: Fence, reason: int) -> None:
+    """A disc has no straight piece to lie on, and no locator reaches a part that is lower than the first row."""
+    result = design(part(loop), toolkit)
+    assert result.notes == toolkit.wording.reasons[reason : reason + 1]
+    assert verify(result).faults == ()
+    for note in (toolkit.wording.reasons[1 - reason], no_pair_note(0, 0)):
+        assert len(verify(evolve(result, notes=(note,))).faults) == 2
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,9 @@ from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.contacts import Pose as Balls
 from workhold.verification.kinds import hardware_of
+from workhold.verification.listing import listing_of
 from workhold.verification.outline import Outline
+from workhold.verification.pair_account import too_few_contacts
 from workhold.verification.pair_balance import seat_of
 from workhold.verification.plate import PLATE, WAYS, PlateRules, clamp_place
 from workhold.verification.repeats import Seen
@@ -155,6 +157,20 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
     (lambda f: f["pegs"][2].update(segment=f["pegs"][3]["segment"]), "locator 3 is"),
     (lambda f: f["pose"].update(theta_deg=f["pose"]["theta_deg"] + 3e-6), "away from touching face"),
 ]
+
+
+@pytest.mark.parametrize(
+    ("found", "pairs", "seats"), [(10, 3, 2), (3, 10, 2), (3, 3, 2), (11, 3, 2), (3, 11, 2), (3, 3, 3)]
+)
+def test_contacts_make_no_more_seats_and_pairs_than_there_can_be(
+    results: dict[str, Result], found: int, pairs: int, seats: int
+) -> None:
+    """Five make ten pairs, and each seat with its one pair of directions takes two."""
+    listing, proof = listing_of(results["all"]), results["all"].proof
+    assert proof is not None and len(results["all"].toolkit.directions) == 1  # type: ignore[attr-defined]
+    claimed = attrs.evolve(listing, found={"clamp2": found}, pairs=pairs, seats=seats)
+    few = too_few_contacts(claimed, attrs.evolve(proof, verified=5))
+    assert few == (max(found, pairs) > 10 or seats > 2)
 
 
 @pytest.mark.parametrize(("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)])

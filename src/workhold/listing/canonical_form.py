@@ -20,10 +20,12 @@ __all__ = [
     "Candidates",
     "candidates_of",
     "changes",
+    "clusters",
     "joined",
     "listed_once",
     "packed",
     "packed_holes",
+    "place_number",
     "canonical_form",
     "most_holes",
 ]
@@ -139,6 +141,19 @@ def changes(words: list[IntArray]) -> NDArray[np.bool_]:
     return fresh
 
 
+def clusters(
+    order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
+) -> tuple[IntArray, NDArray[np.bool_]]:
+    """Groups (N,) in an order, beginning where ``fresh``, split where one value after the other leaps."""
+    for numbers, leap in values:
+        group = np.cumsum(fresh)
+        again = np.lexsort([numbers[order], group])
+        order, group = order[again], group[again]
+        fresh = np.ones(len(order), np.bool_)
+        fresh[1:] = (np.diff(group) > 0) | (np.diff(numbers[order]) > leap)
+    return order, fresh
+
+
 def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
     """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in all these."""
     words = packed_holes(c)
@@ -166,10 +181,15 @@ def listed_once(c: Candidates) -> Candidates:
     return c.take(first[kept[np.argsort(group[kept], kind="stable")]])
 
 
+def place_number(point: Array, gap: Array) -> Array:
+    """A number (N,) that tells places of the workpiece apart: of a peg's centre (N, 2) in its frame and gaps (N,) in mm."""
+    return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
+
+
 def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
     """Which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no repetitions, in the
     order of group, faces and place; see :func:`listed_once`."""
-    place = c.point[first, 0] @ np.array([1.0, 0.7548776662]) + 0.5698402910 * c.gap[first]
+    place = place_number(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)

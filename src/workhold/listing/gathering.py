@@ -166,7 +166,7 @@ class Gathering:
         if not self.turns.is_symmetric:
             return ranked, None
         words, pose, kind = self.turns.smallest(candidates)
-        return ranked, Run.of(key_of(*words), (*words, pose, kind))
+        return ranked, Run.of(key_of(*words), (*words, *pose.T, kind))
 
     @property
     def listed(self) -> int:

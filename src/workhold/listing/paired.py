@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi, tau
+from math import inf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_POSE
 from workhold.geometry.rotation import rotated
-from workhold.geometry.symmetry import Rotation, rotations_onto_itself
+from workhold.geometry.symmetry import Rotation
 from workhold.kernels.contact.clamp_pairs import (
     CLAMPS,
     COUNT,
@@ -32,8 +32,10 @@ from workhold.kernels.contact.clamp_pairs import (
     Hardware,
     pairs_of,
 )
-from workhold.listing.canonical_form import changes, packed
+from workhold.listing.canonical_form import packed
+from workhold.listing.distinct import one_of_each_set, rotations_of
 from workhold.listing.listed import Work, proof_of
+from workhold.listing.plate_identity import FAR, identity_order, smallest_images
 from workhold.listing.ranking import best_marked, rank
 from workhold.listing.seats import ALONG, NAMES, Seats
 from workhold.model.notes import undecided_note
@@ -55,7 +57,6 @@ __all__ = ["FAR", "ChosenPairs", "PairedFixtures"]
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-FAR = 1 << 30
 # mm. Proven contacts are this near to where they are said to be.
 BESIDE = 1e-8
 
@@ -169,7 +170,7 @@ class PairedFixtures:
         columns, rows = (inf if count is None else count - 1.0 for count in (toolkit.columns, toolkit.rows))
         self.hardware = Hardware(kinds, 2 * toolkit.clamp_radius, columns, rows, toolkit.travel is not None)
         self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
-        self.rotations = tuple(rotations_onto_itself([face.segment for face in part.faces]))
+        self.rotations = rotations_of(part)
         self.found = np.zeros(len(toolkit.arrangements), np.int64)
 
     def __len__(self) -> int:
@@ -323,39 +324,17 @@ class PairedFixtures:
         ]
 
     def smallest(self, table: FixtureTable) -> tuple[IntArray, Array]:
-        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K) and angles (N,)."""
-        faces = np.array([face.number for face in self.query.workpiece.faces])
-        image = np.zeros(int(faces.max()) + 1, np.int64)
-        pairs = self.toolkit.distinct_pairs
-        opposed = np.array([one[1] == other[1] and one != other for one, other in pairs])
-        upright = np.array([[name.endswith("y") for name in pair] for pair in pairs])[table.arrangement]
-        every, keys, poses = self.query.listing == "all", list[IntArray](), list[Array]()
-        for rotation in self.rotations:
-            image[faces] = faces[np.array(rotation.image)]
-            theta = (table.theta - rotation.angle + SAME_POSE) % tau - SAME_POSE
-            turned = opposed[table.arrangement] & (theta >= pi - SAME_POSE)
-            key = identity_numbers(table, image[table.face], upright, turned)
-            keys.append(np.column_stack([table.arrangement, key if every else key[:, :9]]).astype(np.int64))
-            poses.append(np.where(turned, theta - pi, theta))
-        best, pose = keys[0], poses[0]
-        for key, theta in zip(keys[1:], poses[1:], strict=True):
-            differs = key != best
-            first = differs.argmax(axis=1)[:, None]
-            less = np.take_along_axis(key, first, axis=1)[:, 0] < np.take_along_axis(best, first, axis=1)[:, 0]
-            before = np.where(differs.any(axis=1), less, theta < pose - SAME_POSE)
-            best, pose = np.where(before[:, None], key, best), np.where(before, theta, pose)
-        return best, pose
+        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K), and orientations
+        and places (N, P)."""
+        every = self.query.listing == "all"
+        return smallest_images(table, self.toolkit, self.query.workpiece, self.rotations, every)
 
     def distinct(self) -> int:
         """How many sets all fixtures form when those that a rotation of the part carries into each other count once."""
         if not self.keys:
             return len(self)
         key, pose = (np.concatenate(values) for values in zip(*self.keys, strict=True))
-        words = packed((key, int(key.max(initial=0))))
-        order = np.lexsort([pose, *reversed(words)])
-        fresh = changes([word[order] for word in words])
-        fresh[1:] |= np.diff(pose[order]) > 2 * SAME_POSE
-        return int(fresh.sum())
+        return len(one_of_each_set(packed((key, int(key.max(initial=0)))), pose))
 
 
 def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
@@ -363,37 +342,3 @@ def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> floa
     upright = integers[DIRECTION] >= NAMES.index("-y")
     away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
     return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))
-
-
-def identity_numbers(
-    table: FixtureTable, face: IntArray, upright: NDArray[np.bool_], turned: NDArray[np.bool_]
-) -> IntArray:
-    """Locators' columns, rows and faces (N, 9), and the lines and faces of both clamps (N, 4), from the locators' lowest
-    hole.
-
-    Parameters
-    ----------
-    face : (N, 5) touched.
-    upright : (N, 2) which clamps push along columns.
-    turned : (N,) which fixtures are meant after half a turn of everything, which swaps the clamps.
-    """
-    column, row = (values[:, :3] - values[:, :3].min(axis=1, keepdims=True) for values in (table.column, table.row))
-    line = np.where(upright, table.column[:, 3:], table.row[:, 3:])
-    line = line - np.where(upright, table.column[:, :3].min(axis=1)[:, None], table.row[:, :3].min(axis=1)[:, None])
-    span = np.where(upright, column.max(axis=1)[:, None], row.max(axis=1)[:, None])
-    back = turned[:, None]
-    out = [
-        np.where(back, (column.max(axis=1, keepdims=True) - column)[:, ::-1], column),
-        np.where(back, (row.max(axis=1, keepdims=True) - row)[:, ::-1], row),
-        np.where(back, face[:, 2::-1], face[:, :3]),
-        np.where(back, (span - line)[:, ::-1], line) + FAR,
-        np.where(back, face[:, :2:-1], face[:, 3:]),
-    ]
-    return np.hstack(out)
-
-
-def identity_order(table: FixtureTable) -> NDArray[np.intp]:
-    """The order of fixtures by type, holes, orientation, faces and place."""
-    place = table.position @ np.array([1.0, 0.7548776662])
-    columns = [*table.column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
-    return np.lexsort([*reversed(columns), table.arrangement])

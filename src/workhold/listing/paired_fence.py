@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import NO_REACTION, SAME_PLACE
 from workhold.kernels.contact.clamp_pairs import Clamps
-from workhold.listing.canonical_form import changes, packed
+from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.on_fence import Pressed, clear_holes, listed_once, turned
-from workhold.listing.paired import FAR, ChosenPairs, PairedFixtures
-from workhold.listing.seats import NAMES, clusters, presses_too_much
+from workhold.listing.paired import ChosenPairs, PairedFixtures
+from workhold.listing.plate_identity import FAR, clamps_of
+from workhold.listing.seats import NAMES, presses_too_much
 from workhold.model.result import FixtureTable
 
 __all__ = ["PairedOnFence", "SeatsOnFence", "seats_on_fence"]
@@ -152,19 +153,15 @@ class PairedOnFence(PairedFixtures):
         )
 
     def smallest(self, table: FixtureTable) -> tuple[IntArray, Array]:
-        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K) and angles (N,)."""
-        flush, numbers = self.query.workpiece.flush, np.array([face.number for face in self.query.workpiece.faces])
-        edge = flush.number(table.theta)
-        images = np.array([flush.number(flush.theta - rotation.angle) for rotation in self.rotations])[:, edge]
-        # No rotation but the identity leaves a hull edge where it is, so one alone makes it the first of its images.
-        turn = images.argmin(axis=0)
-        to = np.zeros((len(self.rotations), int(numbers.max()) + 1), np.int64)
-        to[:, numbers] = [numbers[np.array(rotation.image)] for rotation in self.rotations]
-        face = to[turn[:, None], table.face[:, [0, 3, 4]]]
-        pairs = self.toolkit.distinct_pairs
-        upright = np.array([[name.endswith("y") for name in pair] for pair in pairs])[table.arrangement]
+        """Of each fixture the first of the forms that the part's rotations give it: whole numbers (N, K), and places
+        (N, P) along the wall and of tips."""
+        flush = self.query.workpiece.flush
+        images = np.min([flush.number(flush.theta - rotation.angle) for rotation in self.rotations], axis=0)
+        upright, tips = clamps_of(table, self.toolkit)
         line = np.where(upright, table.column[:, 3:] - table.column[:, :1] + FAR, table.row[:, 3:])
-        key = np.column_stack([table.arrangement, images.min(axis=0), table.row[:, 0], face[:, 0], line, face[:, 1:]])
-        # Where the locator stands along the wall tells seats of one row and face apart.
-        along = flush.x(table.theta, table.position)[:, 0] - table.column[:, 0] * self.toolkit.pitch[0]
-        return (key if self.query.listing == "all" else key[:, :4]).astype(np.int64), along
+        key = np.column_stack([table.arrangement, images[flush.number(table.theta)], table.row[:, 0], line])
+        # Where the locator stands along the wall tells seats of one row apart.
+        locator = table.column[:, [0]] * self.toolkit.pitch[0]
+        along, ahead = flush.x(table.theta, table.position)[:, :1] - locator, np.where(upright, tips, tips - locator)
+        every = self.query.listing == "all"
+        return (key if every else key[:, :3]).astype(np.int64), np.hstack([along, ahead]) if every else along

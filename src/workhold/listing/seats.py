@@ -20,13 +20,13 @@ from workhold.conventions import MOST_FORCE, NO_REACTION, SAME_PLACE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.clamp_pairs import Clamps
-from workhold.listing.canonical_form import Candidates, changes, packed
+from workhold.listing.canonical_form import Candidates, changes, clusters, packed
 from workhold.listing.on_plate import clear_holes
 from workhold.model.plate import DIRECTIONS
 from workhold.model.toolkit import Travel
 from workhold.statics.wrenches import outward_normals, wrenches
 
-__all__ = ["ALONG", "NAMES", "Seats", "clusters", "seats_of"]
+__all__ = ["ALONG", "NAMES", "Seats", "seats_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -190,19 +190,6 @@ def joined_contacts(parts: Sequence[Contacts]) -> Contacts:
     return Contacts(
         **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names}, hole_of=hole_of
     )
-
-
-def clusters(
-    order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
-) -> tuple[IntArray, NDArray[np.bool_]]:
-    """Groups (N,) in an order, beginning where ``fresh``, split where one value after the other leaps."""
-    for numbers, leap in values:
-        group = np.cumsum(fresh)
-        again = np.lexsort([numbers[order], group])
-        order, group = order[again], group[again]
-        fresh = np.ones(len(order), np.bool_)
-        fresh[1:] = (np.diff(group) > 0) | (np.diff(numbers[order]) > leap)
-    return order, fresh
 
 
 def seats_of(parts: Sequence[tuple[Candidates, Problem, str]], within: tuple[float, float] | None = None) -> Seats:

@@ -8,8 +8,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from attrs import evolve
 
+from workhold.listing.distinct import one_of_each_set, rotations_of
+from workhold.listing.plate_identity import smallest_images
 from workhold.listing.ranking import rank
-from workhold.model.notes import cut_note, no_fixture_notes, no_place_note, undecided_note
+from workhold.model.notes import best_note, cut_note, no_fixture_notes, no_place_note, undecided_note
+from workhold.model.plate import Plate
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
@@ -25,17 +28,32 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
     most = min(cut, default=query.best)
     ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
+    found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
+    if query.best is not None and any(best_note(query.best) in result.notes for result in results):
+        # Each way left others out than the best of its own, so of all no more are known than the best.
+        found, distinct = query.toolkit.arrangements_counted(ranked.arrangement), sets_listed(ranked, query)
     joined = Result(
         query=query,
         table=ranked,
-        found=summed(result.found for result in results),
-        distinct=summed(result.distinct for result in results),
+        found=found,
+        distinct=distinct,
         complete=all(result.complete for result in results),
         notes=tuple(joined_notes(results, query)),
         statistics=summed(result.statistics for result in results),
         proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
     )
     return joined.cut_short(len(ranked)) if cut else joined
+
+
+def sets_listed(table: FixtureTable, query: Query) -> dict[str, int]:
+    """How many sets fixtures on a plate form, by type, when those count once that a rotation of the part carries into each
+    other."""
+    assert isinstance(query.toolkit, Plate)
+    rotations = rotations_of(query.workpiece)
+    if len(rotations) == 1:
+        return query.toolkit.arrangements_counted(table.arrangement)
+    key, pose = smallest_images(table, query.toolkit, query.workpiece, rotations, every=True)
+    return query.toolkit.arrangements_counted(table.arrangement[one_of_each_set([*key.T], pose)])
 
 
 def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:

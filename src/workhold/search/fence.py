@@ -7,10 +7,10 @@ from threading import Event
 
 import numpy as np
 from attrs import define, evolve, field
-from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.geometry.symmetry import Rotation, rotations_onto_itself
+from workhold.geometry.symmetry import Rotation
+from workhold.listing.distinct import one_of_each_set, rotations_of
 from workhold.listing.listed import Work, proof_of
 from workhold.listing.on_fence import Pressed, listed_on_fence, listing_order
 from workhold.listing.ranking import measured, rank
@@ -98,10 +98,10 @@ class Kept:
     def of(cls, searches: Sequence[FenceSearch], query: Query) -> Kept:
         """None yet, of the searches of a query's directions."""
         problem = searches[0].problem
-        (plate, clamp), rotations = problem.loci, rotations_onto_itself([f.segment for f in query.workpiece.faces])
+        (plate, clamp), rotations = problem.loci, rotations_of(query.workpiece)
         return cls(
             evolve(problem, query=query, loci=(plate, *(clamp for _ in searches))),
-            {search: Sets(search.problem, rotations) for search in searches},
+            {search: Sets(query.workpiece.flush, rotations) for search in searches},
             {search: [] for search in searches},
         )
 
@@ -129,40 +129,25 @@ class Kept:
 class Sets:
     """How many sets fixtures form when those count once that a rotation of the part carries into each other."""
 
-    def __init__(self, problem: Problem, rotations: Sequence[Rotation]) -> None:
-        self.problem, self.found, self.rotations = problem, 0, rotations
-        self.keys: list[NDArray[np.int64]] = []
-        self.places: list[NDArray[np.float64]] = []
-        if len(self.rotations) > 1:
-            self.images = [images_of(problem.workpiece.flush, rotation.angle) for rotation in self.rotations]
+    def __init__(self, flush: Flush, rotations: Sequence[Rotation]) -> None:
+        self.found, self.is_symmetric = 0, len(rotations) > 1
+        self.image = np.min([flush.number(flush.theta - rotation.angle) for rotation in rotations], axis=0)
+        self.keys, self.places = [np.zeros((0, 3), np.int64)], [np.zeros((0, 3))]
 
     def add(self, pressed: Pressed) -> None:
         """Take the fixtures of some hull edges."""
         self.found += len(pressed)
-        if len(self.rotations) == 1:
-            return
-        numbers = np.array([face.number for face in self.problem.workpiece.faces])
-        index = np.searchsorted(numbers, self.problem.faces[pressed.feature])
-        images = np.array([image[pressed.edge] for image in self.images])
-        # No rotation but the identity leaves a hull edge where it is, so one alone makes it the first of its images.
-        turn = images.argmin(axis=0)
-        faces = np.array([rotation.image for rotation in self.rotations])[turn[:, None], index]
-        self.keys.append(np.column_stack([images.min(axis=0), pressed.row, pressed.line, faces]))
-        self.places.append(np.column_stack([pressed.locator[:, 0], pressed.tip]))
+        if self.is_symmetric:
+            self.keys.append(np.column_stack([self.image[pressed.edge], pressed.row, pressed.line]))
+            # Places count from the start of the hull edge, so that they are those of every image.
+            self.places.append(np.column_stack([pressed.locator[:, 0], pressed.tip]))
 
     @property
     def count(self) -> int:
         """How many sets there are."""
-        if len(self.rotations) == 1 or not self.keys:
+        if not self.is_symmetric:
             return self.found
-        keys = np.column_stack([np.concatenate(self.keys), np.round(np.concatenate(self.places), 4)])
-        order = np.lexsort(keys.T[::-1])
-        return int((np.abs(np.diff(keys[order], axis=0)) > 2e-4).any(axis=1).sum()) + 1
-
-
-def images_of(flush: Flush, angle: float) -> NDArray[np.int64]:
-    """The hull edge (E,) that each is carried to when the part turns onto itself by an angle in radians."""
-    return flush.number(flush.theta - angle)
+        return len(one_of_each_set(list(np.concatenate(self.keys).T), np.concatenate(self.places)))
 
 
 def entry(candidate: Candidate, problem: Problem) -> Undecided:

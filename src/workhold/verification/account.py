@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.notes import (
     best_note,
     by_hand_note,
@@ -53,9 +52,10 @@ ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "unde
 MOST_NAMED = 20
 
 
-def account_faults(listing: Listing) -> Iterator[str]:
-    """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each."""
-    yield from count_faults(listing)
+def account_faults(listing: Listing, rotations: int) -> Iterator[str]:
+    """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each. So many
+    ``rotations`` carry the part onto itself at most."""
+    yield from count_faults(listing, rotations)
     yield from seating_faults(listing)
     if listing.query.toolkit.needs_pairs:
         yield from pair_count_faults(listing)
@@ -67,9 +67,8 @@ def account_faults(listing: Listing) -> Iterator[str]:
     yield from note_faults(listing)
 
 
-def count_faults(listing: Listing) -> Iterator[str]:
+def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
     """Contradictions among the fixtures listed, counts, found and distinct."""
-    rotations = len(rotations_onto_itself([face.segment for face in listing.query.workpiece.faces]))
     for kind, counts in listing.counts.items():
         listed = sum(fixture.type == kind for fixture in listing.fixtures)
         found, distinct = listing.found[kind], listing.distinct[kind]

@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterator
 
 from flint import ctx
 
-from workhold.model.notes import no_pair_note
+from workhold.model.notes import no_fixture_notes, no_pair_note
 from workhold.model.plate import Plate
 from workhold.model.proof import Proof
 from workhold.verification.balls import PRECISIONS
@@ -85,6 +85,11 @@ def too_few_contacts(listing: Listing, proof: Proof) -> bool:
 
 def no_pair_notes(listing: Listing, verified: int) -> tuple[str, ...]:
     """The sentences of which one says why nothing is listed: how many seats were looked at is known to the search alone."""
+    toolkit, numbers_of = listing.query.toolkit, listing.statistics
+    if toolkit.wall is not None:
+        never, no_locator, *_ = no_fixture_notes(toolkit.wording)
+        if not (numbers_of.get("hull_edges") and numbers_of.get("locator_places")):
+            return (no_locator if numbers_of.get("hull_edges") else never,)
     if verified == 0:
         return (no_pair_note(0, 0),)
     numbers = [int(word) for note in listing.notes for word in note.split() if word.isdecimal()]

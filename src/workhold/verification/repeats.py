@@ -12,11 +12,10 @@ from math import cos, pi, sin, tau
 
 from attrs import field, frozen
 
-from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
 from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
 from workhold.verification.hardware import Hardware, Key, Place
 from workhold.verification.rules import SAME
+from workhold.verification.turning import Turning
 
 __all__ = ["Seen"]
 
@@ -43,10 +42,9 @@ class Seen:
     known: dict[Key, list[tuple[int, Place]]] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, workpiece: Workpiece, hardware: Hardware) -> Seen:
-        """Nothing seen yet of fixtures of a workpiece."""
-        faces = [face.segment for face in workpiece.faces]
-        return cls(hardware, [turn.angle for turn in rotations_onto_itself(faces)[1:]], centroid_of_joints(faces))
+    def of(cls, turning: Turning, hardware: Hardware) -> Seen:
+        """Nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
+        return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
         """Take in a fixture that is not refuted; return the index of an earlier one that is the same, if any."""

@@ -21,6 +21,7 @@ from workhold.verification.patterns import pattern_faults
 from workhold.verification.repeats import Seen
 from workhold.verification.restrictions import broken_restriction
 from workhold.verification.seating import SeatingJudge
+from workhold.verification.turning import Turning
 
 __all__ = ["Unproven", "Verification", "no_progress", "not_shown", "verify", "verify_file", "verify_listing"]
 
@@ -127,7 +128,8 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     """Verify what a result claims."""
     query, everything = listing.query, listing.fixtures
     judge, seating = Judge(query), SeatingJudge(query)
-    seen = Seen.of(query.workpiece, judge.hardware)
+    turning = Turning.of(query.workpiece)
+    seen = Seen.of(turning, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
@@ -148,17 +150,27 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         Unproven(place, verdict, reason) for place, (verdict, reason) in enumerate(rulings) if verdict != "proven"
     ]
     tally = {name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")}
-    faults = [*listing.faults, *account_faults(listing), *order_faults(everything, query, judge.hardware)]
+    faults = [
+        *listing.faults,
+        *account_faults(listing, turning.order),
+        *order_faults(everything, query, judge.hardware),
+    ]
     faults += pattern_faults(everything, query)
     faults += seat_faults(listing, {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"})
-    if not tally["refuted"]:
+    if not tally["refuted"] and turning.is_certain:
         faults += distinct_faults(listing, seen)
     return Verification(tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), tuple(faults), bits)
 
 
 def distinct_faults(listing: Listing, seen: Seen) -> Iterator[str]:
-    """Numbers of distinct fixtures that are not those of the fixtures listed, where all found are listed."""
+    """Numbers of distinct fixtures that are not those of the fixtures listed, or cannot be where more are found: each of
+    those that are not listed makes a set of its own, or belongs to one."""
     for kind, counts in listing.counts.items():
-        sets = seen.sets.get(kind, 0)
-        if listing.found[kind] == counts and listing.distinct[kind] != sets:
-            yield f"distinct says {listing.distinct[kind]} fixtures of type {kind}, but those listed form {sets}"
+        sets, distinct, others = seen.sets.get(kind, 0), listing.distinct[kind], listing.found[kind] - counts
+        if others > 0 and not sets <= distinct <= sets + others:
+            yield (
+                f"distinct says {distinct} fixtures of type {kind}, but those listed form {sets}, "
+                f"and {others} more are found"
+            )
+        elif others == 0 and distinct != sets:
+            yield f"distinct says {distinct} fixtures of type {kind}, but those listed form {sets}"
