@@ -75,6 +75,7 @@ from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies,
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.places import leads_out, write_places
 from workhold.kernels.seating.pocketed import tip_in_pocket
+from workhold.kernels.seating.reaching import reach_out
 from workhold.kernels.seating.silhouettes import cover_same
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
 from workhold.kernels.seating.standing import Stood, stationary
@@ -215,6 +216,7 @@ def seats_and_passes() -> Calls:
     work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
     begins, nodes = np.zeros(1, np.int64), np.zeros((0, NODE_LENGTH))
     yield close_jaws, (ways, points, 1.0, obstacles, ways, work, np.zeros(0, np.int8), begins, nodes)
+    yield reach_out, (ways, ways, np.zeros(0), 1.0, 1.0, obstacles, work, begins, nodes)
     followed = none, none, nodes, begins, ways, np.zeros((0, 4), np.int8)
     yield free_until, (*followed, 1.0, obstacles, np.zeros((4, 4)), none)
     yield begin_ways, (many, 1.0, ways, points)

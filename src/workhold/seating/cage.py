@@ -17,6 +17,7 @@ from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.fibres import MOST_CROSSINGS, MOST_INTERVALS, free_poses
 from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
 from workhold.seating.descents import Closing
+from workhold.seating.extents import Extents
 from workhold.seating.tree import distances
 
 __all__ = ["Surroundings"]
@@ -30,7 +31,8 @@ STEEPEST, LEAST = 500.0, np.array([1e-4, 1e-3])
 FIRST_STEP = 0.05
 # Configurations that are closed together.
 TOGETHER = 64
-COLUMNS = [0, 1, 2]
+# Ways begin in as many cells to each side, and are taken up until no extreme moves by more than this part of the whole.
+CHOSEN, SETTLED = 3, 1e-3
 
 
 @define(frozen=True, eq=False)
@@ -54,12 +56,13 @@ class Surroundings:
     way: Array
     arm: float
 
-    def poses(self, half: Array, lean: float) -> Array:
-        """Free poses (N, 5) on a grid of half sizes (2,), nearest first: distance, theta, x, y, S."""
+    def poses(self, half: Array, lean: float, middle: Array | None = None) -> Array:
+        """Free poses (N, 5) on a grid of half sizes (2,) about the seat, or about a configuration with the seat's x and S,
+        nearest first: distance, theta, x, y, S."""
         out = np.empty((12 * CELLS * CELLS, 5))
         work = np.empty((MOST_CROSSINGS, 2)), np.empty((2, MOST_INTERVALS, 2))
         step, obstacles = 2.0 * half / CELLS, self.closing.obstacles
-        count = free_poses(self.seat, self.opening, CELLS, step, lean, self.arm, obstacles, *work, out)
+        count = free_poses(self.seat if middle is None else middle, self.opening, CELLS, step, lean, self.arm, obstacles, *work, out)
         return out[:count][np.argsort(out[:count, 0], kind="stable")]
 
     def come_home(self, configs: Array) -> NDArray[np.bool_]:
@@ -72,21 +75,32 @@ class Surroundings:
     def cage(self) -> Array:
         """Least and largest turn in radians, x and y in mm, shape (3, 2), of poses found to be in the cage."""
         reach = np.stack([np.minimum(self.way, 0.0), np.maximum(self.way, 0.0)], axis=1)
-        lean = float(np.clip(self.way[2] / self.way[0], -STEEPEST, STEEPEST)) if abs(self.way[0]) > 1e-6 else 0.0
-        # As far as the pass is, whichever way that is; then fitted.
-        size = float(np.hypot(*self.way[1:]) + self.arm * abs(self.way[0]))
-        half = np.maximum([size / self.arm, size], LEAST)
+        found = Extents(self.closing, self.seat, self.seat[3] + self.opening, self.come_home, reach)
+        found.widen(self.seat[None])
         for _ in range(FITS):
-            poses = self.poses(np.minimum(half, [pi, np.inf]), lean)
-            inside = poses[self.come_home(poses[:, 1:])][:, 1:4] - self.seat[:3]
-            if not len(inside):
-                half = half / 3.0
-                continue
-            reach[:, 0] = np.minimum(reach[:, 0], inside.min(axis=0))
-            reach[:, 1] = np.maximum(reach[:, 1], inside.max(axis=0))
-            beside = inside[:, 2] - lean * inside[:, 0]
-            half = ROOM * np.array([np.abs(inside[:, 0]).max(), np.abs(beside).max()]) + 2.0 * half / CELLS
-        return reach
+            before = np.array(found.reach)
+            found.widen(self.starts(found))
+            if (np.abs(found.reach - before).max(axis=1) <= SETTLED * np.ptp(found.reach, axis=1)).all():
+                break
+        return found.reach
+
+    def starts(self, found: Extents) -> Array:
+        """Configurations (N, 4) spread over the cage, among poses on a grid about what was found of it."""
+        middle, half = found.reach.mean(axis=1), np.ptp(found.reach, axis=1) / 2.0
+        turn, up = found.ends[:, 0] - self.seat[0] - middle[0], found.ends[:, 2] - self.seat[2] - middle[2]
+        lean = float((turn * up).sum() / max((turn * turn).sum(), 1e-12))
+        lean = min(max(lean, -STEEPEST), STEEPEST)
+        halves = np.maximum([half[0], np.abs(up - lean * turn).max()], LEAST)
+        config = self.seat + np.array([middle[0], 0.0, middle[2], 0.0])
+        poses = self.poses(np.minimum(ROOM * halves, [pi, np.inf]), lean, config)[:, 1:]
+        poses = poses[self.come_home(poses)]
+        # The ends of x in each of some wide cells.
+        wide = np.floor((poses[:, 0] - config[0]) / halves[0] * CHOSEN), np.floor((poses[:, 2] - config[2] - lean * (poses[:, 0] - config[0])) / halves[1] * CHOSEN)
+        order = np.lexsort((poses[:, 1], *wide))
+        cells = np.stack(wide, axis=1)[order]
+        new = (np.diff(cells, axis=0) != 0.0).any(axis=1)
+        ends = np.append(True, new) | np.append(new, True) if len(order) else np.zeros(0, np.bool_)
+        return np.vstack([poses[order[ends]], extremes(found)])
 
     @property
     def placing(self) -> float:
@@ -102,3 +116,8 @@ class Surroundings:
             if not home.all():
                 return float(part[np.argmin(home), 0])
         return own
+
+
+def extremes(found: Extents) -> Array:
+    """Ends of ways that lie farthest each way."""
+    return np.array(found.ends[np.append(found.ends[:, :3].argmin(axis=0), found.ends[:, :3].argmax(axis=0))])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import NODE_LENGTH, Obstacles, WorkSpace
 from workhold.kernels.seating.leaving import RANGES, leave
+from workhold.kernels.seating.reaching import reach_out
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -86,6 +87,28 @@ class Closing:
         most = LONGEST_STEP * min(self.pattern.radii)
         close_jaws(configs, lengths, most, obstacles, known, work, ends, begins, nodes)
         return ends, begins, nodes
+
+    def reached(
+        self, configs: Array, aims: Array, far: Array, first: float, longest: float, most: float
+    ) -> tuple[Array, NDArray[np.int64]]:
+        """The nodes (M, 10) of ways from configurations (N, 4) along aims on which no peg enters and S is no more than the
+        largest, and where those of each begin and, last, end; see ``kernels.seating.reaching``.
+
+        Parameters
+        ----------
+        aims, far : (N, 4) and (N,), as there.
+        first, longest : how long the first steps and all of them are, in mm.
+        most : the largest S, in mm.
+        """
+        obstacles, begins = self.obstacles._replace(most=most), np.empty(len(configs) + 1, np.int64)
+        room = USUAL * len(configs)
+        work = WorkSpace.for_pieces(len(obstacles.rows))
+        while True:
+            nodes = np.empty((room, NODE_LENGTH))
+            reach_out(np.array(configs), aims, far, first, longest, obstacles, work, begins, nodes)
+            if begins[-1] <= room:
+                return nodes[: begins[-1]], begins
+            room = int(begins[-1])
 
     def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
         """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws as they stand; false of

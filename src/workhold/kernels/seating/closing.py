@@ -42,6 +42,8 @@ ALONG = 1e-10
 WAIT = 3
 # mm. Configurations as near to a seat as this, in place and in separation, go there.
 SAME_PLACE, SAME_LEVEL = 1e-4, 1e-6
+# The way on which S falls.
+DOWN = (0.0, 0.0, 0.0, -1.0)
 
 
 @inner
@@ -60,7 +62,7 @@ def remember(peg: int, x: float, y: float, reach: float, obstacles: Obstacles, w
 @inner
 def look_around(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> int:
     """Write the clearances of pegs from pieces within a reach, after their gradients over (theta size, x, y, S) in mm
-    per mm and before peg and piece; return how many. The stop is the first of them, in the place of a peg stands -1 there.
+    per mm and before peg and piece; return how many. The stop and the most are the first of them, in the place of a peg stands -1 there.
 
     Pieces are listed for each peg farther around than is asked for, and listed anew where it has moved on (L. Verlet,
     Physical Review 159, 1967).
@@ -71,6 +73,10 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: WorkSpa
         near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = 0.0, 0.0, 0.0, 1.0, config[3] - obstacles.stop
         near[0, 5], near[0, 6] = -1.0, -1.0
         count = 1
+    if obstacles.most - config[3] <= reach:
+        near[count, 0], near[count, 1], near[count, 2], near[count, 3] = 0.0, 0.0, 0.0, -1.0
+        near[count, 4], near[count, 5], near[count, 6] = obstacles.most - config[3], -1.0, -1.0
+        count += 1
     for peg in range(obstacles.pegs.shape[0]):
         moving = float(obstacles.right[peg])
         qx, qy = obstacles.pegs[peg, 0] + moving * config[3] - config[1], obstacles.pegs[peg, 1] - config[2]
@@ -212,10 +218,10 @@ def push_out(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace)
 
 
 @inner
-def way_left(work: WorkSpace, size: int) -> Four:
-    """The way on which S falls fastest and that ``size`` normals of the basis leave."""
+def way_left(work: WorkSpace, size: int, aim: Four) -> Four:
+    """The way that leads farthest along the aim of those that ``size`` normals of the basis leave."""
     basis = work.basis
-    wx, wy, wz, ws = 0.0, 0.0, 0.0, -1.0
+    wx, wy, wz, ws = aim
     for q in range(size):
         dot = basis[q, 0] * wx + basis[q, 1] * wy + basis[q, 2] * wz + basis[q, 3] * ws
         wx -= dot * basis[q, 0]
@@ -226,13 +232,13 @@ def way_left(work: WorkSpace, size: int) -> Four:
 
 
 @inner
-def holding_back(work: WorkSpace, size: int) -> int:
+def holding_back(work: WorkSpace, size: int, aim: Four) -> int:
     """The place of the working normal that pulls most, -1 where none does: multipliers by back substitution in the triangle
     that orthogonalizing left."""
     basis, triangle = work.basis, work.triangle
     worst, dropped = -1e-9, -1
     for q in range(size - 1, -1, -1):
-        multiplier = basis[q, 3]
+        multiplier = -(aim[0] * basis[q, 0] + aim[1] * basis[q, 1] + aim[2] * basis[q, 2] + aim[3] * basis[q, 3])
         for p in range(q + 1, size):
             multiplier -= triangle[q, p] * triangle[p, 5]
         triangle[q, 5] = multiplier / triangle[q, q]
@@ -266,9 +272,9 @@ def first_to_block(count: int, trust: float, step: Four, way: Four, taken: int, 
 
 
 @inner
-def best_step(count: int, trust: float, work: WorkSpace) -> float:
-    """Write the step that lowers S most within a box of half width ``trust`` and ``count`` linearized clearances; return by
-    how much S falls.
+def best_step(count: int, trust: float, work: WorkSpace, aim: Four) -> float:
+    """Write the step that leads farthest along a unit vector, of (theta size, x, y, S), within a box of half width ``trust``
+    and ``count`` linearized clearances; return how far along it.
 
     A primal active-set method: descend in the null space of the working normals to what blocks, and drop a normal that holds
     back (M. J. Best and K. Ritter, *Linear Programming: Active Set Analysis and Computer Programs*, 1985).
@@ -276,9 +282,9 @@ def best_step(count: int, trust: float, work: WorkSpace) -> float:
     step, members = (0.0, 0.0, 0.0, 0.0), work.members
     size, taken = 0, 0
     for _ in range(60):
-        way = way_left(work, size)
+        way = way_left(work, size, aim)
         if way[0] * way[0] + way[1] * way[1] + way[2] * way[2] + way[3] * way[3] < 1e-14:
-            dropped = holding_back(work, size)
+            dropped = holding_back(work, size, aim)
             if dropped < 0:
                 break
             if members[dropped] < count:
@@ -306,7 +312,7 @@ def best_step(count: int, trust: float, work: WorkSpace) -> float:
             break
     for j in range(4):
         work.step[j] = step[j]
-    return -step[3]
+    return aim[0] * step[0] + aim[1] * step[1] + aim[2] * step[2] + aim[3] * step[3]
 
 
 @inner
@@ -386,7 +392,7 @@ def close_one(
             at = add_node(config, trust, longest, nodes, first, at)
             count = -1
             continue
-        gain = best_step(count, trust, work)
+        gain = best_step(count, trust, work, DOWN)
         good = gain >= LEAST_GAIN
         if good:
             trial[0] = config[0] + work.step[0] / obstacles.size

@@ -21,6 +21,7 @@ way has turned and moved since it began, all of it counted).
 
 from __future__ import annotations
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -94,6 +95,7 @@ class Obstacles(NamedTuple):
     stop : the smallest jaw separation, in mm.
     hull : (H, 6) what may touch a wall, see ``seating.walls``; none where there is no wall.
     wall : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall is.
+    most : the largest jaw separation, in mm.
     """
 
     rows: NDArray[np.float64]
@@ -106,6 +108,7 @@ class Obstacles(NamedTuple):
     stop: float
     hull: NDArray[np.float64]
     wall: NDArray[np.float64]
+    most: float = inf
 
 
 class Ways(NamedTuple):

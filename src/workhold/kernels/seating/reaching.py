@@ -1,0 +1,115 @@
+"""How far a part can go in a direction without leaving its pegs' reach: ways along which no peg enters and S keeps below a
+bound, step by small step, as of ``closing``.
+
+A way begins in a configuration that is free, and its steps are no longer than those of closing; so what is reached is
+connected with where it begins, below the bound.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.seating.closing import (
+    ENTERED,
+    Four,
+    LEAST_GAIN,
+    LEAST_STEP,
+    WIDER,
+    add_node,
+    ahead,
+    best_step,
+    look_around,
+    push_out,
+)
+from workhold.kernels.seating.columns import Obstacles, WorkSpace
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# Steps of one way.
+MOST_STEPS = 600
+
+
+@inner
+def reached(config: Array, aim: Four, size: float) -> float:
+    """How far in mm a configuration lies along an aim."""
+    return aim[0] * config[0] * size + aim[1] * config[1] + aim[2] * config[2] + aim[3] * config[3]
+
+
+@inner
+def reach_one(
+    config: Array,
+    aim: Four,
+    far: float,
+    trust: float,
+    most: float,
+    obstacles: Obstacles,
+    work: WorkSpace,
+    nodes: Array,
+    at: int,
+) -> int:
+    """Move a configuration along an aim, in place, until nothing leads on; the number after that of the last node."""
+    trial, first = work.trial, at
+    count = push_out(config, obstacles, ahead(trust, most), work)
+    if count < 0 or config[3] > obstacles.most + ENTERED:
+        return at
+    at = add_node(config, trust, trust, nodes, first, at)
+    for _ in range(MOST_STEPS):
+        if count < 0:
+            count = look_around(config, obstacles, ahead(trust, most), work)
+        gain = best_step(count, trust, work, aim)
+        good = gain >= LEAST_GAIN
+        if good:
+            trial[0] = config[0] + work.step[0] / obstacles.size
+            for j in range(1, 4):
+                trial[j] = config[j] + work.step[j]
+            count = push_out(trial, obstacles, ahead(trust, most), work)
+            won = reached(trial, aim, obstacles.size) - reached(config, aim, obstacles.size)
+            good = count >= 0 and won > 0.1 * gain
+        if not good:
+            trust *= 0.4 if gain >= LEAST_GAIN else 0.01
+            if trust < LEAST_STEP:
+                break
+            count = -1
+            continue
+        if won > 0.7 * gain:
+            trust = min(WIDER * trust, most)
+        for j in range(4):
+            config[j] = trial[j]
+        at = add_node(config, trust, trust, nodes, first, at)
+        if reached(config, aim, obstacles.size) > far:
+            break
+    return at
+
+
+@compiled
+def reach_out(
+    configs: Array,
+    aims: Array,
+    far: Array,
+    trust: float,
+    most: float,
+    obstacles: Obstacles,
+    work: WorkSpace,
+    begins: IntArray,
+    nodes: Array,
+) -> None:
+    """Move configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
+
+    Parameters
+    ----------
+    aims : (N, 4) unit vectors of (theta size, x, y, S), in mm.
+    far : (N,) how far along them in mm a way ends at the latest.
+    trust, most : how long the first steps and all of them are at most, in mm.
+    begins : (N + 1,) where the nodes of each way begin and, last, end, written here; a way that begins in the part has none.
+    nodes : (M, 10) configurations after each step, as of ``closing.close_jaws``, as far as there is room.
+    """
+    count = 0
+    for peg in range(obstacles.pegs.shape[0]):
+        work.places[peg, 2] = -np.inf
+    for k in range(configs.shape[0]):
+        begins[k] = count
+        aim = (aims[k, 0], aims[k, 1], aims[k, 2], aims[k, 3])
+        count = reach_one(configs[k], aim, far[k], trust, most, obstacles, work, nodes, count)
+    begins[configs.shape[0]] = count
