@@ -38,9 +38,12 @@ def test_values_are_those_of_another_method(number):
     case, (_, _, told) = SAMPLED[number], solved(number)
     assert told.room_factor == pytest.approx(case["room_factor"], abs=DIGITS)
     assert told.sticking_friction == pytest.approx(case["sticking_friction"], abs=6e-6)
-    if case["capture_opening"] is not None:
-        assert told.capture_opening == pytest.approx(case["capture_opening"], abs=DIGITS)
-        assert told.lowest_pass.jaw_separation == pytest.approx(case["pass_separation"], abs=DIGITS)
+    assert told.capture_opening == pytest.approx(case["capture_opening"], abs=DIGITS)
+    assert told.lowest_pass.jaw_separation == pytest.approx(case["pass_separation"], abs=DIGITS)
+    for name, (low, high) in (case["cage"] or {}).items():
+        least, most = getattr(told.cage, name)
+        # Rounded to three decimals there.
+        assert least <= low + 1e-3 and most >= high - 1e-3, name
     for kind, theta, separation, mirrored in case["seats"]:
         near = [
             seat

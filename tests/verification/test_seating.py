@@ -109,7 +109,7 @@ def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any,
 
 
 # What a file alone shows within bounds only: how far something goes.
-BOUNDED = ("way_out", "cage", "placing", "depth")
+BOUNDED = ("way_out", "cage", "cage_short", "placing", "depth")
 
 
 @pytest.mark.parametrize(

@@ -189,7 +189,7 @@ def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
         words += [
             f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along the {ways.whose} "
-            f"way, {across} {unit.abbreviation} across it, as far as the pegs let it. Told to a grid's step.",
+            f"way, {across} {unit.abbreviation} across it, as far as the pegs let it.",
             f"Put so that every point is nearer than {unit.text(told.placing)} to its place, it comes home.",
         ]
     tap = "." if told.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."

@@ -11,7 +11,18 @@ from attrs import evolve, frozen
 from workhold.model.fixture import Pose
 from workhold.model.toolkit import Toolkit
 
-__all__ = ["CLOSE_READING", "DECIMALS", "DRY_STEEL", "SMALL_CAPTURE", "Cage", "Contact", "Pass", "Seat", "Seating"]
+__all__ = [
+    "CAGE_SHORT",
+    "CLOSE_READING",
+    "DECIMALS",
+    "DRY_STEEL",
+    "SMALL_CAPTURE",
+    "Cage",
+    "Contact",
+    "Pass",
+    "Seat",
+    "Seating",
+]
 
 # Of lengths in mm, angles in degrees and forces in files.
 DECIMALS = 9
@@ -27,6 +38,8 @@ SAME_READING = 5e-4
 # What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
 JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
 CLAMP = "the clamp is drawn back"
+# By how much the extremes of a cage may fall short at most: in degrees of turns, and of shifts this part of their whole range.
+CAGE_SHORT = {"theta_deg": 0.5, "share": 0.01}
 # A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
 IS_OWN = 1e-5
 
@@ -151,7 +164,8 @@ class Cage:
 
     Parameters
     ----------
-    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm.
+    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too large, too small
+        by no more than ``CAGE_SHORT``.
     """
 
     theta_deg: tuple[float, float]
@@ -296,6 +310,7 @@ class Seating:
             "cage": None
             if self.cage is None
             else {name: [length(end) for end in getattr(self.cage, name)] for name in ("theta_deg", "x", "y")},
+            "cage_short": None if self.cage is None else dict(CAGE_SHORT),
             "placing": length(self.placing),
             "sticking_friction": length(self.sticking_friction),
             "stop": length(self.stop),

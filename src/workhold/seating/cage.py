@@ -1,8 +1,8 @@
-"""How far a part can lie off its seat and still come home: the cage, and the placing, both to a grid's step.
+"""How far a part can lie off its seat and still come home: the cage, and the placing.
 
-Poses are looked at in which the part is free with the jaws opened, on a grid of orientations and heights; whether they
-belong to the cage is told by closing the jaws from there. So what is told as within the cage is, but for what lies
-between the grid's lines nothing is told.
+Whether a pose belongs to the cage is told by closing the jaws from there. The placing is looked for among poses in which the
+part is free with the jaws opened, on a grid of orientations and heights, and told to its step. To the extremes of the cage
+ways lead that begin in the seat and in such poses (``seating.extents``).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from workhold.seating.tree import distances
 __all__ = ["Surroundings"]
 
 Array = NDArray[np.float64]
-# Cells across the grid, how often it is fitted to what it finds, and how much larger it is then.
+# Cells across the grid, how often it is fitted to the cage, and how much larger it is then.
 CELLS, FITS, ROOM = 25, 4, 1.3
 # Steepest lean of the grid, in mm per radian, and its least half sizes in radians and mm.
 STEEPEST, LEAST = 500.0, np.array([1e-4, 1e-3])
@@ -62,7 +62,9 @@ class Surroundings:
         out = np.empty((12 * CELLS * CELLS, 5))
         work = np.empty((MOST_CROSSINGS, 2)), np.empty((2, MOST_INTERVALS, 2))
         step, obstacles = 2.0 * half / CELLS, self.closing.obstacles
-        count = free_poses(self.seat if middle is None else middle, self.opening, CELLS, step, lean, self.arm, obstacles, *work, out)
+        count = free_poses(
+            self.seat if middle is None else middle, self.opening, CELLS, step, lean, self.arm, obstacles, *work, out
+        )
         return out[:count][np.argsort(out[:count, 0], kind="stable")]
 
     def come_home(self, configs: Array) -> NDArray[np.bool_]:
@@ -72,8 +74,8 @@ class Surroundings:
         return np.asarray(near & (how == AT_REST) & (np.abs(ended[:, 3] - self.seat[3]) < SAME_LEVEL))
 
     @property
-    def cage(self) -> Array:
-        """Least and largest turn in radians, x and y in mm, shape (3, 2), of poses found to be in the cage."""
+    def extents(self) -> Extents:
+        """The extremes of the poses of the cage, as far as ways lead to them."""
         reach = np.stack([np.minimum(self.way, 0.0), np.maximum(self.way, 0.0)], axis=1)
         found = Extents(self.closing, self.seat, self.seat[3] + self.opening, self.come_home, reach)
         found.widen(self.seat[None])
@@ -82,25 +84,24 @@ class Surroundings:
             found.widen(self.starts(found))
             if (np.abs(found.reach - before).max(axis=1) <= SETTLED * np.ptp(found.reach, axis=1)).all():
                 break
-        return found.reach
+        return found
 
     def starts(self, found: Extents) -> Array:
-        """Configurations (N, 4) spread over the cage, among poses on a grid about what was found of it."""
+        """Configurations (N, 4) in the cage: those found that lie farthest and, of poses on a grid about all of them, the
+        ends of x in each of some cells."""
         middle, half = found.reach.mean(axis=1), np.ptp(found.reach, axis=1) / 2.0
-        turn, up = found.ends[:, 0] - self.seat[0] - middle[0], found.ends[:, 2] - self.seat[2] - middle[2]
-        lean = float((turn * up).sum() / max((turn * turn).sum(), 1e-12))
-        lean = min(max(lean, -STEEPEST), STEEPEST)
-        halves = np.maximum([half[0], np.abs(up - lean * turn).max()], LEAST)
+        turn, up = (found.ends[:, k] - self.seat[k] - middle[k] for k in (0, 2))
+        lean = float(np.clip((turn @ up) / max(turn @ turn, 1e-12), -STEEPEST, STEEPEST))
+        half = np.maximum([half[0], np.abs(up - lean * turn).max()], LEAST)
         config = self.seat + np.array([middle[0], 0.0, middle[2], 0.0])
-        poses = self.poses(np.minimum(ROOM * halves, [pi, np.inf]), lean, config)[:, 1:]
+        poses = self.poses(np.minimum(ROOM * half, [pi, np.inf]), lean, config)[:, 1:]
         poses = poses[self.come_home(poses)]
-        # The ends of x in each of some wide cells.
-        wide = np.floor((poses[:, 0] - config[0]) / halves[0] * CHOSEN), np.floor((poses[:, 2] - config[2] - lean * (poses[:, 0] - config[0])) / halves[1] * CHOSEN)
-        order = np.lexsort((poses[:, 1], *wide))
-        cells = np.stack(wide, axis=1)[order]
-        new = (np.diff(cells, axis=0) != 0.0).any(axis=1)
-        ends = np.append(True, new) | np.append(new, True) if len(order) else np.zeros(0, np.bool_)
-        return np.vstack([poses[order[ends]], extremes(found)])
+        turn, up = poses[:, 0] - config[0], poses[:, 2] - config[2]
+        across, along = np.floor(CHOSEN / half[:, None] * [turn, up - lean * turn])
+        order = np.lexsort((poses[:, 1], along, across))
+        ends = np.flatnonzero(np.diff(across[order]).astype(bool) | np.diff(along[order]).astype(bool))
+        ends = np.unique(np.concatenate([[0], ends, ends + 1, [len(poses) - 1]])) if len(poses) else ends
+        return np.vstack([poses[order[ends]], found.farthest])
 
     @property
     def placing(self) -> float:
@@ -116,8 +117,3 @@ class Surroundings:
             if not home.all():
                 return float(part[np.argmin(home), 0])
         return own
-
-
-def extremes(found: Extents) -> Array:
-    """Ends of ways that lie farthest each way."""
-    return np.array(found.ends[np.append(found.ends[:, :3].argmin(axis=0), found.ends[:, :3].argmax(axis=0))])

@@ -324,15 +324,19 @@ class Reading:
         pose = Pose(*(float(value[0]) for value in self.poses(config[None], np.zeros(1, np.bool_))))
         return Pass(pose, separation, self.contacts(join.candidate[None])[0])
 
-    def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
-        """Cage and placing."""
+    def surroundings(self, seat: Array, join: Join) -> Surroundings:
+        """What lies around the fixture's seat, what moves opened by a hair less than to a pass."""
         closing, top = self.solver.closing(self.known, False), join.candidate[CONFIG]
         opening = (top[3] - seat[3]) * (1.0 - LESS)
         way = top[:3] - seat[:3]
         way[0] = (way[0] + pi) % tau - pi
         seats = np.ascontiguousarray(self.trees[0].seats[:, CONFIG])
-        around = Surroundings(closing, np.array(seat), seats, opening, way, self.solver.outline.arm)
-        turns, across, along = around.cage
+        return Surroundings(closing, np.array(seat), seats, opening, way, self.solver.outline.arm)
+
+    def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
+        """Cage and placing."""
+        around = self.surroundings(seat, join)
+        turns, across, along = around.extents.reach
         corners = self.pattern.door.turned(np.array(list(product(across, along))), back=True)
         x, y = ((float(ends.min()), float(ends.max())) for ends in corners.T)
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing

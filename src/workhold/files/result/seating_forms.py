@@ -80,6 +80,13 @@ class CagePart(Part):
     y: Pair
 
 
+class CageShortPart(Part):
+    """By how much the extremes of a cage may be too small at most."""
+
+    theta_deg: Length
+    share: Length = Field(description="of shifts, of their whole range")
+
+
 class SeatingPart(Part):
     """What else the pegs of a fixture can do with the part; see docs/seating.md."""
 
@@ -89,6 +96,7 @@ class SeatingPart(Part):
     pass_: PassPart | None = Field(alias="pass")
     way_out: Length | None
     cage: CagePart | None
+    cage_short: CageShortPart | None = None
     placing: Length | None
     sticking_friction: Length | None
     stop: float | None

@@ -1,22 +1,22 @@
-"""How far a part can go in a direction without leaving its pegs' reach: ways along which no peg enters and S keeps below a
-bound, step by small step, as of ``closing``.
+"""How far a part can be turned or shifted with S below a bound: ways on which no peg enters it, step by small step.
 
-A way begins in a configuration that is free, and its steps are no longer than those of closing; so what is reached is
-connected with where it begins, below the bound.
+A step leads farthest along the aim within a box and the linearized clearances, of which the bound of S is one, as a step of
+``closing`` leads farthest down. So a way is connected, and where it ends something holds the part back.
 """
 
 from __future__ import annotations
+
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.seating.closing import (
-    ENTERED,
-    Four,
     LEAST_GAIN,
     LEAST_STEP,
     WIDER,
+    Four,
     add_node,
     ahead,
     best_step,
@@ -50,11 +50,11 @@ def reach_one(
     at: int,
 ) -> int:
     """Move a configuration along an aim, in place, until nothing leads on; the number after that of the last node."""
-    trial, first = work.trial, at
-    count = push_out(config, obstacles, ahead(trust, most), work)
-    if count < 0 or config[3] > obstacles.most + ENTERED:
-        return at
+    trial, first, won = work.trial, at, 0.0
     at = add_node(config, trust, trust, nodes, first, at)
+    count = push_out(config, obstacles, ahead(trust, most), work)
+    if count < 0:
+        return at
     for _ in range(MOST_STEPS):
         if count < 0:
             count = look_around(config, obstacles, ahead(trust, most), work)
@@ -102,12 +102,12 @@ def reach_out(
     aims : (N, 4) unit vectors of (theta size, x, y, S), in mm.
     far : (N,) how far along them in mm a way ends at the latest.
     trust, most : how long the first steps and all of them are at most, in mm.
-    begins : (N + 1,) where the nodes of each way begin and, last, end, written here; a way that begins in the part has none.
+    begins : (N + 1,) where the nodes of each way begin and, last, end, written here.
     nodes : (M, 10) configurations after each step, as of ``closing.close_jaws``, as far as there is room.
     """
     count = 0
     for peg in range(obstacles.pegs.shape[0]):
-        work.places[peg, 2] = -np.inf
+        work.places[peg, 2] = -inf
     for k in range(configs.shape[0]):
         begins[k] = count
         aim = (aims[k, 0], aims[k, 1], aims[k, 2], aims[k, 3])
