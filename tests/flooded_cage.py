@@ -25,7 +25,7 @@ Interval = tuple[float, float]
 Cell = tuple[int, int, Interval, Interval]
 # Straight pieces that stand for an arc.
 CHORDS = 48
-# mm. How near to the pose a flood may begin, along the way.
+# mm. How near to the pose along the way, but for a step, a flood begins.
 BESIDE = 0.1
 
 
@@ -163,13 +163,14 @@ class Flood:
     def cells(self) -> Iterator[Cell]:
         """What the flood reaches from the pose."""
         known: dict[int, list[list[Cell]]] = {}
-        near = self.start[1]
-        # The pose may lie where an interval ends across the way: then those beside it count.
+        near, off = self.start[1], BESIDE + self.steps[1] + self.steps[0] * 2.0 * float(np.abs(self.outline[0]).max())
+        # In the pose an interval may end across the way, or be a point: then cells beside it count.
         first = [
             cell
-            for row in self.row(known, 0)[self.rows - 1 : self.rows + 2]
+            for number in (-1, 0, 1)
+            for row in self.row(known, number)[self.rows - 1 : self.rows + 2]
             for cell in row
-            if abs(cell[2][0] - near) < BESIDE and abs(cell[3][1] - near) < BESIDE
+            if abs(cell[2][0] - near) < off and abs(cell[3][1] - near) < off
         ]
         assert first
         seen, waiting = set(first), list(first)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from math import pi, tau
 
 import numpy as np
 import pytest
@@ -90,6 +91,7 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
         assert obstacle.clamping * (config[3] - own[3]) <= told.opening + 1e-7
         end = closed(obstacle, config, size, stop)
         off = np.abs(end - own)
+        off[0] = abs((off[0] + pi) % tau - pi)
         if off[3] > 1e-3 or off[0] * size + off[1] + off[2] > 0.05:
             return False
     return True
@@ -135,13 +137,13 @@ def test_the_oblong_part_comes_home_turned_by_twelve_degrees():
 @pytest.mark.prove
 @pytest.mark.parametrize("name", KITS)
 def test_extremes_of_many_fixtures_are_those_of_a_flood(name):
-    """At two openings."""
+    """Nowhere short of it, at two openings. A flood steps over narrow ends, of some by many rows."""
     for rank in range(0, len(listed(name)[2]), 2):
         if reading_of(name, rank).trees[0].join_of(reading_of(name, rank).place) is None:
             continue
         for share in (0.6, 0.9):
             beyond = differences(name, rank, share)
-            assert beyond.min() > -0.15 and beyond.max() < 5.0, (rank, share, beyond)
+            assert beyond.min() > -0.15, (rank, share, beyond)
 
 
 @pytest.mark.prove

@@ -38,7 +38,7 @@ SAME_READING = 5e-4
 # What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
 JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
 CLAMP = "the clamp is drawn back"
-# By how much the extremes of a cage may fall short at most: in degrees of turns, and of shifts this part of their whole range.
+# By how much the extremes of a cage may fall short at most: in degrees of turns, of shifts this part of their range.
 CAGE_SHORT = {"theta_deg": 0.5, "share": 0.01}
 # A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
 IS_OWN = 1e-5

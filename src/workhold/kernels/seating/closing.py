@@ -62,7 +62,8 @@ def remember(peg: int, x: float, y: float, reach: float, obstacles: Obstacles, w
 @inner
 def look_around(config: Array, obstacles: Obstacles, reach: float, work: WorkSpace) -> int:
     """Write the clearances of pegs from pieces within a reach, after their gradients over (theta size, x, y, S) in mm
-    per mm and before peg and piece; return how many. The stop and the most are the first of them, in the place of a peg stands -1 there.
+    per mm and before peg and piece; return how many. The stop and the most come first,
+    with -1 in the place of a peg.
 
     Pieces are listed for each peg farther around than is asked for, and listed anew where it has moved on (L. Verlet,
     Physical Review 159, 1967).
