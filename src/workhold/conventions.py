@@ -99,6 +99,9 @@ WHOLE = 1e-9
 SAME_POINT = 1e-9
 # mm. Points and radii that agree to this after a rotation are the same: the part's own symmetry, as its drawing has it.
 SAME_AFTER_TURN = 1e-6
+# Radians and mm. Poses of fixtures that agree to this after such a rotation are the same: a pose that follows from several
+# contacts is off by more than the outline is.
+SAME_IMAGE = 4e-6
 # A share. Axes whose scales or right angle differ by less keep circles circular, and radii of an ellipse that differ by less
 # are those of a circle: files have seven digits.
 CIRCULAR = 1e-7

@@ -14,7 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import SAME_AFTER_TURN, SAME_POSE
+from workhold.conventions import SAME_IMAGE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
 from workhold.kernels.contact.canonical_form import to_canonical_form
@@ -33,9 +33,6 @@ __all__ = ["Turns", "kept_point", "one_of_each_set", "precedes", "rotations_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# Radians and mm. A pose that follows from several contacts is off by more than the outline is after a turn.
-SAME_IMAGE = 4.0 * SAME_AFTER_TURN
 
 
 def rotations_of(part: Workpiece) -> tuple[Rotation, ...]:
