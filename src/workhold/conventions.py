@@ -119,6 +119,9 @@ SAME_SIZE = 1e-6
 # mm. Ends of features are moved out by this much for the search, far more than rounding: what is found past an end is
 # discarded when the contacts are examined, by END_SLACK.
 LOOSE = 1e-6
+# A share. Forces under one of two clamps that doubles may have off by more are told in balls: half of what verification
+# allows.
+FORCES_OFF = 5e-8
 # Degrees. The end of a range of angles counts, to within this: the rounding of an angle written with ten decimals, and more.
 # A verification allows 1e-6 degrees, because it knows the pose only as it is written.
 ANGLE_SLACK = 1e-7

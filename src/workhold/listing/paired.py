@@ -37,7 +37,7 @@ from workhold.listing.distinct import one_of_each_set, rotations_of
 from workhold.listing.listed import Work, proof_of
 from workhold.listing.plate_identity import FAR, identity_order, smallest_images
 from workhold.listing.ranking import best_marked, rank
-from workhold.listing.seats import ALONG, NAMES, Seats
+from workhold.listing.seats import ALONG, NAMES, Seats, box_beside
 from workhold.model.notes import undecided_note
 from workhold.model.plate import Plate
 from workhold.model.proof import AT_AN_EDGE, Undecided
@@ -56,9 +56,6 @@ __all__ = ["FAR", "ChosenPairs", "PairedFixtures"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# mm. Proven contacts are this near to where they are said to be.
-BESIDE = 1e-8
 
 
 @define(frozen=True, eq=False)
@@ -213,8 +210,6 @@ class PairedFixtures:
 
     def box(self, seats: Seats, seat: int, clamp: int) -> Box:
         """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along x."""
-        from workhold.proof.interval_newton import Box
-
         pitch, integers = np.array(self.toolkit.pitch), seats.clamps.integers[clamp]
         carrier = self.toolkit.carrier(f"clamp {NAMES[integers[DIRECTION]]}")
         assert carrier.travel is not None
@@ -224,13 +219,9 @@ class PairedFixtures:
         places, tip = (holes - holes[0]) @ turn.T, turn @ (seats.clamps.reals[clamp, TIP : TIP + 2] - holes[0])
         x, y = seats.point[seat, 0].tolist()
         features = [*seats.feature[seat], seats.clamp_feature[clamp]]
-        return Box(
-            features=self.problem.rows[features].tolist(),
-            offsets=[*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))],
-            standing=3,
-            middle=(carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])),
-            reach=(BESIDE / self.problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE),
-        )
+        offsets = [*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))]
+        middle = carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])
+        return box_beside(features, offsets, middle, self.problem)
 
     def written_out(self, rows: Array, seats: Seats) -> FixtureTable:
         """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are known."""

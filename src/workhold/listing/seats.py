@@ -7,8 +7,9 @@ one seat; a clamp that holds the part by itself is left out, for it needs no sec
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from math import inf, tau
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define, fields
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
-from workhold.conventions import MOST_FORCE, NO_REACTION, SAME_PLACE, SAME_POSE
+from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_PLACE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.clamp_pairs import Clamps
@@ -24,15 +25,21 @@ from workhold.listing.canonical_form import Candidates, changes, clusters, packe
 from workhold.listing.on_plate import clear_holes
 from workhold.model.plate import DIRECTIONS
 from workhold.model.toolkit import Travel
+from workhold.proof.deciding import BALLS
 from workhold.statics.wrenches import outward_normals, wrenches
 
-__all__ = ["ALONG", "NAMES", "Seats", "seats_of"]
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import Box
+
+__all__ = ["ALONG", "NAMES", "Seats", "box_beside", "seats_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 LOCATORS = slice(0, 3)
 TIP = 3
+# mm. Proven contacts are this near to where they are said to be.
+BESIDE = 1e-8
 NAMES = tuple(DIRECTIONS)
 # Unit vectors along which the travel of clamps in each direction is counted.
 ALONG = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
@@ -114,7 +121,7 @@ def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contac
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
     turned = np.stack(rotated(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
     push = (turned * wrench[:, TIP, :2]).sum(axis=1)
-    doubt = doubts(inverse, taken, rows, problem)
+    taken, push, doubt = sharpened(c, taken, push, *doubts(inverse, taken, rows, push, problem), problem)
     left_out = (taken.min(axis=1, initial=np.inf) > NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))) | presses_too_much(
         taken, push
     )
@@ -157,6 +164,59 @@ def contacts_on_plate(c: Candidates, problem: Problem, direction: str) -> Contac
     )
 
 
+def sharpened(
+    c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
+) -> tuple[Array, Array, Array]:
+    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts, told by balls where doubles leave forces in doubt.
+
+    Parameters
+    ----------
+    push_off, doubt : (N,) how far pushes and forces may be off.
+    """
+    from workhold.proof.clamp_reactions import sharp_reactions
+
+    taken, push, doubt = taken.copy(), push.copy(), doubt.copy()
+    # Per unit of the clamp's own force, as parts of one and the largest force.
+    most = np.abs(taken).max(axis=1, initial=0.0)
+    off = (doubt + most * push_off / push) / (push + most) + push_off / push
+    chosen = np.flatnonzero(off > FORCES_OFF).tolist()
+    with BALLS if chosen else nullcontext():
+        for k in chosen:
+            sharp = sharp_reactions(box_of(c, k, problem), problem.limits)
+            if sharp is not None:
+                taken[k], push[k], doubt[k] = sharp.taken, sharp.push, sharp.doubt
+    return taken, push, doubt
+
+
+def box_of(c: Candidates, number: int, problem: Problem) -> Box:
+    """A contact of three locators and a clamp in the frame of the search."""
+    column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
+    x, y = (column[LOCATORS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
+    separation = float(x.max() + c.gap[number])
+    offsets = list(zip([*x.tolist(), 0.0], y.tolist(), strict=True))
+    middle = -float(c.theta[number]), *c.point[number, 0].tolist(), separation
+    return box_beside(c.feature[number].tolist(), offsets, middle, problem)
+
+
+def box_beside(
+    features: Sequence[int],
+    offsets: Sequence[tuple[float, float]],
+    middle: tuple[float, float, float, float],
+    problem: Problem,
+) -> Box:
+    """A box about a proven contact of three locators and a clamp, as drawn, see ``proof.interval_newton.Box``."""
+    from flint import ctx
+
+    from workhold.proof.exact_rows import exact_rows
+    from workhold.proof.interval_newton import PRECISIONS, Box
+
+    frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)
+    radii = [frame.standing.peg_radius] * TIP + [frame.moving.peg_radius]
+    with ctx.workprec(PRECISIONS[-1]):
+        rows = exact_rows(features, radii, problem)
+    return Box(rows, offsets, TIP, middle, reach)
+
+
 def presses_too_much(taken: Array, push: Array) -> NDArray[np.bool_]:
     """Which clamps (N,) press a locator with more than ``MOST_FORCE`` times their own force.
 
@@ -168,18 +228,21 @@ def presses_too_much(taken: Array, push: Array) -> NDArray[np.bool_]:
     return np.asarray(np.abs(taken).max(axis=1, initial=0.0) > MOST_FORCE * push)
 
 
-def doubts(inverse: Array, taken: Array, rows: Array, problem: Problem) -> Array:
-    """How far forces of the locators (N, 3) may be off by the rounding of places and products.
+def doubts(inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem) -> tuple[Array, Array]:
+    """How far clamps' pushes (N,) and forces of the locators (N, 3) may be off by the rounding of places and products.
 
-    A polished place is off by the inverse of the contact equations times their rounding; by so much over the smallest radius
-    normals are turned, and by so much over L moments are off. First-order, and doubled.
+    A polished place is off by the inverse of the contact equations times their rounding, and a tip along its line by that
+    over its push; by so much over its radius a normal is turned, and by so much over L moments are off. First-order, and
+    doubled.
     """
     size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length
     norm = np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
-    radius = np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf).min(axis=1)
+    curved = 1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)
     off = 4.0 * norm * (ROUNDINGS * size + problem.backward_error)
-    wrench = off * (2.5 / radius + 2.5 / problem.wrench_length) + ROUNDINGS
-    return np.asarray(2.0 * norm * wrench * (1.0 + np.abs(taken).sum(axis=1)))
+    swing = 2.5 * off * (curved[:, TIP] / push + 1.0 / problem.wrench_length) + ROUNDINGS
+    wrench = off * (2.5 * curved.max(axis=1) + 2.5 / problem.wrench_length) + ROUNDINGS
+    at_tip = np.maximum(wrench, swing + 2.5 * off / (push * problem.wrench_length))
+    return swing, 2.0 * norm * (at_tip + wrench * np.abs(taken).sum(axis=1))
 
 
 def joined_contacts(parts: Sequence[Contacts]) -> Contacts:

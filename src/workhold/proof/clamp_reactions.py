@@ -1,7 +1,8 @@
-"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, for pairs that doubles leave open.
+"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, where doubles do not tell it well enough.
 
 Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through the point in
-which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far below what decides.
+which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far below what decides. And a
+clamp that nearly grazes an arc has its place, and so the share of its force that pushes, off by rounding over that share.
 """
 
 from __future__ import annotations
@@ -26,10 +27,12 @@ ROUNDING = 2.3e-16
 
 @frozen
 class SharpReactions:
-    """Forces of three locators per unit of a clamp's force on its face, and how far each may be off."""
+    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and its push: the share of
+    the clamp's own force that such a unit is."""
 
     taken: tuple[float, float, float]
     doubt: float
+    push: float
 
 
 def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
@@ -44,7 +47,8 @@ def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
                 return None
             if unique:
                 here = places(box, frame.unknowns(refined(frame, place)))
-                return rounded(reactions(here))
+                (x, y), (along, across) = here.normals[LOCATORS], here.axis
+                return rounded(reactions(here), int(limits.clamping) * (x * along + y * across))
     return None
 
 
@@ -70,8 +74,8 @@ def determinant(v: Sequence[tuple[arb, arb, arb]]) -> arb:
     )
 
 
-def rounded(values: Sequence[arb]) -> SharpReactions:
-    """Balls as doubles."""
+def rounded(values: Sequence[arb], push: arb) -> SharpReactions:
+    """Balls of reactions and of the push as doubles."""
     a, b, c = (float(value.mid()) for value in values)
     doubt = max(float(value.rad()) + ROUNDING * abs(float(value.mid())) for value in values)
-    return SharpReactions((a, b, c), doubt if doubt == doubt else inf)
+    return SharpReactions((a, b, c), doubt if doubt == doubt else inf, float(push.mid()))

@@ -17,6 +17,7 @@ from workhold.geometry.hull_edges import HullEdge
 from workhold.model.toolkit import Carrier
 from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
+from workhold.proof.exact_rows import exact_rows
 
 __all__ = [
     "Candidate",
@@ -164,7 +165,8 @@ def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> tuple
     edge = problem.workpiece.hull_edges[candidate.edge]
     start, tangent, wall = line_of(edge, problem.workpiece.center)
     level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
-    rows = [problem.rows[k].tolist() for k in candidate.features]
+    radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
+    rows = exact_rows(candidate.features, radii, problem)
     locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
     if locator is None:
         return None
@@ -176,9 +178,16 @@ def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> tuple
     return None if clamp is None else (wall, locator, clamp)
 
 
-def reactions_on_fence(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpReactions | None:
-    """Forces of the wall's two ends and the locator per unit of that on the clamp's face, to the last digit; None where they
-    cannot be made out."""
+def reactions_on_fence(
+    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+) -> SharpReactions | None:
+    """Forces of the wall's two ends and the locator per unit of that on the clamp's face, and its push, to the last digit;
+    None where they cannot be made out.
+
+    Parameters
+    ----------
+    plate, push : see :func:`pressing`.
+    """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         contacts = contacts_of(candidate, problem, plate)
         if contacts is None:
@@ -188,7 +197,7 @@ def reactions_on_fence(candidate: Candidate, problem: Problem, plate: Carrier) -
             return None
         force = -b[0] / a[0]
         last = (force * (u * a[1] - v * a[0]) + p * b[1] - q * b[0]) / wall
-        return rounded([force * a[1] + b[1] - last, last, force])
+        return rounded([force * a[1] + b[1] - last, last, force], -(b[0] * push[0] + b[1] * push[1]))
 
 
 def line_of(edge: HullEdge, center: tuple[float, float]) -> tuple[Point, Point, arb]:

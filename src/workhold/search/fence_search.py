@@ -19,6 +19,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import (
     ANGLE_SLACK,
     CLEARANCE,
+    FORCES_OFF,
     GAP_SLACK,
     LEAST_CLAMPING,
     LEAST_SPAN,
@@ -225,12 +226,13 @@ class FenceSearch:
         places = self.placed(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
-        null, doubt = places.null.copy(), reaction_doubts(places, laid, one, two, locator, self.problem)
-        for k in np.flatnonzero(doubt > DOUBTFUL).tolist():
-            sharp = reactions_on_fence(self.candidate(edge, one, two, locator, k), self.problem, self.plate)
+        null, push = places.null.copy(), places.push.copy()
+        doubt = reaction_doubts(places, laid, one, two, locator, self.problem)
+        for k in np.flatnonzero((doubt > DOUBTFUL) | (two.swing > FORCES_OFF * push)).tolist():
+            sharp = reactions_on_fence(self.candidate(edge, one, two, locator, k), self.problem, self.plate, self.push)
             if sharp is not None:
-                null[k, :3], doubt[k] = sharp.taken, sharp.doubt
-        return evolve(places, null=null, doubt=doubt)
+                null[k, :3], doubt[k], push[k] = sharp.taken, sharp.doubt, sharp.push
+        return evolve(places, null=null, doubt=doubt, push=push)
 
     def placed(self, pressed: Pressed, edge: int, one: Places, two: Places, locator: IntArray) -> Pressed:
         """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
