@@ -159,14 +159,18 @@ def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
 Contact = tuple[Point, Point, list[arb]]
 
 
-def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> tuple[arb, Contact, Contact] | None:
+def contacts_of(
+    candidate: Candidate, problem: Problem, plate: Carrier, as_drawn: bool = False
+) -> tuple[arb, Contact, Contact] | None:
     """The length of the hull edge, and the contacts of locator and clamp as :func:`touched` tells them; None where one of
     them touches nothing."""
     edge = problem.workpiece.hull_edges[candidate.edge]
     start, tangent, wall = line_of(edge, problem.workpiece.center)
     level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
     radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
-    rows = exact_rows(candidate.features, radii, problem)
+    rows = [problem.rows[k].tolist() for k in candidate.features]
+    if as_drawn:
+        rows = exact_rows(candidate.features, radii, problem)
     locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
     if locator is None:
         return None
@@ -179,7 +183,7 @@ def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> tuple
 
 
 def reactions_on_fence(
-    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float], as_drawn: bool
 ) -> SharpReactions | None:
     """Forces of the wall's two ends and the locator per unit of that on the clamp's face, and its push, to the last digit;
     None where they cannot be made out.
@@ -187,9 +191,10 @@ def reactions_on_fence(
     Parameters
     ----------
     plate, push : see :func:`pressing`.
+    as_drawn : with faces as the drawing has them, rather than rounded once.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
-        contacts = contacts_of(candidate, problem, plate)
+        contacts = contacts_of(candidate, problem, plate, as_drawn)
         if contacts is None:
             return None
         wall, ((u, v), a, _), ((p, q), b, _) = contacts

@@ -228,10 +228,13 @@ class FenceSearch:
             return places
         null, push = places.null.copy(), places.push.copy()
         doubt = reaction_doubts(places, laid, one, two, locator, self.problem)
-        for k in np.flatnonzero((doubt > DOUBTFUL) | (two.swing > FORCES_OFF * push)).tolist():
-            sharp = reactions_on_fence(self.candidate(edge, one, two, locator, k), self.problem, self.plate, self.push)
+        grazes = two.swing > FORCES_OFF * push
+        for k in np.flatnonzero((doubt > DOUBTFUL) | grazes).tolist():
+            candidate = self.candidate(edge, one, two, locator, k)
+            sharp = reactions_on_fence(candidate, self.problem, self.plate, self.push, bool(grazes[k]))
             if sharp is not None:
-                null[k, :3], doubt[k], push[k] = sharp.taken, sharp.doubt, sharp.push
+                null[k, :3], doubt[k] = sharp.taken, sharp.doubt
+                push[k] = sharp.push if grazes[k] else push[k]
         return evolve(places, null=null, doubt=doubt, push=push)
 
     def placed(self, pressed: Pressed, edge: int, one: Places, two: Places, locator: IntArray) -> Pressed:
