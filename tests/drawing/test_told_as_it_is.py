@@ -303,8 +303,11 @@ def test_a_sheet_tells_loads_in_their_order(held: Held) -> None:
 
 
 @EVERY
-def test_the_terminal_tells_the_fixture(held: Held, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_terminal_tells_the_fixture(
+    held: Held, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What ``show`` prints: settings, ways, pose, and the tables of pegs, figures and loads."""
+    monkeypatch.delenv("COLUMNS", raising=False)
     fixture, toolkit, noun = held.fixture, held.toolkit, "clamp" if tips_of(held.fixture) else "jaw"
     cases = load_cases_of(held)
     tables = (*fixture_tables(fixture, toolkit, 3, 70), "", quality_table(fixture, noun))

@@ -59,7 +59,7 @@ COMMANDS = {
     "seat": (
         "Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened: how wide "
         "open that may be when the part is let go and how far off it may lie, where else it can come to rest, and what is "
-        "read then."
+        "read then. Of two clamps, tell how the part is put in by hand and in which order they are tightened."
     ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "

@@ -73,6 +73,8 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
     found = [choice for choice in choices if choice is not None]
     if not found and needed:
         return arranged(paper, extent, needed[:-1], [needed[-1], *others])
+    # A block is never cut, and one that is too high for a lying page may stand on an upright one.
+    found = [choice for choice in found if not runs_over(choice)] or found
     best = max(found, key=lambda choice: choice.scale.factor)
     single = [choice for choice in found if not choice.more]
     if single:
@@ -81,6 +83,12 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
         if largest.scale.factor == best.scale.factor or drawn >= LARGE_ENOUGH:
             return largest
     return best
+
+
+def runs_over(choice: Arrangement) -> bool:
+    """Whether words run over the foot of a further page."""
+    columns = (column for page in choice.more for column in page)
+    return any(sum(height_of(block, box.width) for block in blocks) > box.height for box, blocks in columns)
 
 
 def plan_room(plan: Box) -> Box:

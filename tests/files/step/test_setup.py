@@ -92,11 +92,14 @@ def test_every_peg_axis_is_one_radius_from_the_part(pose: Pose) -> None:
 
 @pytest.mark.parametrize("pose", POSES)
 def test_volumes_are_those_of_prisms(pose: Pose) -> None:
-    """Part: its area times its height. Pegs: cylinders. Plates: rows 1 to 4 and both columns of holes in a box."""
+    """Part: its area times its height. Pegs: cylinders. Plates: a box with the holes of both columns, of five rows under the
+    part on the left and of four on the right."""
     kinds = bodies(pose)
     assert kinds["part"][0].volume == pytest.approx(12 * LYING_AREA, rel=1e-9)
     assert [peg.volume for peg in kinds["peg"]] == pytest.approx([20 * pi * 9] * 4, rel=1e-9)
-    assert [plate.volume for plate in kinds["plate"]] == pytest.approx([8 * (20 * 48 - 8 * 9 * pi)] * 2, rel=1e-9)
+    assert [plate.volume for plate in kinds["plate"]] == pytest.approx(
+        [8 * (20 * 12 * rows - 2 * rows * 9 * pi) for rows in (5, 4)], rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("pose", POSES)
