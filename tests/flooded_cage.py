@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from math import atan2, cos, inf, sin
+from math import atan2, ceil, cos, inf, sin, sqrt
 
 import numpy as np
 from attrs import define
@@ -17,16 +17,14 @@ from numpy.typing import NDArray
 
 from seating_examples import Obstacle
 from workhold import Fixture, Workpiece
-from workhold.geometry.segment import Line
+from workhold.geometry.segment import Arc, Line
 from workhold.model.toolkit import Toolkit
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
 Cell = tuple[int, int, Interval, Interval]
-# Straight pieces that stand for an arc.
-CHORDS = 48
-# mm. How near to the pose along the way, but for a step, a flood begins.
-BESIDE = 0.1
+# Straight pieces that stand for an arc: they lie less than this part of the opening off it.
+CHORD_ERROR = 3e-3
 
 
 @define(slots=False)
@@ -37,6 +35,8 @@ class Flood:
     ----------
     part, fixture, toolkit : what is held where.
     opening : below which what moves stays, in mm from the fixture's pose.
+    inside : (N, 4) where it begins, of turn, shifts along the way and across it, and opening: a cage may begin in its seat
+        as a cone that no cell is in.
     steps, lean : of the grid in radians and mm, and by how many mm per radian its rows rise with the orientation.
     rows : how many there are above the pose's, and below it.
     """
@@ -45,6 +45,7 @@ class Flood:
     fixture: Fixture
     toolkit: Toolkit
     opening: float
+    inside: Array
     steps: tuple[float, float]
     lean: float = 0.0
     rows: int = 150
@@ -65,15 +66,17 @@ class Flood:
         along, across = self.way
         return points @ np.array([[along, -across], [across, along]])
 
+    def chords(self, arc: Arc) -> int:
+        """How many straight pieces stand for an arc."""
+        return ceil(arc.half_sweep * sqrt(arc.radius / (2.0 * CHORD_ERROR * self.opening)))
+
     @cached_property
     def outline(self) -> tuple[Array, Array]:
         """Ends (M, 2) of straight pieces about the middle of the part's box."""
         starts, ends = [], []
         for face in self.obstacle.faces:
-            half = face.half_extent if isinstance(face, Line) else face.half_sweep
-            points = np.array(
-                [face.at(t) for t in np.linspace(-half, half, 2 if isinstance(face, Line) else CHORDS + 1)]
-            )
+            half, count = (face.half_extent, 1) if isinstance(face, Line) else (face.half_sweep, self.chords(face))
+            points = np.array([face.at(t) for t in np.linspace(-half, half, count + 1)])
             starts.append(points[:-1] - self.obstacle.center)
             ends.append(points[1:] - self.obstacle.center)
         return np.vstack(starts), np.vstack(ends)
@@ -160,18 +163,25 @@ class Flood:
             ]
         return known[number]
 
-    def cells(self) -> Iterator[Cell]:
-        """What the flood reaches from the pose."""
-        known: dict[int, list[list[Cell]]] = {}
-        near, off = self.start[1], BESIDE + self.steps[1] + self.steps[0] * 2.0 * float(np.abs(self.outline[0]).max())
-        # In the pose an interval may end across the way, or be a point: then cells beside it count.
-        first = [
+    def cells_with(
+        self, known: dict[int, list[list[Cell]]], turn: float, along: float, up: float, s: float
+    ) -> list[Cell]:
+        """The cell of a configuration, told from the fixture's."""
+        number, x = round(turn / self.steps[0]), self.start[1] + along
+        k = self.rows + round((up - self.lean * number * self.steps[0]) / self.steps[1])
+        here = self.row(known, number)[k] if 0 <= k <= 2 * self.rows else []
+        # It lies off the cell's middle by half a step each way at most.
+        off = self.steps[1] + self.steps[0] * float(np.abs(self.outline[0]).max())
+        return [
             cell
-            for number in (-1, 0, 1)
-            for row in self.row(known, number)[self.rows - 1 : self.rows + 2]
-            for cell in row
-            if abs(cell[2][0] - near) < off and abs(cell[3][1] - near) < off
+            for cell in here
+            if cell[2][0] - off <= x <= cell[2][1] + off and cell[3][0] - off <= x - s <= cell[3][1] + off
         ]
+
+    def cells(self) -> Iterator[Cell]:
+        """What the flood reaches."""
+        known: dict[int, list[list[Cell]]] = {}
+        first = [cell for off in self.inside for cell in self.cells_with(known, *off)]
         assert first
         seen, waiting = set(first), list(first)
         while waiting:

@@ -36,6 +36,8 @@ KITS: dict[str, tuple[Workpiece, Toolkit]] = {
 }
 # Steps of a grid across a cage.
 STEPS = 24
+# How often closing by small steps is taken up where it ended after so many.
+TAKEN_UP = 5
 
 
 @cache
@@ -65,7 +67,7 @@ def around(name: str, rank: int, share: float) -> Surroundings:
     return told if share == 1.0 else evolve(told, opening=share * told.opening, way=np.zeros(3))
 
 
-def differences(name: str, rank: int, share: float) -> np.ndarray:
+def differences(name: str, rank: int, share: float, count: int = STEPS) -> np.ndarray:
     """By how much each extreme goes farther than a flood does, in steps of its grid: (3, 2)."""
     part, toolkit, fixtures = listed(name)
     told = around(name, rank, share)
@@ -73,9 +75,12 @@ def differences(name: str, rank: int, share: float) -> np.ndarray:
     width, (turn, _, up, _) = np.ptp(found.reach, axis=1), (found.ends - told.seat).T
     # Cages lean: a grid that does, too, has the more rows in them.
     lean = float(turn @ up / (turn @ turn))
-    steps = width[0] / STEPS, float(np.ptp(up - lean * turn)) / STEPS
-    flood = Flood(part, fixtures[rank], toolkit, told.opening, steps, lean, rows=2 * STEPS)
-    size = np.array([[steps[0]], [width[1] / STEPS], [steps[1] + abs(lean) * steps[0]]])
+    steps = width[0] / count, float(np.ptp(up - lean * turn)) / count
+    # Ends lie on the edge: between two of them the cage is wide, where it comes home from there.
+    between = [(found.ends + np.roll(found.ends, k, axis=0)) / 2.0 for k in range(1, 20)]
+    inside = np.vstack([found.ends, *(some[told.come_home(some)] for some in between)]) - told.seat
+    flood = Flood(part, fixtures[rank], toolkit, told.opening, inside, steps, lean, rows=8 * count)
+    size = np.array([[steps[0]], [width[1] / count], [steps[1] + abs(lean) * steps[0]]])
     return (flood.extents - found.reach) * [1.0, -1.0] / size
 
 
@@ -89,10 +94,16 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
     for config in reading.pattern.door.leave(told.extents.farthest[which] + reading.shift):
         assert obstacle.free(config) > -1e-7
         assert obstacle.clamping * (config[3] - own[3]) <= told.opening + 1e-7
-        end = closed(obstacle, config, size, stop)
-        off = np.abs(end - own)
-        off[0] = abs((off[0] + pi) % tau - pi)
-        if off[3] > 1e-3 or off[0] * size + off[1] + off[2] > 0.05:
+        for _ in range(TAKEN_UP):
+            config = closed(obstacle, config, size, stop)
+            off = np.abs(config - own)
+            off[0] = abs((off[0] + pi) % tau - pi)
+            home = off[3] < 1e-3 and off[0] * size + off[1] + off[2] < 0.05
+            # Between two parallel faces the part slides at one S, until it goes on down: that is no rest.
+            slides = len(obstacle.near(config, 1e-6)) == 2
+            if home or slides:
+                break
+        if not (home or slides):
             return False
     return True
 
@@ -112,12 +123,25 @@ def test_a_part_comes_home_from_the_largest_turns(name):
     assert end_at_home(name, 0, 0.98, [0, 3])
 
 
-@pytest.mark.parametrize("name", ["0", "1", "2", "oblong", "bracket", "fence", "opening"])
-def test_no_extreme_lies_outside_the_cage(name):
+@pytest.mark.parametrize(
+    ("name", "rank"),
+    [
+        ("0", 0),
+        ("1", 0),
+        ("2", 0),
+        ("oblong", 0),
+        ("oblong", 40),
+        ("bracket", 2),
+        ("bracket", 34),
+        ("fence", 0),
+        ("opening", 0),
+    ],
+)
+def test_no_extreme_lies_outside_the_cage(name, rank):
     """Ways end where pegs touch and what moves is open by no more than is asked, and closing leads home from all ends."""
     part, toolkit, fixtures = listed(name)
-    reading, told = reading_of(name, 0), around(name, 0, 1.0)
-    obstacle, found = Obstacle.about(part, fixtures[0], toolkit), told.extents
+    reading, told = reading_of(name, rank), around(name, rank, 1.0)
+    obstacle, found = Obstacle.about(part, fixtures[rank], toolkit), told.extents
     assert told.come_home(found.ends).all() and found.ends[:, 3].max() <= told.seat[3] + told.opening + 1e-8
     off = found.ends[:, :3] - told.seat[:3]
     assert (found.reach[:, 0] >= np.minimum(off.min(axis=0), told.way) - 1e-12).all()
@@ -138,18 +162,18 @@ def test_the_oblong_part_comes_home_turned_by_twelve_degrees():
 @pytest.mark.parametrize("name", KITS)
 def test_extremes_of_many_fixtures_are_those_of_a_flood(name):
     """Nowhere short of it, at two openings. A flood steps over narrow ends, of some by many rows."""
-    for rank in range(0, len(listed(name)[2]), 2):
+    for rank in range(0, len(listed(name)[2]), 6):
         if reading_of(name, rank).trees[0].join_of(reading_of(name, rank).place) is None:
             continue
         for share in (0.6, 0.9):
-            beyond = differences(name, rank, share)
+            beyond = differences(name, rank, share, 2 * STEPS)
             assert beyond.min() > -0.15, (rank, share, beyond)
 
 
 @pytest.mark.prove
 @pytest.mark.parametrize("name", KITS)
 def test_parts_come_home_from_the_extremes_of_many_fixtures(name):
-    """Of every other one."""
-    for rank in range(0, len(listed(name)[2]), 2):
+    """Of every sixth, all six extremes."""
+    for rank in range(0, len(listed(name)[2]), 6):
         if reading_of(name, rank).trees[0].join_of(reading_of(name, rank).place) is not None:
             assert end_at_home(name, rank, 0.97, list(range(6))), rank
