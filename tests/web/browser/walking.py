@@ -10,7 +10,7 @@ from running_server import RunningServer
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 # A search may have to wait for kernels to be loaded on a busy machine.
-SEARCH_PATIENCE, SEEN_PATIENCE = 120_000.0, 60_000.0
+SEARCH_PATIENCE, SEEN_PATIENCE = 120_000.0, 180_000.0
 
 POINT_ON_PAGE = """async ([view, x, y]) => {
   const stage = await import("/static/stage-panel.js");
