@@ -2,7 +2,7 @@
 
 Three locators on three faces: two of them fix the part up to its orientation, in closed form, and the third's distance from
 its face is a function of the orientation alone. Its zeros are found on a fine grid, between the exact ends of where the
-function exists, and by halving. Clamps follow in closed form, and closure from the locators' reactions (TWO_CLAMPS: closure
+function exists, and by halving. Clamps follow in closed form, and closure from the locators' reactions (plates.md: closure
 is lo < hi). Clamps are tips alone: strokes are not looked at.
 """
 
