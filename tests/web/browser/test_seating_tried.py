@@ -167,6 +167,25 @@ def test_with_two_clamps_it_is_said_what_to_do_by_hand(walk: Walk) -> None:
     assert page.locator("#try-fields").is_visible() and page.locator("#try-hint").is_visible()
 
 
+def test_a_part_in_the_hand_stays_there_after_a_search_begun_by_hand(walk: Walk) -> None:
+    """A change of settings searches by itself after a moment, but not once its user has pressed the button."""
+    page = walk.page
+    walk.take()
+    walk.search()
+    walk.asked.clear()
+    page.evaluate("""() => {
+      const press = () => document.getElementById("search").click();
+      document.getElementById("peg-radius").addEventListener("change", () => setTimeout(press), { once: true });
+    }""")
+    page.fill("#peg-radius", "2")
+    page.press("#peg-radius", "Tab")
+    walk.searched()
+    begin(walk)
+    page.wait_for_timeout(700)
+    assert page.locator("#seating").is_visible() and page.locator("#seats .seat").count() > 0
+    assert sum(address.endswith("/api/jobs") for address in walk.asked) == 1
+
+
 def test_a_search_asks_for_seating(walk: Walk) -> None:
     """Of the first fixtures, and only those that catch the part so far open; the list shows it, and a link keeps it."""
     page = walk.page

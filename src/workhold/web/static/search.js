@@ -15,6 +15,8 @@ let token = 0;
 let events = null;
 /** Whether a change of settings searches at once: from the first search on, until the user cancels. */
 let live = false;
+/** Whether settings have changed since a search was begun with them. */
+let changedSince = false;
 
 /** Whether a search is under way. */
 export function searching() {
@@ -34,6 +36,7 @@ export function leave() {
 /** Search with the settings as they are. */
 export async function start() {
   leave();
+  changedSince = false;
   if (!state.part) return;
   live = true;
   const mine = token;
@@ -133,10 +136,12 @@ function failed(error) {
   change({ job: { job: null, state: "failed", fraction: 0, found: 0, revision: 0, notes: [], error: words } });
 }
 
-const again = quiet(() => live && state.part && start(), 350);
+/** A search that was begun by hand meanwhile stays, and what its user has chosen there. */
+const again = quiet(() => changedSince && live && state.part && start(), 350);
 
 on(SETTINGS, (changed) => {
   leave();
+  changedSince = true;
   if (changed.has("part")) live = false;
   else if (live) again();
 });
