@@ -45,16 +45,16 @@ def typed_words(**typed: str) -> ToolkitWords:
 )
 def test_pairs_of_directions(words: str, told: tuple[tuple[str, str], ...]) -> None:
     """Pairs are joined by a colon, in any order; single directions stand for all pairs of them."""
-    toolkit, _ = typed_words(direction=words).asked(MILLIMETRE)
+    toolkit, _ = typed_words(directions=words).asked(MILLIMETRE)
     assert isinstance(toolkit, Plate) and (toolkit.clamps, toolkit.directions) == (2, told)
 
 
 @pytest.mark.parametrize(
     ("typed", "message"),
     [
-        ({"direction": "-x:-y,-x"}, "pairs and single directions"),
-        ({"direction": "-x:-z"}, "direction '-z'"),
-        ({"clamps": "1", "direction": "-x:-y"}, "one clamp"),
+        ({"directions": "-x:-y,-x"}, "pairs and single directions"),
+        ({"directions": "-x:-z"}, "direction '-z'"),
+        ({"clamps": "1", "directions": "-x:-y"}, "one clamp"),
         ({"clamps": "3"}, "1 or 2"),
         ({"clamps": "two"}, "--clamps"),
         ({"toolkit": "vise", "columns": "2"}, "--clamps is of plates"),

@@ -12,6 +12,7 @@ from inspect import Parameter, Signature, cleandoc, signature
 from typing import Any, get_type_hints
 
 import typer
+from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
 __all__ = ["PlainCommand", "PlainGroup", "option", "spread"]
@@ -33,9 +34,9 @@ def spread(command: Callable[..., None]) -> Callable[..., None]:
     groups = {name: kinds[name] for name in signature(command).parameters if hasattr(kinds[name], "__attrs_attrs__")}
     parameters: list[Parameter] = []
     for name, parameter in signature(command).parameters.items():
-        fields = signature(groups[name]).parameters.values() if name in groups else [parameter]
-        hints = get_type_hints(groups[name], include_extras=True) if name in groups else kinds
-        parameters += [one.replace(annotation=hints[one.name], kind=Parameter.KEYWORD_ONLY) for one in fields]
+        shown = signature(groups[name]).parameters.values() if name in groups else [parameter]
+        hints = {one.name: one.type for one in fields(resolve_types(groups[name]))} if name in groups else kinds
+        parameters += [one.replace(annotation=hints[one.name], kind=Parameter.KEYWORD_ONLY) for one in shown]
 
     @wraps(command)
     def spread_out(**words: Any) -> None:

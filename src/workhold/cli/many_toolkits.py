@@ -70,8 +70,9 @@ def toolkits_to_try(
         For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
     """
     from workhold.files.toolkit.presets import load_toolkit, preset_names
+    from workhold.fixels.fields import USUAL
     from workhold.model.fence import Fence
-    from workhold.model.kinds import ALIASES, KINDS, USUAL, kind_of
+    from workhold.model.kinds import ALIASES, KINDS, kind_of
     from workhold.model.plate import Plate
 
     is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)

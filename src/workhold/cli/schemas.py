@@ -21,19 +21,17 @@ def toolkit_schema() -> dict[str, Any]:
     """Of a toolkit's TOML file: that of its kind."""
     from pydantic import TypeAdapter
 
-    from workhold.files.toolkit.form import FORMS, ViseForm
-    from workhold.model.kinds import ALIASES, KINDS, USUAL
+    from workhold.files.toolkit.form import FORMS
+    from workhold.files.toolkit.shapes import one_of
+    from workhold.fixels.fields import USUAL, table_of
+    from workhold.model.kinds import ALIASES, KINDS, kind_of
 
-    forms = [ViseForm, *FORMS.values()]
-    schema = TypeAdapter(forms[0] | forms[1] | forms[2]).json_schema()  # type: ignore[operator]
-    kinds: dict[str, list[str]] = {}
-    for name in (*KINDS, *ALIASES):
-        kind = ALIASES[name][0] if name in ALIASES else name
-        kinds.setdefault(FORMS.get(kind, ViseForm).__name__, []).append(name)
-    for form, names in kinds.items():
-        schema["$defs"][form]["properties"]["kind"] = {"enum": names, "title": "Kind"}
+    schema = TypeAdapter(one_of(FORMS)).json_schema()
+    for noun, form in FORMS.items():
+        names = [name for name in (*KINDS, *ALIASES) if table_of(kind_of(name)[0]).noun == noun]
+        schema["$defs"][form.__name__]["properties"]["kind"] = {"enum": names, "title": "Kind"}
         if USUAL not in names:
-            schema["$defs"][form]["required"].append("kind")
+            schema["$defs"][form.__name__]["required"].append("kind")
     return schema
 
 

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
 from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_PLACE, SAME_POSE
+from workhold.fixels.directions import DIRECTIONS
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.clamp_pairs import Clamps
 from workhold.listing.canonical_form import Candidates, changes, clusters, packed
 from workhold.listing.on_plate import clear_holes
-from workhold.model.plate import DIRECTIONS
 from workhold.model.toolkit import Travel
 from workhold.proof.deciding import BALLS
 from workhold.statics.wrenches import outward_normals, wrenches

@@ -14,9 +14,10 @@ from typing import ClassVar
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.fixels.directions import DIRECTIONS
 from workhold.limits import refuse_long
 from workhold.model.fixture import WALL
-from workhold.model.plate import DIRECTIONS, Plate
+from workhold.model.plate import Plate
 from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.model.units import Unit

@@ -13,11 +13,9 @@ from workhold.model.plate import Plate
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import OpeningVise, Vise
 
-__all__ = ["ALIASES", "KINDS", "USUAL", "kind_of", "toolkit_of"]
+__all__ = ["ALIASES", "KINDS", "kind_of", "toolkit_of"]
 
 KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence)}
-# What is meant where nobody says.
-USUAL = Vise.kind
 # Other names, each with its kind and the fields that it says.
 ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "gripper": (Vise.kind, {"columns": 1}),

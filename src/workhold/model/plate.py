@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import combinations_with_replacement, product
-from math import inf, isfinite, isnan, pi
+from math import inf, isfinite, isnan
 from typing import Any, ClassVar
 
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
+from workhold.fixels.directions import DIRECTIONS
 from workhold.limits import refuse_long
 from workhold.model.flat import Flat, flat_of, resolved_flat
 from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
@@ -22,11 +23,7 @@ from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
-__all__ = ["DIRECTIONS", "Plate"]
-
-# The ways a clamp may move when it clamps, in the order in which fixtures are listed, and the angle of the line along which
-# its travel is counted, which is the other way.
-DIRECTIONS = {"-x": 0.0, "+x": pi, "-y": pi / 2, "+y": -pi / 2}
+__all__ = ["Plate"]
 
 
 def travel_pair(value: Iterable[float] | None) -> tuple[float, float] | None:

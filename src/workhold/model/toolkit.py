@@ -23,6 +23,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.directions import TOWARDS
 from workhold.model.beyond import beyond
 from workhold.model.flat import Flat
 from workhold.model.holes import Holes, column_letters, hole_name, letter_of
@@ -32,7 +33,6 @@ __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "
 
 # Contacts that fix the pose and the travel of what moves.
 MOST_OF_A_WAY = 4
-TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}
 
 
 @frozen

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from attrs import evolve
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, TypeAdapter, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
-from workhold.model.fence import Fence
-from workhold.model.kinds import USUAL, toolkit_of
+from workhold.files.toolkit.shapes import TAGS, forms_by_noun, one_of, optional
+from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.fields import USUAL, ToolkitField
+from workhold.model.kinds import toolkit_of
 from workhold.model.load import Load
-from workhold.model.plate import DIRECTIONS, Plate
 from workhold.model.query import Query, asked_ranking
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ExploreForm", "JobForm", "LoadsForm", "ViseForm", "WorkpieceForm", "asked_loads", "sentence_of"]
+__all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]
 
 # Beyond this, in mm, degrees, N or N mm, a number is a mistake.
 LARGEST = 1e9
 MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_TOOLKITS = 20_000, 50, 500, 50, 500, 60
-MOST_COLUMNS, MOST_ROWS = 200, 100_000
 # Fixtures whose seating is worked out in one search.
 MOST_SEATED = 1_000
 
@@ -84,20 +84,11 @@ def checked_part(
         raise InputError("The part's numbers are too large or too small to compute with: check its units.") from error
 
 
-class ViseForm(Form):
-    """A vise, or another toolkit with its fields; lengths in mm."""
+class ToolkitRequest(Form):
+    """The fields of a toolkit; lengths in mm."""
 
-    kind: Name = USUAL
-    pitch: Point
-    columns: int = Field(ge=1, le=MOST_COLUMNS)
-    peg_radius: Number
-    rows: int | None = Field(default=None, ge=1, le=MOST_ROWS)
-    min_gap: Number | None = None
-    max_opening: Number | None = None
-    row_offset: Number = 0.0
-    body_radius: Number | None = None
-    blocked: list[Name] = Field(default=[], max_length=MOST_NAMES)
-    flat: Number | Point | None = None
+    if TYPE_CHECKING:
+        kind: str
 
     def toolkit(self) -> Toolkit:
         """The toolkit.
@@ -110,50 +101,42 @@ class ViseForm(Form):
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
-class PlateForm(Form):
-    """A plate with locators and a clamp; lengths in mm."""
+class NamedToolkitRequest(ToolkitRequest):
+    """A toolkit to compare, with what to call it."""
 
-    kind: Literal["translating-clamp"]
-    pitch: Point
-    peg_radius: Number
-    columns: int | None = Field(default=None, ge=1, le=MOST_COLUMNS)
-    rows: int | None = Field(default=None, ge=1, le=MOST_ROWS)
-    clamp_radius: Number | None = None
-    travel: Point | None = None
-    directions: list[Name] | list[DirectionPair] | None = Field(default=None, max_length=len(DIRECTIONS) ** 2)
-    clamps: int = Field(default=1, ge=1, le=2)
-    flat: Number | Point | None = None
-
-    def toolkit(self) -> Toolkit:
-        """The toolkit.
-
-        Raises
-        ------
-        InputError
-            When there is no such plate.
-        """
-        return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
+    title: Name = ""
 
 
-class FenceForm(PlateForm):
-    """A fence with a locator and a clamp; lengths in mm."""
-
-    kind: Literal["edge"]  # type: ignore[assignment]
-    wall_offset: Number
-
-
-def form_of(value: Any) -> str:
-    """Which form a toolkit's fields are given in."""
-    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return {Plate.kind: PLATE, Fence.kind: FENCE}.get(str(kind), VISE)
+TYPES: Mapping[str, Any] = {
+    "length": Number,
+    "pitch": Point,
+    "span": Point,
+    "flat": Number | Point,
+    "holes": Annotated[list[Name], Field(max_length=MOST_NAMES)],
+    "directions": Annotated[list[Name] | list[DirectionPair], Field(max_length=len(DIRECTIONS) ** 2)],
+}
 
 
-# How the forms are told apart; the words are no part of any message.
-VISE, PLATE, FENCE = "<vise>", "<plate>", "<fence>"
-HeldIn = Annotated[
-    Annotated[ViseForm, Tag(VISE)] | Annotated[PlateForm, Tag(PLATE)] | Annotated[FenceForm, Tag(FENCE)],
-    Discriminator(form_of),
-]
+def asked_field(row: ToolkitField) -> tuple[Any, Any]:
+    """Type and default of a field in a request."""
+    return optional(Annotated[int, Field(ge=1, le=row.most)] if row.form == "count" else TYPES[row.form], row)
+
+
+def asked_kind(kinds: tuple[str, ...]) -> tuple[Any, Any]:
+    """Type and default of the kind; where it is the usual one it may be left out or be an alias."""
+    return (Name, USUAL) if USUAL in kinds else (Literal[kinds], ...)
+
+
+# By the noun of their tables.
+FORMS = forms_by_noun(ToolkitRequest, "{}Form", asked_field, asked_kind, "{}; lengths in mm.")
+NAMED_FORMS = forms_by_noun(
+    NamedToolkitRequest, "Named{}Form", asked_field, asked_kind, "{} to compare, with what to call it."
+)
+if TYPE_CHECKING:
+    HeldIn = ToolkitRequest
+    NamedHeldIn = NamedToolkitRequest
+else:
+    HeldIn, NamedHeldIn = one_of(FORMS), one_of(NAMED_FORMS)
 
 
 class RestrictionsForm(Form, RestrictionsPart):
@@ -267,30 +250,6 @@ class JobForm(SearchForm):
         return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
 
 
-class NamedViseForm(ViseForm):
-    """A vise to compare, with what to call it."""
-
-    title: Name = ""
-
-
-class NamedPlateForm(PlateForm):
-    """A plate to compare, with what to call it."""
-
-    title: Name = ""
-
-
-class NamedFenceForm(FenceForm):
-    """A fence to compare, with what to call it."""
-
-    title: Name = ""
-
-
-NamedHeldIn = Annotated[
-    Annotated[NamedViseForm, Tag(VISE)] | Annotated[NamedPlateForm, Tag(PLATE)] | Annotated[NamedFenceForm, Tag(FENCE)],
-    Discriminator(form_of),
-]
-
-
 class ExploreForm(SearchForm):
     """A comparison of toolkits; where none are given, of all that come with the program."""
 
@@ -329,7 +288,7 @@ class ExploreForm(SearchForm):
 
 def sentence_of(error: dict[str, Any]) -> str:
     """One thing that pydantic finds wrong with a request, as a sentence."""
-    loc = [str(part) for part in error.get("loc", ()) if part not in (VISE, PLATE, FENCE)]
+    loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
     if error.get("type") == "json_invalid":
         return "The request is not valid JSON: send one object."
     where, rest = (loc[0], loc[1:]) if loc else ("body", [])

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
+from workhold.files.toolkit.shapes import forms_by_noun, one_of, optional
+from workhold.fixels.fields import USUAL, Form, ToolkitField, table_of
 from workhold.model.dowel import Fit
-from workhold.model.fence import Fence
-from workhold.model.kinds import USUAL, toolkit_of
+from workhold.model.kinds import toolkit_of
 from workhold.model.load import ANY_DIRECTION, Load
-from workhold.model.plate import Plate
 from workhold.model.proof import Proof, Undecided
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, zone_of
@@ -20,7 +20,7 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["TAGS", "Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]
+__all__ = ["Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]
 
 
 LONGEST_STANDARD = 40
@@ -61,62 +61,32 @@ class FlatPart(Part):
     half_width: float
 
 
-class VisePart(Part):
-    """The vise's keys."""
-
-    pitch: Pair
-    columns: int
-    peg_radius: float
-    rows: int | None = None
-    min_gap: float | None = None
-    max_opening: float | None = None
-    row_offset: float = 0.0
-    body_radius: float | None = None
-    blocked: list[str] = []
-    flat: FlatPart | None = None
+TYPES: Mapping[Form, Any] = {
+    "count": int,
+    "length": float,
+    "pitch": Pair,
+    "span": Pair,
+    "flat": FlatPart,
+    "holes": list[str],
+    "directions": list[str | list[str]],
+}
 
 
-class OtherVisePart(VisePart):
-    """The keys of a toolkit with two jaws that is not the usual one."""
-
-    kind: str
-
-
-class PlatePart(Part):
-    """The keys of a plate."""
-
-    kind: str
-    pitch: Pair
-    columns: int | None = None
-    rows: int | None = None
-    peg_radius: float
-    clamp_radius: float | None = None
-    travel: Pair | None = None
-    directions: list[str | list[str]] | None = None
-    clamps: int = 1
-    flat: FlatPart | None = None
+def key_of(row: ToolkitField) -> tuple[Any, Any]:
+    """Type and default of a field in a result file."""
+    return optional(TYPES[row.form], row)
 
 
-class FencePart(PlatePart):
-    """The keys of a fence."""
+# The usual vise stands in a file without its kind.
+PARTS = forms_by_noun(Part, "{}Part", key_of, summary="{}'s keys.")
+NAMED = forms_by_noun(Part, "Named{}Part", key_of, lambda kinds: (str, ...), "{}'s keys, with its kind.")
+if TYPE_CHECKING:
+    from typing import TypeAlias
 
-    wall_offset: float
-
-
-# What tells the parts of a toolkit apart; they are no keys of a file.
-TAGS = ("<vise>", "<plate>", "<fence>")
-
-
-def tag_of(value: Any) -> str:
-    """Which part a toolkit's keys are."""
-    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return TAGS[(Plate.kind, Fence.kind).index(kind) + 1 if kind in (Plate.kind, Fence.kind) else 0]
-
-
-ToolkitPart = Annotated[
-    Annotated[OtherVisePart, Tag(TAGS[0])] | Annotated[PlatePart, Tag(TAGS[1])] | Annotated[FencePart, Tag(TAGS[2])],
-    Discriminator(tag_of),
-]
+    VisePart: TypeAlias = Any
+    ToolkitPart: TypeAlias = Any
+else:
+    VisePart, ToolkitPart = PARTS[table_of(USUAL).noun], one_of(NAMED)
 
 
 class RestrictionsPart(Part):

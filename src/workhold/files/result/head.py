@@ -10,7 +10,8 @@ from attrs import evolve
 from pydantic import ValidationError
 
 from workhold.errors import InputError
-from workhold.files.result.forms import TAGS, Head, ProofPart
+from workhold.files.result.forms import Head, ProofPart
+from workhold.files.toolkit.shapes import TAGS
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result

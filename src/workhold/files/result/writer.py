@@ -22,10 +22,10 @@ from attrs import asdict
 from workhold.files.atomic import text_file
 from workhold.files.result.pairs import flats_told, pair_lines
 from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, rounded_degrees
+from workhold.fixels.fields import USUAL
 from workhold.model.flat import Flat
 from workhold.model.force_ratio import working_forces
 from workhold.model.holes import Holes
-from workhold.model.kinds import USUAL
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES, Figure

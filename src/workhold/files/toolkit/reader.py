@@ -18,8 +18,9 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
+from workhold.fixels.fields import OPTIONS, USUAL, Form
 from workhold.model.dowel import Fit, Limits, peg_error, refuse_limits
-from workhold.model.kinds import USUAL, kind_of, toolkit_of
+from workhold.model.kinds import kind_of, toolkit_of
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import Unit, unit_named
@@ -28,9 +29,6 @@ __all__ = ["LoadedToolkit", "described_toolkit", "read_toolkit_file"]
 
 # Bytes; a toolkit takes a few hundred.
 LARGEST_FILE = 1_000_000
-LENGTHS = ("peg_radius", "min_gap", "max_opening", "row_offset", "body_radius", "clamp_radius", "wall_offset")
-# Entries that are handed on as they are.
-PLAIN = ("columns", "rows", "clamps", "directions")
 # Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
 ASSUMED_POSITION = Tolerance().peg
 
@@ -95,20 +93,9 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
     unit = unit_named(entries["unit"])
     if unit.name not in ("mm", "inch"):
         raise InputError('the unit of a toolkit is "mm" or "inch".')
-    pitch = entries["pitch"]
-    pair = (pitch[0], pitch[1]) if isinstance(pitch, list) else (pitch, pitch)
     kind, said = kind_of(entries.get("kind", USUAL))
-    fields: dict[str, Any] = {**said, "pitch": (unit.length(pair[0]), unit.length(pair[1]))}
-    fields |= {key: entries[key] for key in PLAIN if key in entries}
-    fields |= {key: unit.length(entries[key]) for key in LENGTHS if key in entries}
-    if "travel" in entries:
-        least, most = entries["travel"]
-        fields["travel"] = (unit.length(least), unit.length(most))
-    if "blocked" in entries:
-        fields["blocked"] = tuple(entries["blocked"])
-    if "flat" in entries:
-        flat = entries["flat"]
-        fields["flat"] = tuple(unit.length(number) for number in (flat if isinstance(flat, list) else [flat]))
+    given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
+    fields: dict[str, Any] = {**said, **given}
     toolkit_of(kind, fields)
     fit = fit_of(entries, unit, fields["peg_radius"])
     return LoadedToolkit(
@@ -122,6 +109,18 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         fit=fit,
         assumed=tuple(entries.get("assumed", ())),
     )
+
+
+def in_mm(form: Form, value: Any, unit: Unit) -> Any:
+    """Convert what an entry gives for a field to the constructor's argument, with lengths in mm."""
+    if form in ("count", "directions"):
+        return value
+    if form == "holes":
+        return tuple(value)
+    lengths = tuple(map(unit.length, value if isinstance(value, list) else [value]))
+    if form == "length":
+        return lengths[0]
+    return 2 * lengths if form == "pitch" and len(lengths) == 1 else lengths
 
 
 def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:

@@ -1,0 +1,370 @@
+"""The fields of every kind of toolkit, one row each, from which files, requests, options and the page are made.
+
+A field that is new, or means something else for a new kind, is a row here and an argument of the kind's constructor.
+
+Glossary
+--------
+table : the rows of one kind of toolkit, in the order in which the page shows them.
+noun : of a table, what its files and requests call a toolkit; kinds that differ in no field share a table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations_with_replacement
+from typing import Any, Literal
+
+from attrs import evolve, field, frozen
+
+from workhold.fixels.directions import DIRECTIONS, TOWARDS
+
+__all__ = ["OPTIONS", "TABLES", "USUAL", "Choice", "Form", "Label", "Table", "ToolkitField", "owner_of", "table_of"]
+
+# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance
+# with or without half its width; names of holes; directions or pairs of them.
+Form = Literal["count", "length", "pitch", "span", "flat", "holes", "directions"]
+# The default of a field that must be given.
+REQUIRED = object()
+
+
+@frozen
+class Choice:
+    """One of several values of a field, and what the page calls it."""
+
+    value: Any
+    words: str
+
+
+@frozen
+class Label:
+    """What the page shows of a field.
+
+    Parameters
+    ----------
+    label : what the page calls it.
+    hint : what stands in it while it is empty, which it may be then; None where it must be filled in.
+    is_usual : whether it is seen without being asked for.
+    several : whether more than one of the choices may be taken.
+    choices : the values to choose among; none where a value is typed.
+    when : values of other fields with which the page shows it.
+    """
+
+    label: str
+    hint: str | None = None
+    is_usual: bool = False
+    several: bool = False
+    choices: tuple[Choice, ...] = ()
+    when: Mapping[str, Any] = {}
+
+
+@frozen
+class ToolkitField:
+    """A field of a toolkit.
+
+    Parameters
+    ----------
+    name : the key in files and requests, and the constructor's argument.
+    form : what its values look like; see ``Form``.
+    metavar, help : of the command line's option.
+    labels : what the page shows of it, more than once where that depends on another field.
+    default : in requests and in result files; ``REQUIRED`` where it must be given.
+    entry : what to write in a toolkit's file; empty where the form says enough.
+    missing : what is not given where it must be, in a sentence.
+    belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
+    least : what a length must be: "above 0", "0" or "any".
+    most : the largest count that a server takes; None for no limit of its own.
+    section : of the command's help.
+    option : its name there, where that is not the field's own.
+    """
+
+    name: str
+    form: Form
+    metavar: str
+    help: str
+    labels: tuple[Label, ...]
+    default: Any = field(default=None, kw_only=True)
+    entry: str = field(default="", kw_only=True)
+    missing: str = field(default="", kw_only=True)
+    belongs_to: str = field(default="", kw_only=True)
+    least: Literal["above 0", "0", "any"] = field(default="above 0", kw_only=True)
+    most: int | None = field(default=None, kw_only=True)
+    section: str = field(default="The toolkit", kw_only=True)
+    option: str = field(kw_only=True)
+
+    @option.default
+    def _option(self) -> str:
+        return f"--{self.name.replace('_', '-')}"
+
+    @property
+    def is_required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is REQUIRED
+
+    def shown(self, *labels: Label, required: bool = False) -> ToolkitField:
+        """The field of another kind of toolkit, with other labels on the page and not required unless asked."""
+        return evolve(self, labels=labels, default=REQUIRED if required else None)
+
+
+@frozen
+class Table:
+    """The fields of toolkits that share them all.
+
+    Parameters
+    ----------
+    noun : see the glossary of the module.
+    summary : what the fields describe, for a schema.
+    fields : in the order of the page.
+    """
+
+    noun: str
+    summary: str
+    fields: tuple[ToolkitField, ...]
+
+
+def pair_words(one: str, other: str) -> str:
+    """What a pair of directions is called.
+
+    >>> pair_words("-x", "-y"), pair_words("-x", "-x"), pair_words("-x", "+x")
+    ('to the left and downward', 'both to the left', 'against each other, to the left and right')
+    """
+    if one == other:
+        return f"both {TOWARDS[one]}"
+    against = "against each other, " if one[1] == other[1] else ""
+    return f"{against}{TOWARDS[one]} and {TOWARDS[other].removeprefix('to the ') if against else TOWARDS[other]}"
+
+
+ONE_CLAMP, TWO_CLAMPS = {"clamps": 1}, {"clamps": 2}
+WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
+# Half a turn of a plate makes the other pairs of these; a fence turns with the plate, so that there all pairs differ.
+DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
+PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
+ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_replacement(DIRECTIONS, 2))
+CLAMPS_SECTION = "The clamps of a plate or fence"
+
+PITCH = ToolkitField(
+    "pitch",
+    "pitch",
+    "X[,Y]",
+    "Distance between neighbouring holes, one for both directions or X,Y.",
+    (Label("Pitch", is_usual=True),),
+    default=REQUIRED,
+    entry="write the distance between holes as one number, or [x, y]",
+    missing="distance between holes",
+)
+COLUMNS = ToolkitField(
+    "columns",
+    "count",
+    "N",
+    "Columns of holes on each jaw, or on the plate: as many as needed if not given.",
+    (Label("Columns a jaw", is_usual=True),),
+    default=REQUIRED,
+    entry="write how many columns of holes each jaw has, such as columns = 2",
+    missing="columns",
+    most=200,
+)
+PEG_RADIUS = ToolkitField(
+    "peg_radius",
+    "length",
+    "LENGTH",
+    "Radius of the pegs where they touch the part.",
+    (Label("Peg radius", is_usual=True),),
+    default=REQUIRED,
+    entry="write the radius of the pegs as a number",
+    missing="pegs' radius",
+    least="0",
+)
+BODY_RADIUS = ToolkitField(
+    "body_radius",
+    "length",
+    "LENGTH",
+    "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
+    (Label("Shoulder radius", "peg radius"),),
+    least="0",
+    belongs_to="jaws",
+)
+FLAT = ToolkitField(
+    "flat",
+    "flat",
+    "DISTANCE[,WIDTH/2]",
+    "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its width.",
+    (Label("Centre to flat", "round, no flat"),),
+    entry="write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
+    least="0",
+)
+ROWS = ToolkitField(
+    "rows",
+    "count",
+    "N",
+    "Rows of holes; as many as needed if not given.",
+    (Label("Rows a jaw", "as needed"),),
+    most=100_000,
+)
+BLOCKED = ToolkitField(
+    "blocked",
+    "holes",
+    "HOLES",
+    "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated.",
+    (Label("Blocked holes", "L-B3, R-A"),),
+    default=(),
+    entry='write a list of holes and columns by name, such as ["L-B3", "R-A"]',
+    belongs_to="jaws",
+)
+MIN_GAP = ToolkitField(
+    "min_gap",
+    "length",
+    "LENGTH",
+    "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
+    (Label("Smallest gap", "pitch x"),),
+    least="0",
+    belongs_to="jaws",
+)
+MAX_OPENING = ToolkitField(
+    "max_opening",
+    "length",
+    "LENGTH",
+    "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
+    (Label("Largest opening", "no limit"),),
+    belongs_to="jaws",
+)
+ROW_OFFSET = ToolkitField(
+    "row_offset",
+    "length",
+    "LENGTH",
+    "Height of the right jaw's rows above the left jaw's.",
+    (Label("Row offset", "0"),),
+    default=0.0,
+    least="any",
+    belongs_to="jaws",
+)
+CLAMPS = ToolkitField(
+    "clamps",
+    "count",
+    "1|2",
+    "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
+    (Label("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
+    default=1,
+    entry="write 1 or 2",
+    belongs_to="clamp beside its jaws",
+    most=2,
+    section=CLAMPS_SECTION,
+)
+CLAMP_RADIUS = ToolkitField(
+    "clamp_radius",
+    "length",
+    "LENGTH",
+    "Radius of the clamp's round tip; the peg radius if not given.",
+    (Label("Clamp tip radius", "as a locator"),),
+    least="0",
+    belongs_to="clamp beside its jaws",
+    section=CLAMPS_SECTION,
+)
+TRAVEL = ToolkitField(
+    "travel",
+    "span",
+    "LEAST,MOST",
+    "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its body, if not "
+    "given.",
+    (Label("Stroke", "any"),),
+    entry="write the least and the most from the clamp's hole to its tip, such as [10, 35]",
+    least="0",
+    belongs_to="clamp beside its jaws",
+    section=CLAMPS_SECTION,
+)
+DIRECTION = ToolkitField(
+    "directions",
+    "directions",
+    "LIST",
+    "In which the clamp may push: among -x, +x, -y, +y, such as --direction=-x,-y; all that a turn of the "
+    "plate does not make of another one, if not given. Of two clamps pairs, such as --direction=-x:-y,-x:+y, or single "
+    "ones for all pairs of them.",
+    (
+        Label("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
+        Label("The clamps push", "across each other", several=True, choices=PAIRS, when=TWO_CLAMPS),
+    ),
+    entry='write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
+    belongs_to="clamp beside its jaws",
+    section=CLAMPS_SECTION,
+    option="--direction",
+)
+WALL_OFFSET = ToolkitField(
+    "wall_offset",
+    "length",
+    "LENGTH",
+    "Of a fence: distance from its wall to the first row of holes' centres; must be given.",
+    (Label("Fence to row 1", is_usual=True),),
+    default=REQUIRED,
+    entry="write the distance from the fence to the first row of holes",
+    missing="distance from the first row of holes",
+    belongs_to="wall",
+    section=CLAMPS_SECTION,
+)
+
+# All fields, in the order of the command's help; a kind may show some of them in another way.
+OPTIONS = (
+    PITCH,
+    COLUMNS,
+    PEG_RADIUS,
+    BODY_RADIUS,
+    FLAT,
+    ROWS,
+    BLOCKED,
+    MIN_GAP,
+    MAX_OPENING,
+    ROW_OFFSET,
+    CLAMPS,
+    CLAMP_RADIUS,
+    TRAVEL,
+    DIRECTION,
+    WALL_OFFSET,
+)
+ON_A_PLATE = (
+    PITCH,
+    COLUMNS.shown(Label("Columns", "as needed", is_usual=True)),
+    ROWS.shown(Label("Rows", "as needed", is_usual=True)),
+    PEG_RADIUS.shown(Label("Locator radius", is_usual=True), required=True),
+)
+OF_A_VISE = Table(
+    "vise",
+    "A vise",
+    (PITCH, COLUMNS, PEG_RADIUS, ROWS, ROW_OFFSET, MIN_GAP, MAX_OPENING, BODY_RADIUS, BLOCKED, FLAT),
+)
+OF_A_PLATE = Table(
+    "plate",
+    "A plate with locators and a clamp",
+    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT),
+)
+OF_A_FENCE = Table(
+    "fence",
+    "A fence with a locator and a clamp",
+    (
+        *ON_A_PLATE,
+        WALL_OFFSET,
+        CLAMP_RADIUS,
+        TRAVEL,
+        CLAMPS,
+        DIRECTION.shown(
+            Label("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
+            Label("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
+        ),
+        FLAT,
+    ),
+)
+# By kind.
+TABLES: Mapping[str, Table] = {
+    "vise": OF_A_VISE,
+    "opening-vise": OF_A_VISE,
+    "translating-clamp": OF_A_PLATE,
+    "edge": OF_A_FENCE,
+}
+# The kind that is meant where nobody says.
+USUAL = "vise"
+
+
+def table_of(kind: object) -> Table:
+    """The table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
+    return TABLES.get(str(kind), TABLES[USUAL])
+
+
+def owner_of(row: ToolkitField) -> Table:
+    """The first table that has a field of this name."""
+    return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
