@@ -70,10 +70,8 @@ def toolkits_to_try(
         For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
     """
     from workhold.files.toolkit.presets import load_toolkit, preset_names
-    from workhold.fixels.fields import USUAL
-    from workhold.model.fence import Fence
+    from workhold.fixels.fields import USUAL, table_of
     from workhold.model.kinds import ALIASES, KINDS, kind_of
-    from workhold.model.plate import Plate
 
     is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
     kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
@@ -89,9 +87,9 @@ def toolkits_to_try(
         radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
         lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
     if names is None and pitch is not None:
-        if peg_radius is None or (
-            columns is None and not issubclass(KINDS[kind or USUAL], Plate) and "columns" not in said
-        ):
+        listed = {"columns": columns, "peg_radius": peg_radius}
+        needed = {row.name for row in table_of(kind or USUAL).fields if row.is_required}
+        if any(name in needed and name not in said and text is None for name, text in listed.items()):
             raise InputError("a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise.")
         bases = [Named("", kind or USUAL, dict(said))]
     else:
@@ -100,8 +98,7 @@ def toolkits_to_try(
         bases = [
             Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
             for one in map(load_toolkit, asked)
-            if kind is None
-            or all(issubclass(KINDS[kind], sort) == issubclass(KINDS[one.kind], sort) for sort in (Plate, Fence))
+            if kind is None or table_of(kind) is table_of(one.kind)
         ]
     toolkits = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
     if len(toolkits) > MOST_TOOLKITS:

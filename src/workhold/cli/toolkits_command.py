@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,7 @@ from workhold.cli.values import length_unit
 if TYPE_CHECKING:
     from workhold.cli.tables import Table
     from workhold.files.toolkit.reader import LoadedToolkit
+    from workhold.fixels.fields import Form
     from workhold.model.dowel import Limits
     from workhold.model.units import Unit
 
@@ -79,11 +80,10 @@ def toolkits_table(unit: Unit) -> Table:
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     """Every figure of a toolkit, one line each."""
     from workhold.cli.tables import Table
-    from workhold.model.vise import Vise
 
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
-    each = f"on each {first.noun}" if isinstance(toolkit, Vise) else f"on the {first.noun}"
+    each = f"on {'the' if toolkit.moving.on is not None else 'each'} {first.noun}"
     table = Table(("figure", "value"))
     table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
     for words, count in (("columns", first.columns), ("rows", first.rows)):
@@ -105,39 +105,28 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 
 def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
-    """What only a toolkit of its kind has, and its value in words."""
-    from workhold.model.fence import Fence
-    from workhold.model.plate import Plate
-    from workhold.model.vise import Vise
+    """Yield what only a toolkit of its kind has, and its value in words."""
+    from workhold.fixels.fields import table_of
 
-    toolkit, of = loaded.toolkit, unit.abbreviation
-    assumed = dict.fromkeys(loaded.assumed, " (assumed: no source says)")
-    if isinstance(toolkit, Fence):
-        offset = f"{unit.figure(toolkit.wall_offset, unit.decimals + 1)} {of}"
-        yield "from the fence to the first row of holes", offset + assumed.get("wall_offset", "")
-    if isinstance(toolkit, Plate):
-        tip = f"{unit.figure(toolkit.clamp_radius, unit.decimals + 1)} {of}"
-        yield "radius of the clamp's tip", tip + assumed.get("clamp_radius", "")
-        reach = "any" if toolkit.travel is None else " to ".join(unit.figure(length) for length in toolkit.travel)
-        yield (
-            "from the clamp's hole to its tip",
-            f"{reach} {of if toolkit.travel else ''}".strip() + assumed.get("travel", ""),
-        )
-        if toolkit.clamps == 2:
-            yield "clamps, needed together", "2"
-            yield "the clamps push along", " or ".join(" and ".join(pair) for pair in toolkit.directions)
-        else:
-            yield "the clamp pushes along", " or ".join(toolkit.directions)
-    if isinstance(toolkit, Vise):
-        yield "smallest gap between left and right pegs", f"{unit.figure(toolkit.min_gap)} {of}"
-        most = toolkit.max_opening
-        yield "largest opening", "no limit" if most is None else f"{unit.figure(most)} {of}"
-        if toolkit.row_offset:
-            yield "right rows above left rows", f"{unit.figure(toolkit.row_offset)} {of}"
-        if toolkit.body_radius != toolkit.peg_radius:
-            yield "radius of the pegs' bodies", f"{unit.figure(toolkit.body_radius)} {of}"
-        if toolkit.blocked:
-            yield "blocked", " ".join(holes.name for holes in toolkit.blocked)
+    toolkit = loaded.toolkit
+    for row in table_of(loaded.kind).fields:
+        value = getattr(toolkit, row.name)
+        is_usual = value == (getattr(toolkit, row.follows) if row.follows else row.default)
+        if row.figure and (row.unset or not is_usual):
+            assumed = " (assumed: no source says)" if row.name in loaded.assumed else ""
+            yield row.figure, (row.unset if value is None else words_of_value(row.form, value, unit)) + assumed
+
+
+def words_of_value(form: Form, value: Any, unit: Unit) -> str:
+    """The value of a field of some form, as it stands among the figures of a toolkit."""
+    if form == "count":
+        return str(value)
+    if form == "holes":
+        return " ".join(holes.name for holes in value)
+    if form == "directions":
+        return " or ".join(one if isinstance(one, str) else " and ".join(one) for one in value)
+    lengths = value if isinstance(value, tuple) else (value,)
+    return f"{' to '.join(unit.figure(one, unit.decimals + 1) for one in lengths)} {unit.abbreviation}"
 
 
 def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:

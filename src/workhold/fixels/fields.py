@@ -73,6 +73,9 @@ class ToolkitField:
     belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
     least : what a length must be: "above 0", "0" or "any".
     most : the largest count that a server takes; None for no limit of its own.
+    figure : what it is called among the figures of a toolkit; empty where these tell it in another way.
+    unset : what stands there for a value of None; where it is empty, a default is no figure.
+    follows : the field whose value is the default of this one, with which it is no figure.
     section : of the command's help.
     option : its name there, where that is not the field's own.
     """
@@ -88,6 +91,9 @@ class ToolkitField:
     belongs_to: str = field(default="", kw_only=True)
     least: Literal["above 0", "0", "any"] = field(default="above 0", kw_only=True)
     most: int | None = field(default=None, kw_only=True)
+    figure: str = field(default="", kw_only=True)
+    unset: str = field(default="", kw_only=True)
+    follows: str = field(default="", kw_only=True)
     section: str = field(default="The toolkit", kw_only=True)
     option: str = field(kw_only=True)
 
@@ -179,6 +185,8 @@ BODY_RADIUS = ToolkitField(
     "LENGTH",
     "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
     (Label("Shoulder radius", "peg radius"),),
+    figure="radius of the pegs' bodies",
+    follows="peg_radius",
     least="0",
     belongs_to="jaws",
 )
@@ -206,6 +214,7 @@ BLOCKED = ToolkitField(
     "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated.",
     (Label("Blocked holes", "L-B3, R-A"),),
     default=(),
+    figure="blocked",
     entry='write a list of holes and columns by name, such as ["L-B3", "R-A"]',
     belongs_to="jaws",
 )
@@ -215,6 +224,7 @@ MIN_GAP = ToolkitField(
     "LENGTH",
     "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
     (Label("Smallest gap", "pitch x"),),
+    figure="smallest gap between left and right pegs",
     least="0",
     belongs_to="jaws",
 )
@@ -224,6 +234,8 @@ MAX_OPENING = ToolkitField(
     "LENGTH",
     "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
     (Label("Largest opening", "no limit"),),
+    figure="largest opening",
+    unset="no limit",
     belongs_to="jaws",
 )
 ROW_OFFSET = ToolkitField(
@@ -232,6 +244,7 @@ ROW_OFFSET = ToolkitField(
     "LENGTH",
     "Height of the right jaw's rows above the left jaw's.",
     (Label("Row offset", "0"),),
+    figure="right rows above left rows",
     default=0.0,
     least="any",
     belongs_to="jaws",
@@ -243,6 +256,7 @@ CLAMPS = ToolkitField(
     "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
     (Label("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
     default=1,
+    figure="clamps, needed together",
     entry="write 1 or 2",
     belongs_to="clamp beside its jaws",
     most=2,
@@ -254,6 +268,7 @@ CLAMP_RADIUS = ToolkitField(
     "LENGTH",
     "Radius of the clamp's round tip; the peg radius if not given.",
     (Label("Clamp tip radius", "as a locator"),),
+    figure="radius of the clamp's tip",
     least="0",
     belongs_to="clamp beside its jaws",
     section=CLAMPS_SECTION,
@@ -265,6 +280,8 @@ TRAVEL = ToolkitField(
     "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its body, if not "
     "given.",
     (Label("Stroke", "any"),),
+    figure="from the clamp's hole to its tip",
+    unset="any",
     entry="write the least and the most from the clamp's hole to its tip, such as [10, 35]",
     least="0",
     belongs_to="clamp beside its jaws",
@@ -281,6 +298,7 @@ DIRECTION = ToolkitField(
         Label("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
         Label("The clamps push", "across each other", several=True, choices=PAIRS, when=TWO_CLAMPS),
     ),
+    figure="the part is pushed along",
     entry='write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
     belongs_to="clamp beside its jaws",
     section=CLAMPS_SECTION,
@@ -292,6 +310,7 @@ WALL_OFFSET = ToolkitField(
     "LENGTH",
     "Of a fence: distance from its wall to the first row of holes' centres; must be given.",
     (Label("Fence to row 1", is_usual=True),),
+    figure="from the fence to the first row of holes",
     default=REQUIRED,
     entry="write the distance from the fence to the first row of holes",
     missing="distance from the first row of holes",

@@ -14,7 +14,6 @@ from pathlib import Path
 
 from workhold.errors import InputError
 from workhold.files.toolkit.reader import LoadedToolkit, described_toolkit, read_toolkit_file
-from workhold.model.vise import Vise
 
 __all__ = ["LoadedToolkit", "is_sold", "load_toolkit", "preset", "preset_names"]
 
@@ -33,7 +32,7 @@ def preset_names() -> tuple[str, ...]:
     found = [entry.name for entry in (files("workhold") / "data" / "toolkits").iterdir() if entry.name.endswith(ENDING)]
     presets = [preset(name.removesuffix(ENDING)) for name in found]
     presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
-    presets.sort(key=lambda one: (not is_sold(one.name), isinstance(one.toolkit, Vise)))
+    presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.on is None))
     return tuple(one.name for one in presets)
 
 

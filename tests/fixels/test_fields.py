@@ -1,0 +1,120 @@
+"""The table of fields says what the constructors take, and each form of a toolkit that is made from it gives the same one."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from attrs import NOTHING, fields, fields_dict
+
+from workhold.cli.toolkit_options import ToolkitWords
+from workhold.errors import InputError
+from workhold.files.toolkit.form import checked
+from workhold.files.toolkit.reader import described_toolkit
+from workhold.fixels.fields import OPTIONS, TABLES, USUAL, owner_of, table_of
+from workhold.model.kinds import KINDS, toolkit_of
+from workhold.model.units import MILLIMETRE, unit_named
+from workhold.web.forms import FORMS
+
+# A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
+VALUES: dict[str, tuple[Any, Any]] = {
+    "pitch": ((16.0, 18.0), "16,18"),
+    "columns": (3, "3"),
+    "peg_radius": (2.5, "2.5"),
+    "body_radius": (3.5, "3.5"),
+    "flat": ((2.25, 1.0), "2.25,1"),
+    "rows": (7, "7"),
+    "blocked": (["L-B3", "R-A"], ["L-B3", "R-A"]),
+    "min_gap": (13.0, "13"),
+    "max_opening": (61.0, "61"),
+    "row_offset": (-4.5, "-4.5"),
+    "clamps": (2, "2"),
+    "clamp_radius": (5.5, "5.5"),
+    "travel": ((11.0, 41.0), "11,41"),
+    "directions": ([("-x", "-y")], "-x:-y"),
+    "wall_offset": (9.5, "9.5"),
+}
+
+
+def given(kind: str) -> dict[str, Any]:
+    """A value for each field of a kind."""
+    return {row.name: VALUES[row.name][0] for row in table_of(kind).fields}
+
+
+def test_every_kind_has_a_table_of_its_constructors_fields() -> None:
+    """Names, and which must be given; what may be left out is what the constructor takes for nothing given."""
+    assert TABLES.keys() == KINDS.keys() and USUAL in KINDS
+    for kind, table in TABLES.items():
+        taken = fields_dict(KINDS[kind])  # type: ignore[arg-type]
+        rows = {row.name: row for row in table.fields}
+        assert rows.keys() == taken.keys()
+        assert {name for name, row in rows.items() if row.is_required} == {
+            name for name, one in taken.items() if one.default is NOTHING
+        }
+        needed = {name: VALUES[name][0] for name, row in rows.items() if row.is_required}
+        defaults = {name: row.default for name, row in rows.items() if not row.is_required}
+        assert toolkit_of(kind, needed | defaults) == toolkit_of(kind, needed)
+        assert all(row.missing for row in table.fields if row.is_required)
+
+
+def test_every_field_is_an_option_and_belongs_to_a_part_unless_all_have_it() -> None:
+    """An option for each, and a word for what other kinds lack."""
+    every = {row.name for table in TABLES.values() for row in table.fields}
+    assert [row.name for row in OPTIONS] == list(dict.fromkeys(row.name for row in OPTIONS))
+    assert {row.name for row in OPTIONS} == every == VALUES.keys()
+    for row in OPTIONS:
+        lacking = [table for table in TABLES.values() if row.name not in {one.name for one in table.fields}]
+        assert bool(lacking) == bool(row.belongs_to), row.name
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
+    """Of a TOML file, in two units; of a result file; of a request; and of the command's options."""
+    toolkit = toolkit_of(kind, given(kind))
+    entries = json.loads(json.dumps(given(kind)))
+    assert described_toolkit("x", checked({"unit": "mm", "kind": kind, **entries})).toolkit == toolkit
+    inch = unit_named("inch").length(1.0)
+    halved = {
+        row.name: [one / inch for one in value] if isinstance(value, list) else value / inch
+        for row in table_of(kind).fields
+        if row.form in ("length", "pitch", "span", "flat")
+        for value in [entries[row.name]]
+    }
+    again = described_toolkit("x", checked({"unit": "inch", "kind": kind, **entries, **halved})).toolkit
+    for row in table_of(kind).fields:
+        one, other = getattr(again, row.name), getattr(toolkit, row.name)
+        if row.form in ("length", "pitch", "span"):
+            assert one == pytest.approx(other, abs=1e-12)
+    assert FORMS[table_of(kind).noun].model_validate({"kind": kind, **entries}).toolkit() == toolkit
+    typed = {one.name: None for one in fields(ToolkitWords)}
+    typed |= {row.name: VALUES[row.name][1] for row in table_of(kind).fields}
+    assert ToolkitWords(**typed | {"toolkit": kind}).asked(MILLIMETRE)[0] == toolkit
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_option_of_another_kind_is_refused_by_its_name(kind: str) -> None:
+    """With the kind that has it."""
+    for row in OPTIONS:
+        if row.name in given(kind):
+            continue
+        typed = {one.name: None for one in fields(ToolkitWords)}
+        typed |= {one.name: VALUES[one.name][1] for one in table_of(kind).fields}
+        with pytest.raises(InputError, match=f"{row.option} is of {owner_of(row).noun}s: a .* has no {row.belongs_to}"):
+            ToolkitWords(**typed | {"toolkit": kind, row.name: VALUES[row.name][1]}).asked(MILLIMETRE)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_must_be_given_is_asked_for_in_each_form(kind: str) -> None:
+    """A sentence that names the entry or the option."""
+    for row in table_of(kind).fields:
+        if not row.is_required:
+            continue
+        entries = json.loads(json.dumps(given(kind)))
+        del entries[row.name]
+        with pytest.raises(InputError, match=f"{row.name} is missing: write"):
+            checked({"unit": "mm", "kind": kind, **entries})
+        typed = {one.name: None for one in fields(ToolkitWords)}
+        typed |= {one.name: VALUES[one.name][1] for one in table_of(kind).fields if one is not row}
+        with pytest.raises(InputError, match=f"{row.missing} is not given: add {row.option},"):
+            ToolkitWords(**typed | {"toolkit": kind}).asked(MILLIMETRE)
