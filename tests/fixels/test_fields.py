@@ -1,4 +1,4 @@
-"""The table of fields says what the constructors take, and each form of a toolkit that is made from it gives the same one."""
+"""The table of fields says what constructors take, and each form of a toolkit that is made from it gives the same one."""
 
 from __future__ import annotations
 

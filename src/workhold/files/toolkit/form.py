@@ -86,7 +86,10 @@ def in_words(error: ValidationError, form: type[ToolkitForm], noun: str) -> str:
     name, kind = str(first["loc"][0]), first["type"]
     if kind == "extra_forbidden":
         known = get_close_matches(name, form.model_fields, n=1)
-        meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(form.model_fields)}."
+        # The fields of the toolkit stand right after what it is.
+        first_ones = ["unit", "kind", *(field for field in form.model_fields if field not in ToolkitForm.model_fields)]
+        entries = dict.fromkeys([*first_ones, *form.model_fields])
+        meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(entries)}."
         return f'"{name[:40]}" is no entry of a {noun}: {meant}'
     if kind == "missing":
         return f"{name} is missing: {WANTED[name]}."
