@@ -8,14 +8,18 @@ from typing import Any
 import pytest
 from attrs import NOTHING, fields, fields_dict
 
+from workhold.cli.many_toolkits import toolkits_to_try
 from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.toolkits_command import own_figures
 from workhold.errors import InputError
 from workhold.files.toolkit.form import checked
+from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.files.toolkit.reader import described_toolkit
 from workhold.fixels.fields import OPTIONS, TABLES, USUAL, owner_of, table_of
 from workhold.model.kinds import KINDS, toolkit_of
 from workhold.model.units import MILLIMETRE, unit_named
 from workhold.web.forms import FORMS
+from workhold.web.toolkits import page_fields
 
 # A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
 VALUES: dict[str, tuple[Any, Any]] = {
@@ -118,3 +122,51 @@ def test_what_must_be_given_is_asked_for_in_each_form(kind: str) -> None:
         typed |= {one.name: VALUES[one.name][1] for one in table_of(kind).fields if one is not row}
         with pytest.raises(InputError, match=f"{row.missing} is not given: add {row.option},"):
             ToolkitWords(**typed | {"toolkit": kind}).asked(MILLIMETRE)
+
+
+def test_a_span_is_two_lengths() -> None:
+    """Less or more is refused with the option's name."""
+    typed = {one.name: None for one in fields(ToolkitWords)}
+    for text in ("10", "10,20,30"):
+        with pytest.raises(InputError, match=f"--travel '{text}' is not two lengths"):
+            ToolkitWords(**typed | {"travel": text}).fields(MILLIMETRE)
+
+
+def test_an_option_that_is_not_given_changes_nothing() -> None:
+    """Neither None nor a list of no holes, as the command hands it on."""
+    typed = {one.name: None for one in fields(ToolkitWords)}
+    assert ToolkitWords(**typed | {"blocked": []}).fields(MILLIMETRE) == {}
+
+
+def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:
+    """A flat is typed as the one length that a page asks for; what has choices is chosen."""
+    forms = {row.name: {one.form for one in page_fields(row)} for row in OPTIONS}
+    assert forms["flat"] == {"length"} and forms["clamps"] == {"one"} and forms["directions"] == {"several"}
+    assert set().union(*forms.values()) == {"length", "count", "pitch", "span", "holes", "several", "one"}
+
+
+def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given() -> None:
+    """A gripper's name says its columns, and a plate needs none; a vise without them is refused."""
+    for kind, said in (("gripper", 1), ("plate", None)):
+        (one,) = toolkits_to_try(None, kind, "10", None, "3", MILLIMETRE)
+        assert one.fields.get("columns") == said
+    with pytest.raises(InputError, match="a list of pitches alone"):
+        toolkits_to_try(None, "vise", "10", None, "3", MILLIMETRE)
+
+
+def test_a_kind_picks_the_presets_that_have_its_fields() -> None:
+    """A vise that opens is made of vises, and of no plate."""
+    picked = toolkits_to_try(None, "opening-vise", None, None, None, MILLIMETRE)
+    assert {one.name for one in picked} == {
+        name for name in preset_names() if table_of(load_toolkit(name).kind) is table_of("opening-vise")
+    }
+
+
+def test_figures_of_a_toolkit_are_those_that_are_not_usual() -> None:
+    """With a word where no source gives them, and one where there is no limit."""
+    entries = {"unit": "mm", "kind": "plate", "pitch": 20, "peg_radius": 3, "assumed": ["clamp_radius"]}
+    assert list(own_figures(described_toolkit("x", entries), MILLIMETRE)) == [
+        ("radius of the clamp's tip", "3 mm (assumed: no source says)"),
+        ("from the clamp's hole to its tip", "any"),
+        ("the part is pushed along", "-x"),
+    ]
