@@ -42,7 +42,7 @@ def typed_options() -> dict[str, Any]:
         "toolkit": TOOLKIT,
     }
     for row in OPTIONS:
-        out[row.name] = option(row.section, row.metavar, row.help, row.option)
+        out[row.name] = option(row.section, row.metavar, row.help.format(option=row.option), row.option)
         if row is MIN_GAP:
             out["min_opening"] = MIN_OPENING
     words: Any = str | None

@@ -65,7 +65,7 @@ class ToolkitField:
     ----------
     name : the key in files and requests, and the constructor's argument.
     form : what its values look like; see ``Form``.
-    metavar, help : of the command line's option.
+    metavar, help : of the command line's option, for which "{option}" stands in the help.
     labels : what the page shows of it, more than once where that depends on another field.
     default : in requests and in result files; ``REQUIRED`` where it must be given.
     entry : what to write in a toolkit's file; empty where the form says enough.
@@ -77,7 +77,7 @@ class ToolkitField:
     unset : what stands there for a value of None; where it is empty, a default is no figure.
     follows : the field whose value is the default of this one, with which it is no figure.
     section : of the command's help.
-    option : its name there, where that is not the field's own.
+    word : its name as an option, where that is not the field's own.
     """
 
     name: str
@@ -95,11 +95,12 @@ class ToolkitField:
     unset: str = field(default="", kw_only=True)
     follows: str = field(default="", kw_only=True)
     section: str = field(default="The toolkit", kw_only=True)
-    option: str = field(kw_only=True)
+    word: str = field(default="", kw_only=True)
 
-    @option.default
-    def _option(self) -> str:
-        return f"--{self.name.replace('_', '-')}"
+    @property
+    def option(self) -> str:
+        """The command line's option."""
+        return f"--{(self.word or self.name).replace('_', '-')}"
 
     @property
     def is_required(self) -> bool:
@@ -291,8 +292,8 @@ DIRECTION = ToolkitField(
     "directions",
     "directions",
     "LIST",
-    "In which the clamp may push: among -x, +x, -y, +y, such as --direction=-x,-y; all that a turn of the "
-    "plate does not make of another one, if not given. Of two clamps pairs, such as --direction=-x:-y,-x:+y, or single "
+    "In which the clamp may push: among -x, +x, -y, +y, such as {option}=-x,-y; all that a turn of the "
+    "plate does not make of another one, if not given. Of two clamps pairs, such as {option}=-x:-y,-x:+y, or single "
     "ones for all pairs of them.",
     (
         Label("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
@@ -302,7 +303,7 @@ DIRECTION = ToolkitField(
     entry='write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
     belongs_to="clamp beside its jaws",
     section=CLAMPS_SECTION,
-    option="--direction",
+    word="direction",
 )
 WALL_OFFSET = ToolkitField(
     "wall_offset",

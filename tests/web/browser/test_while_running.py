@@ -60,3 +60,23 @@ def test_a_force_waits_for_the_first_fixtures(walk: Walk) -> None:
     rank = link.inner_text().split(":")[0]
     link.click()
     walk.seen(f"#quality-heads:has-text('Fixture {rank}')")
+
+
+def test_a_search_that_the_server_has_not_taken_yet_can_be_cancelled(walk: Walk) -> None:
+    """It is said that it was, and what the server answers later is dropped."""
+    page = walk.page
+    walk.take()
+    page.evaluate("""() => {
+      const real = window.fetch;
+      window.fetch = async (address, options) => {
+        if (String(address).endsWith("/jobs")) await new Promise((go) => { window.answer = go; });
+        return real(address, options);
+      };
+    }""")
+    page.click("#search")
+    page.wait_for_function("() => Boolean(window.answer)", timeout=SEARCH_PATIENCE)
+    page.click("#cancel")
+    assert page.inner_text("#count") == "Search cancelled"
+    with page.expect_response(lambda response: response.request.method == "DELETE"):
+        page.evaluate("() => window.answer()")
+    assert page.inner_text("#count") == "Search cancelled"

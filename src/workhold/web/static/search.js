@@ -74,19 +74,20 @@ export async function cancel() {
   const job = state.job?.job;
   if (!searching()) return;
   live = false;
-  if (!job) {
-    leave();
-    return;
-  }
+  if (!job) return cancelled();
   const mine = token;
   try {
     await ask(`jobs/${encodeURIComponent(job)}/cancel`, { method: "POST" });
   } catch {
-    if (mine === token) {
-      leave();
-      change({ job: { job: null, state: "cancelled", fraction: 0, found: 0, revision: 0, notes: [] } });
-    }
+    if (mine === token) cancelled();
   }
+  return undefined;
+}
+
+/** Say that the search was stopped, where the server keeps nothing of it. */
+function cancelled() {
+  leave();
+  change({ job: { job: null, state: "cancelled", fraction: 0, found: 0, revision: 0, notes: [] } });
 }
 
 /** @param {string} job */
