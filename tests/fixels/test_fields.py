@@ -46,6 +46,16 @@ def given(kind: str) -> dict[str, Any]:
     return {row.name: VALUES[row.name][0] for row in table_of(kind).fields}
 
 
+def typed(**words: Any) -> ToolkitWords:
+    """What the command hands on where only these words were typed."""
+    return ToolkitWords(**{one.name: None for one in fields(ToolkitWords)} | words)
+
+
+def typed_of(kind: str) -> dict[str, Any]:
+    """The words for a kind with a value of each of its fields."""
+    return {"toolkit": kind} | {row.name: VALUES[row.name][1] for row in table_of(kind).fields}
+
+
 def test_every_kind_has_a_table_of_its_constructors_fields() -> None:
     """Names, and which must be given; what may be left out is what the constructor takes for nothing given."""
     assert TABLES.keys() == KINDS.keys() and USUAL in KINDS
@@ -91,9 +101,7 @@ def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
         if row.form in ("length", "pitch", "span"):
             assert one == pytest.approx(other, abs=1e-12)
     assert FORMS[table_of(kind).noun].model_validate({"kind": kind, **entries}).toolkit() == toolkit
-    typed = {one.name: None for one in fields(ToolkitWords)}
-    typed |= {row.name: VALUES[row.name][1] for row in table_of(kind).fields}
-    assert ToolkitWords(**typed | {"toolkit": kind}).asked(MILLIMETRE)[0] == toolkit
+    assert typed(**typed_of(kind)).asked(MILLIMETRE)[0] == toolkit
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -102,10 +110,8 @@ def test_an_option_of_another_kind_is_refused_by_its_name(kind: str) -> None:
     for row in OPTIONS:
         if row.name in given(kind):
             continue
-        typed = {one.name: None for one in fields(ToolkitWords)}
-        typed |= {one.name: VALUES[one.name][1] for one in table_of(kind).fields}
         with pytest.raises(InputError, match=f"{row.option} is of {owner_of(row).noun}s: a .* has no {row.belongs_to}"):
-            ToolkitWords(**typed | {"toolkit": kind, row.name: VALUES[row.name][1]}).asked(MILLIMETRE)
+            typed(**typed_of(kind) | {row.name: VALUES[row.name][1]}).asked(MILLIMETRE)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -118,24 +124,20 @@ def test_what_must_be_given_is_asked_for_in_each_form(kind: str) -> None:
         del entries[row.name]
         with pytest.raises(InputError, match=f"{row.name} is missing: write"):
             checked({"unit": "mm", "kind": kind, **entries})
-        typed = {one.name: None for one in fields(ToolkitWords)}
-        typed |= {one.name: VALUES[one.name][1] for one in table_of(kind).fields if one is not row}
         with pytest.raises(InputError, match=f"{row.missing} is not given: add {row.option},"):
-            ToolkitWords(**typed | {"toolkit": kind}).asked(MILLIMETRE)
+            typed(**typed_of(kind) | {row.name: None}).asked(MILLIMETRE)
 
 
 def test_a_span_is_two_lengths() -> None:
     """Less or more is refused with the option's name."""
-    typed = {one.name: None for one in fields(ToolkitWords)}
     for text in ("10", "10,20,30"):
         with pytest.raises(InputError, match=f"--travel '{text}' is not two lengths"):
-            ToolkitWords(**typed | {"travel": text}).fields(MILLIMETRE)
+            typed(travel=text).fields(MILLIMETRE)
 
 
 def test_an_option_that_is_not_given_changes_nothing() -> None:
     """Neither None nor a list of no holes, as the command hands it on."""
-    typed = {one.name: None for one in fields(ToolkitWords)}
-    assert ToolkitWords(**typed | {"blocked": []}).fields(MILLIMETRE) == {}
+    assert typed(blocked=[]).fields(MILLIMETRE) == {}
 
 
 def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:

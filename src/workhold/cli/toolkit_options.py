@@ -10,7 +10,7 @@ from attrs import evolve, field, frozen
 from workhold.cli.commands import option
 from workhold.cli.values import length, optional_length, pitches, whole_number
 from workhold.errors import InputError
-from workhold.fixels.fields import MIN_GAP, OPTIONS, owner_of, table_of
+from workhold.fixels.fields import MIN_GAP, OPTIONS, TOOLKIT_SECTION, owner_of, table_of
 from workhold.model.units import Unit
 
 if TYPE_CHECKING:
@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
 __all__ = ["TOOLKIT", "ToolkitWords"]
 
-HELD_IN = "The toolkit"
-
-
 TOOLKIT = option(
-    HELD_IN,
+    TOOLKIT_SECTION,
     "NAME|FILE",
     "vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. gripper: a vise of "
     "one column. plate: three locators on a plate of holes, and a clamp or two. fence: a straight wall that the part lies "
@@ -31,14 +28,14 @@ TOOLKIT = option(
     "--toolkit",
 )
 MIN_OPENING = option(
-    HELD_IN, "LENGTH", "Smallest distance from the left jaw's last column to the right jaw's first, if larger."
+    TOOLKIT_SECTION, "LENGTH", "Smallest distance from the left jaw's last column to the right jaw's first, if larger."
 )
 
 
 def typed_options() -> dict[str, Any]:
     """Attributes of :class:`ToolkitWords`, in the order of the help: one for each field of a toolkit, and a few more."""
     out = {
-        "vise": option(HELD_IN, "NAME|FILE", "The same as --toolkit; the options below change what it says."),
+        "vise": option(TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change what it says."),
         "toolkit": TOOLKIT,
     }
     for row in OPTIONS:

@@ -18,11 +18,25 @@ from attrs import evolve, field, frozen
 
 from workhold.fixels.directions import DIRECTIONS, TOWARDS
 
-__all__ = ["OPTIONS", "TABLES", "USUAL", "Choice", "Form", "Label", "Table", "ToolkitField", "owner_of", "table_of"]
+__all__ = [
+    "OPTIONS",
+    "TABLES",
+    "TOOLKIT_SECTION",
+    "USUAL",
+    "Choice",
+    "Form",
+    "Label",
+    "Table",
+    "ToolkitField",
+    "owner_of",
+    "table_of",
+]
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance
 # with or without half its width; names of holes; directions or pairs of them.
 Form = Literal["count", "length", "pitch", "span", "flat", "holes", "directions"]
+# Sections of the command's help.
+TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
 # The default of a field that must be given.
 REQUIRED = object()
 
@@ -94,7 +108,7 @@ class ToolkitField:
     figure: str = field(default="", kw_only=True)
     unset: str = field(default="", kw_only=True)
     follows: str = field(default="", kw_only=True)
-    section: str = field(default="The toolkit", kw_only=True)
+    section: str = field(default=TOOLKIT_SECTION, kw_only=True)
     word: str = field(default="", kw_only=True)
 
     @property
@@ -107,9 +121,9 @@ class ToolkitField:
         """Whether it must be given."""
         return self.default is REQUIRED
 
-    def shown(self, *labels: Label, required: bool = False) -> ToolkitField:
-        """The field of another kind of toolkit, with other labels on the page and not required unless asked."""
-        return evolve(self, labels=labels, default=REQUIRED if required else None)
+    def shown(self, *labels: Label, **changes: Any) -> ToolkitField:
+        """Return the field of another kind of toolkit, with other labels on the page and further changes."""
+        return evolve(self, labels=labels, **changes)
 
 
 @frozen
@@ -146,7 +160,6 @@ WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
 DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
 PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
 ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_replacement(DIRECTIONS, 2))
-CLAMPS_SECTION = "The clamps of a plate or fence"
 
 PITCH = ToolkitField(
     "pitch",
@@ -339,9 +352,9 @@ OPTIONS = (
 )
 ON_A_PLATE = (
     PITCH,
-    COLUMNS.shown(Label("Columns", "as needed", is_usual=True)),
+    COLUMNS.shown(Label("Columns", "as needed", is_usual=True), default=None),
     ROWS.shown(Label("Rows", "as needed", is_usual=True)),
-    PEG_RADIUS.shown(Label("Locator radius", is_usual=True), required=True),
+    PEG_RADIUS.shown(Label("Locator radius", is_usual=True)),
 )
 OF_A_VISE = Table(
     "vise",

@@ -14,8 +14,9 @@ from workhold.fixels.fields import TABLES, ToolkitField, table_of
 
 __all__ = ["TAGS", "forms_by_noun", "one_of", "optional"]
 
+BY_NOUN = {table.noun: table for table in TABLES.values()}
 # What tells the forms apart in a place of pydantic's; they are no keys of a file.
-TAGS = tuple(dict.fromkeys(f"<{table.noun}>" for table in TABLES.values()))
+TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
 
 
 def forms_by_noun(
@@ -36,20 +37,19 @@ def forms_by_noun(
     summary : of the forms, in which "{}" stands for what the table describes.
     """
     forms: dict[str, Any] = {}
-    for table in TABLES.values():
+    for noun, table in BY_NOUN.items():
         kinds = tuple(one for one, other in TABLES.items() if other is table)
         fields = {} if kind is None else {"kind": kind(kinds)}
-        fields |= {row.name: entry(row) for row in table.fields}
-        if table.noun not in forms:
-            forms[table.noun] = create_model(
-                name.format(table.noun.title()),
-                __base__=base,
-                __module__=base.__module__,
-                __doc__=summary.format(table.summary),
-                **fields,
-            )
-            # Another process finds a form that it is handed by module and name.
-            setattr(sys.modules[base.__module__], forms[table.noun].__name__, forms[table.noun])
+        forms[noun] = create_model(
+            name.format(noun.title()),
+            __base__=base,
+            __module__=base.__module__,
+            __doc__=summary.format(table.summary),
+            **fields,
+            **{row.name: entry(row) for row in table.fields},
+        )
+        # Another process finds a form that it is handed by module and name.
+        setattr(sys.modules[base.__module__], forms[noun].__name__, forms[noun])
     return forms
 
 
