@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import zlib
+from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -42,6 +43,41 @@ def test_the_list_of_ten_thousand_has_few_rows_in_the_page(walk: Walk) -> None:
     assert most < 40
     last = walk.seen(f'#list [aria-posinset="{count}"]:not(.coming)')
     assert last.inner_text().startswith(str(count))
+
+
+@pytest.mark.parametrize("sort", ["rank", "edge_distance"])
+def test_a_fixture_of_an_earlier_stage_of_the_search_does_not_stay(walk: Walk, sort: str) -> None:
+    """The list is changed before the last rows have come, so the fixture on show is of the stage before."""
+    page = walk.page
+    begun = False
+
+    def answer(route: Any) -> None:
+        """Let the first rows miss the best fixture, and no others arrive until the list is changed."""
+        nonlocal begun
+        if "together=false" in route.request.url:
+            return route.continue_()
+        if begun:
+            return None
+        response = route.fetch()
+        told = response.json()
+        begun = bool(told["rows"])
+        told["rows"] = [{**row, "rank": at + 1} for at, row in enumerate(told["rows"][1:])]
+        return route.fulfill(response=response, json=told)
+
+    page.route("**/fixtures?*", answer)
+    walk.take()
+    walk.search()
+    stale = walk.shown()
+    page.select_option("#sort", sort)
+    page.check("#each")
+    walk.until("String(state.selected.holes) !== String(given)", stale["holes"])
+    shown = walk.shown()
+    kept = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/{shown['rank']}").json()
+    assert (
+        (shown["holes"], shown["theta_deg"])
+        == (kept["holes"], kept["theta_deg"])
+        != (stale["holes"], stale["theta_deg"])
+    )
 
 
 def test_near_copies_are_one_row(walk: Walk) -> None:

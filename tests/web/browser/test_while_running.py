@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from walking import SEARCH_PATIENCE, Walk
 
-NEW_SEARCH = "old => import('/static/state.js').then(({ state }) => state.job?.job && state.job.job !== old)"
+NEW_SEARCH = "state.job?.job && state.job.job !== given"
 SAME_FORCE = "() => import('/static/state.js').then(({ change, state }) => change({ force: { ...state.force } }))"
 # In one go, as somebody quick would.
 PUSH_AND_SEARCH = "for (const id of ['push', 'search']) document.getElementById(id).click();"
@@ -49,7 +49,7 @@ def test_a_force_waits_for_the_first_fixtures(walk: Walk) -> None:
     search_for_long(walk)
     old = walk.job()
     page.evaluate(PUSH_AND_SEARCH)
-    page.wait_for_function(NEW_SEARCH, arg=old, timeout=SEARCH_PATIENCE)
+    walk.until(NEW_SEARCH, old)
     walk.seen("#resist-words button", SEARCH_PATIENCE)
     assert walk.shown()["rank"] == 1
     page.click("#cancel")

@@ -68,6 +68,18 @@ class Walk:
         element.wait_for(state="visible", timeout=patience)
         return element
 
+    def until(self, condition: str, given: Any = None) -> None:
+        """Wait until a condition on the page's state holds; a promise cannot be polled by Playwright itself."""
+        script = f"""async (given) => {{
+          const {{ state }} = await import("/static/state.js");
+          const end = Date.now() + {SEEN_PATIENCE};
+          while (!({condition})) {{
+            if (Date.now() > end) throw new Error("waited in vain");
+            await new Promise(requestAnimationFrame);
+          }}
+        }}"""
+        self.page.evaluate(script, given)
+
     def go(self, section: str) -> None:
         """Show a section of the page where there is room for one only."""
         tab = self.page.locator(f".sections [data-to={section}]")

@@ -159,6 +159,7 @@ function openRows() {
   selectFrom(rows);
   tellTotal(0);
   list.use(rows);
+  if (job && state.selected && !searching()) followSelected(job);
 }
 
 /** Show the first fixture as soon as there is one, or the one a link asks for. */
@@ -178,17 +179,19 @@ async function firstRow(from) {
     if (row && view === "fixture") change({ view });
     return;
   }
-  if (first && (!state.selected || (!chosenByUser && searchMoved(first)))) {
-    change({ selected: first, index: 0, ...(state.selected || state.view === "draw" ? {} : { view: "fixture" }) });
-  } else if (state.selected && state.index < 0 && first && state.selected.rank === first.rank) {
-    change({ index: 0 });
-  }
+  if (!first) return;
+  const { selected, index } = state;
+  const same = selected !== null && isSame(first, selected);
+  // Of two fixtures with one rank, the one on show is of an earlier stage of the search.
+  const moved = selected !== null && !same && !chosenByUser && (index === 0 || first.rank === selected.rank);
+  if (!selected || moved) {
+    change({ selected: first, index: 0, ...(selected || state.view === "draw" ? {} : { view: "fixture" }) });
+  } else if (index < 0 && same) change({ index: 0 });
 }
 
-/** Whether another fixture is the first one now. */
-function searchMoved(first) {
-  const key = (row) => `${row.holes}${row.faces}${row.theta_deg}`;
-  return state.index === 0 && key(first) !== key(state.selected);
+/** Whether two rows are one fixture, whatever their ranks. */
+function isSame(row, other) {
+  return String(row.holes) === String(other.holes) && String(row.faces) === String(other.faces) && Math.abs(row.theta_deg - other.theta_deg) < 1e-6;
 }
 
 /** The search has moved on. */
@@ -210,20 +213,19 @@ function showJob() {
   show(byId("filters"), any);
   if (id && rows && job.revision !== shownRevision && job.revision > 0) {
     shownRevision = job.revision;
-    if (!chosenByUser || searching()) rows.refresh(list.first, list.last).then(() => list.paint());
-    else followChosen(id);
+    const refreshed = rows.refresh(list.first, list.last).then(() => list.paint());
+    if (!searching()) refreshed.then(() => followSelected(id));
   }
   if (id && job.state === "done" && job.found === 0 && job.complete) explain(id);
 }
 
-/** After the list has changed under a chosen fixture: keep it if it still has its rank, else show the first. */
-async function followChosen(job) {
+/** Once a search has ended: keep the fixture on show if it still has its rank, else show the first. */
+async function followSelected(job) {
   const { selected } = state;
-  await rows?.refresh(list.first, list.last);
-  list.paint();
-  const row = selected && (await rowOfRank(job, selected.rank));
+  if (!selected?.rank) return;
+  const row = await rowOfRank(job, selected.rank);
   if (state.selected !== selected || state.job?.job !== job) return;
-  if (row && String(row.holes) === String(selected.holes) && Math.abs(row.theta_deg - selected.theta_deg) < 1e-6) return;
+  if (row && isSame(row, selected)) return;
   const first = await rows?.whenAt(0);
   if (first) change({ selected: first, index: 0 });
 }
