@@ -214,7 +214,8 @@ function showJob() {
   if (id && rows && job.revision !== shownRevision && job.revision > 0) {
     shownRevision = job.revision;
     const refreshed = rows.refresh(list.first, list.last).then(() => list.paint());
-    if (!searching()) refreshed.then(() => followSelected(id));
+    // The first row has been compared with the fixture on show as it came.
+    if (!searching()) refreshed.then(() => (chosenByUser || state.index !== 0) && followSelected(id));
   }
   if (id && job.state === "done" && job.found === 0 && job.complete) explain(id);
 }

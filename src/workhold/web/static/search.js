@@ -23,6 +23,9 @@ export function searching() {
   return state.job !== null && !ENDED.includes(state.job.state);
 }
 
+/** A search that the server does not have, in a state. @param {string} state */
+const withoutServer = (state) => ({ job: null, state, fraction: 0, found: 0, revision: 0, notes: [] });
+
 /** Leave the search there is: no answer of it is shown any more, and the server forgets it. */
 export function leave() {
   token += 1;
@@ -40,7 +43,7 @@ export async function start() {
   if (!state.part) return;
   live = true;
   const mine = token;
-  change({ job: { job: null, state: "queued", fraction: 0, found: 0, revision: 0, notes: [] } });
+  change({ job: withoutServer("queued") });
   try {
     const { job } = await send("jobs", request());
     if (mine === token) follow(job, mine);
@@ -87,7 +90,7 @@ export async function cancel() {
 /** Say that the search was stopped, where the server keeps nothing of it. */
 function cancelled() {
   leave();
-  change({ job: { job: null, state: "cancelled", fraction: 0, found: 0, revision: 0, notes: [] } });
+  change({ job: withoutServer("cancelled") });
 }
 
 /** @param {string} job */
@@ -134,7 +137,7 @@ async function poll(job, mine) {
 /** Show why there is no answer. */
 function failed(error) {
   const words = error instanceof ApiError ? error.message : "The search could not be started.";
-  change({ job: { job: null, state: "failed", fraction: 0, found: 0, revision: 0, notes: [], error: words } });
+  change({ job: { ...withoutServer("failed"), error: words } });
 }
 
 /** A search that was begun by hand meanwhile stays, and what its user has chosen there. */
