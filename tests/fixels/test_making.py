@@ -102,3 +102,26 @@ def test_blocked_holes_must_be_there_and_leave_some() -> None:
     ):
         with pytest.raises(InputError, match=words):
             made("vise", blocked=names)
+    spread = made("vise", blocked=["L-A", "L-B", "R-C"])
+    assert [holes.name for holes in spread.blocked] == ["L-A", "L-B", "R-C"]  # type: ignore[attr-defined]
+
+
+def test_what_is_too_large_to_reckon_with_is_refused() -> None:
+    """A pitch, a stroke, and more holes than can be looked through."""
+    for changes, words in (
+        ({"pitch": (20, 2 * MOST_LENGTH)}, "^pitch"),
+        ({"travel": (0, 2 * MOST_LENGTH)}, "^travel"),
+        ({"columns": 1000, "rows": 1000}, "a plate of 1,000,000 holes"),
+    ):
+        with pytest.raises(InputError, match=words):
+            made("translating-clamp", **changes)
+
+
+def test_a_flat_is_as_wide_as_its_peg_lets_it_be_and_given_by_name() -> None:
+    """A chord of the peg at its distance; positions are of what all kinds have."""
+    vise = KINDS["vise"](10, 2, 5, flat=3)
+    assert vise.flat.half_width == 4.0  # type: ignore[attr-defined]
+    with pytest.raises(InputError, match="is none of a peg of radius"):
+        KINDS["vise"](10, 2, 5, flat=5.5)
+    with pytest.raises(TypeError):
+        KINDS["vise"](10, 2, 5, None, 10, None, 0, 5, (), 3)
