@@ -1,0 +1,425 @@
+"""Two pegs of one lattice that touch a part lying flush on a wall: where they stand, and whether they press it there.
+
+On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall leaves two unknowns, its
+place along the wall and its distance, and each pair of pegs gives two equations: the first peg's centre lies on the offset
+curve of the face it touches, and on that of the second peg's face moved back by the difference of their holes. So pairs are
+the crossings of one curve with the other, moved by a step of the lattice: one of two lines, two of a line and a circle or
+of two circles.
+
+Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other, both normals
+are parallel there. With the wall's they then span no space, so nothing closes (``closure_of``).
+
+Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians (``PartOnWall``).
+A crossing is off by ``off`` over the sine of the angle between both normals, as long as that turns no normal by a tenth of
+the angle; elsewhere there is no bound, and the pair is decided in balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+
+import numpy as np
+from attrs import evolve, field, fields, frozen
+from flint import arb, ctx
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import LEAST_CLOSURE, LEAST_SPAN, LOOSE, PARALLEL, SAME_PLACE
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.contact.closure import ROUNDING
+from workhold.proof.deciding import BALLS
+from workhold.proof.flush import PRECISIONS, line_of
+from workhold.search.fence_places import Laid
+
+__all__ = ["LatticePairs", "are_pressed", "pairs_on"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Pairs of features and steps of the lattice looked at together.
+TOGETHER = 1 << 19
+# Sine of the angle between two normals over the angle by which an error may turn one, at least.
+STEEP = 10.0
+
+
+@frozen(eq=False)
+class LatticePairs:
+    """N pairs of pegs of one lattice that touch a part on a wall.
+
+    Parameters
+    ----------
+    feature : (N, 2) touched by the first peg, whose hole has the lower column or, in one column, row, and by the second.
+    step : (N, 2) columns and rows from the first peg's hole to the second's.
+    branch : (N,) -1 or 1, which of two crossings it is; 1 of two lines.
+    point : (N, 2, 2) centres of both pegs, in mm along the hull edge from its start and above it.
+    normal : (N, 2, 2) outward unit normals of the part there.
+    slack : (N,) by how many mm the contact nearer to an end of its feature is inside it; infinite on whole circles.
+    reach, swing : (N,) by how many mm places and by how many radians normals may be off; infinite where that is not known.
+    null : (N, 4) forces of the wall's two ends and both pegs, not scaled.
+    """
+
+    feature: IntArray
+    step: IntArray
+    branch: Array
+    point: Array
+    normal: Array
+    slack: Array
+    reach: Array
+    swing: Array
+    null: Array = field()
+
+    @null.default
+    def _unknown(self) -> Array:
+        return np.zeros((len(self.branch), 4))
+
+    def __len__(self) -> int:
+        return len(self.branch)
+
+    def take(self, order: IntArray | BoolArray) -> LatticePairs:
+        """Return the pairs of an index array or mask, in its order."""
+        return LatticePairs(*(getattr(self, one.name)[order] for one in fields(LatticePairs)))
+
+    @classmethod
+    def joined(cls, parts: list[LatticePairs]) -> LatticePairs:
+        """Return all pairs of several, at least one."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
+
+
+def pairs_on(laid: Laid, pitch: tuple[float, float], most: tuple[float, float], margin: float) -> Iterator[LatticePairs]:
+    """Yield the pairs of pegs that touch a part on a wall, at least nearly ``margin`` mm inside their features, some at a time.
+
+    Parameters
+    ----------
+    pitch : distances in mm between neighbouring columns and rows.
+    most : the most columns and rows from one peg to the other; infinite where nothing bounds them.
+    margin : smallest distance in mm from the end of a feature.
+    """
+    rows = laid.rows
+    low, high = extents(rows)
+    # Normals must have opposed parts along the wall, which arcs may have either way and level lines have not.
+    ahead = rows[:, AXIS_Y]
+    across = np.where(np.abs(ahead) > 4.0 * laid.turn, np.sign(ahead), np.nan)
+    across[rows[:, IS_ARC] != 0.0] = 0.0
+    one, other = np.nonzero(across[:, None] * across[None, :] <= 0.0)
+    nearest = low[other] - high[one] - LOOSE
+    farthest = high[other] - low[one] + LOOSE
+    first = np.ceil(nearest / pitch).astype(np.int64)
+    last = np.floor(farthest / pitch).astype(np.int64)
+    bound = np.minimum(np.array(most), 1 << 40).astype(np.int64)
+    # The second peg's hole is the one with the higher column or, in one column, row.
+    first = np.maximum(first, [0, -bound[1]])
+    last = np.minimum(last, bound)
+    counts = np.maximum(last - first + 1, 0)
+    counts[(counts == 0).any(axis=1)] = 0
+    total = np.cumsum(counts[:, 0] * counts[:, 1])
+    for start in range(0, int(total[-1]) if len(total) else 0, TOGETHER):
+        number = np.arange(start, min(start + TOGETHER, int(total[-1])))
+        which = np.searchsorted(total, number, side="right")
+        inside = number - (total[which] - counts[which, 0] * counts[which, 1])
+        step = first[which] + np.stack([inside // counts[which, 1], inside % counts[which, 1]], axis=1)
+        forward = (step[:, 0] > 0) | (step[:, 1] > 0)
+        which, step = which[forward], step[forward]
+        feature = np.stack([one[which], other[which]], axis=1)
+        for part in crossings(laid, feature, step, np.array(pitch)):
+            yield part.take(part.slack - margin > -(1.2 * np.minimum(part.reach, SAME_PLACE) + LOOSE))
+
+
+def extents(rows: Array) -> tuple[Array, Array]:
+    """Return the least and largest coordinates (F, 2) in mm of features (F, 12); of arcs those of their circles."""
+    center, size = rows[:, [X, Y]], np.abs(rows[:, [AXIS_X, AXIS_Y]]) * rows[:, [HALF_EXTENT]]
+    size = np.where(rows[:, [IS_ARC]] != 0.0, rows[:, [RADIUS]], size)
+    return center - size, center + size
+
+
+def crossings(laid: Laid, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
+    """Yield where the first features of pairs (M, 2) cross the second ones, moved back by steps (M, 2) of a lattice."""
+    rows = laid.rows
+    is_arc = rows[feature, IS_ARC] != 0.0
+    shift = step * pitch
+    between = rows[feature[:, 1]][:, [X, Y]] - shift - rows[feature[:, 0]][:, [X, Y]]
+    axes = rows[feature][:, :, [AXIS_X, AXIS_Y]]
+    radius = rows[feature, RADIUS]
+    kind = is_arc[:, 0] * 2 + is_arc[:, 1]
+    for number in range(4):
+        chosen = np.flatnonzero(kind == number)
+        if len(chosen) == 0:
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if number == 0:
+                which, branch, offset = of_two_lines(between[chosen], axes[chosen])
+            elif number == 1:
+                which, branch, offset = of_line_and_circle(between[chosen], axes[chosen, 0], radius[chosen, 1], laid.off)
+            elif number == 2:
+                which, branch, offset = of_line_and_circle(-between[chosen], axes[chosen, 1], radius[chosen, 0], laid.off)
+                offset = offset + between[chosen[which]]
+            else:
+                which, branch, offset = of_two_circles(between[chosen], radius[chosen], laid.off)
+        chosen = chosen[which]
+        point = rows[feature[chosen, 0]][:, [X, Y]] + offset
+        yield touching(laid, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1))
+
+
+def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
+    """Return which pairs (M,) of lines cross, the branch, and the place (K, 2) from the middle of the first.
+
+    Parameters
+    ----------
+    between : (M, 2) from the middle of the first to that of the second, in mm.
+    axes : (M, 2, 2) unit vectors along both.
+    """
+    sine = cross(axes[:, 0], axes[:, 1])
+    which = np.flatnonzero(np.abs(sine) > PARALLEL)
+    along = cross(between[which], axes[which, 1]) / sine[which]
+    return which, np.ones(len(which)), along[:, None] * axes[which, 0]
+
+
+def of_line_and_circle(between: Array, axis: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
+    """Return which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) from the line's middle.
+
+    Parameters
+    ----------
+    between : (M, 2) from the middle of the line to that of the circle, in mm.
+    axis : (M, 2) unit vector along the line.
+    radius : (M,) of the circle.
+    off : by how many mm distances may be off.
+    """
+    away, foot = cross(axis, between), (axis * between).sum(axis=1)
+    return both_of((radius - away) * (radius + away), radius, off, foot, axis)
+
+
+def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
+    """Return which pairs (M,) of circles cross, at which branch, and the place (K, 2) from the middle of the first.
+
+    Parameters
+    ----------
+    between : (M, 2) from the middle of the first to that of the second, in mm.
+    radius : (M, 2) of both.
+    off : by how many mm distances may be off.
+    """
+    apart = np.hypot(between[:, 0], between[:, 1])
+    one, other = radius.T
+    away = ((one - other) * (one + other) / apart + apart) / 2.0
+    square = np.where(apart > SAME_PLACE, (one - away) * (one + away), -inf)
+    unit = between / apart[:, None]
+    which, branch, beside = both_of(square, np.maximum(one, apart), off * (1.0 + one / apart), 0.0, perpendicular(unit))
+    return which, branch, beside + away[which, None] * unit[which]
+
+
+def both_of(square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array) -> tuple[IntArray, Array, Array]:
+    """Return the pairs (M,) whose half chord has a square (M,) that may be positive, each twice: branch and place (K, 2)."""
+    met = np.flatnonzero(square > -16.0 * off * size)
+    half = np.sqrt(np.maximum(square[met], 0.0))
+    foot = np.broadcast_to(foot, square.shape)[met]
+    which, branch = np.concatenate([met, met]), np.repeat([-1.0, 1.0], len(met))
+    along = np.concatenate([foot - half, foot + half])
+    return which, branch, along[:, None] * axis[which]
+
+
+def touching(laid: Laid, feature: IntArray, step: IntArray, branch: Array, point: Array) -> LatticePairs:
+    """Return pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
+    rows = laid.rows[feature]
+    is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
+    is_arc = is_arc != 0.0
+    axis, ray = rows[:, :, [AXIS_X, AXIS_Y]], point - rows[:, :, [X, Y]]
+    along = (axis * ray).sum(axis=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turned = np.where(is_arc, np.arctan2(cross(axis, ray), along), along)
+        scale = np.where(is_arc, radius, 1.0)
+        slack = np.minimum((half - turned) * scale + rows[:, :, HIGH_SLACK], (half + turned) * scale + rows[:, :, LOW_SLACK])
+        slack[is_arc & (half >= np.pi)] = np.inf
+        normal = np.where(is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -perpendicular(axis))
+        sine = np.abs(cross(normal[:, 0], normal[:, 1]))
+        reach = 16.0 * (laid.off + laid.turn * np.abs(ray).max(axis=(1, 2))) / sine
+        swing = 2.0 * (laid.turn + np.where(is_arc, (reach[:, None] + laid.off) / radius, 0.0).max(axis=1))
+        open_ = ~(sine > STEEP * swing)
+    reach[open_], swing[open_] = np.inf, np.inf
+    return LatticePairs(feature, step, branch, point, normal, slack.min(axis=1), reach, swing)
+
+
+def cross(one: Array, other: Array) -> Array:
+    """Return cross products of vectors (..., 2)."""
+    return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
+
+
+def perpendicular(vectors: Array) -> Array:
+    """Return vectors (..., 2) turned by a quarter turn, counter-clockwise."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
+def closure_of(pairs: LatticePairs, laid: Laid, problem: Problem) -> tuple[LatticePairs, BoolArray, BoolArray]:
+    """Return pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which that is open.
+
+    With normals a, b of the part at the pegs and moments m, M about the start of the hull edge of length l, the null vector
+    of the four wrenches is (l (p a_v + q b_v) - t, t, p l, q l) with p = -b_u sign a_u, q = |a_u| and t = p m + q M. Its
+    first two add up to l times the sine of the angle between both normals.
+    """
+    length = problem.wrench_length
+    a, b = pairs.normal[:, 0], pairs.normal[:, 1]
+    wall = laid.length / length
+    ahead, across = -b[:, 0] * np.copysign(1.0, a[:, 0]), np.abs(a[:, 0])
+    one, other = (cross(pairs.point[:, k] / length, pairs.normal[:, k]) for k in (0, 1))
+    last = ahead * one + across * other
+    both = wall * (ahead * a[:, 1] + across * b[:, 1])
+    null = np.stack([both - last, last, ahead * wall, across * wall], axis=1)
+    size = np.abs(null).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        band = 20.0 * pairs.swing + 4.0 * (pairs.reach + laid.off) / length + ROUNDING
+        least = np.minimum(null.min(axis=1) - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        ends = (pairs.slack - problem.contact_margin) / np.maximum(1.2 * pairs.reach, 1e-300)
+        worst = np.nan_to_num(np.minimum(least / band, ends), nan=0.0)
+    held = worst > 1.1
+    # Contacts far beyond an end, or forces far from closing, need no balls whatever is not known of the rest.
+    hopeless = (worst < -1.1) | (pairs.slack < problem.contact_margin - 1.0)
+    return evolve(pairs, null=null), held, ~held & ~hopeless
+
+
+def are_pressed(pairs: LatticePairs, edge: int, laid: Laid, problem: Problem) -> tuple[LatticePairs, IntArray, int]:
+    """Return the pairs that press the part as it lies on a hull edge, the numbers of those not decided, and of those in balls.
+
+    Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
+    """
+    pairs, held, open_ = closure_of(pairs, laid, problem)
+    point, null, undecided = pairs.point.copy(), pairs.null.copy(), []
+    sharpened = np.flatnonzero(open_ | (held & (pairs.reach > SAME_PLACE / 2)))
+    for k in sharpened.tolist():
+        verdict, sharp = verdict_in_balls(pairs.take(np.array([k])), edge, problem)
+        held[k] = verdict is True
+        if verdict is None:
+            undecided.append(k)
+        if sharp is not None:
+            point[k], null[k] = sharp
+    return evolve(pairs, point=point, null=null).take(held), np.array(undecided, np.int64), len(sharpened)
+
+
+def verdict_in_balls(
+    pair: LatticePairs, edge: int, problem: Problem
+) -> tuple[bool | None, tuple[list[list[float]], list[float]] | None]:
+    """Return whether a pair presses the part, None where that stays open, and its places and forces to the last digit."""
+    verdict, sharp = None, None
+    with BALLS:
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                contacts = contacts_in_balls(pair, edge, problem)
+                if contacts is None:
+                    return False, None
+                verdict, null = judged(contacts, problem)
+                if verdict is not None:
+                    sharp = [[float(v.mid()) for v in point] for point, _, _ in contacts[1:]], [float(v.mid()) for v in null]
+                    break
+    return verdict, sharp
+
+
+Point = tuple[arb, arb]
+Contact = tuple[Point, Point, list[arb]]
+
+
+def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bool | None, list[arb]]:
+    """Return the verdict on the contacts of a pair at the precision in force, and the null vector of :func:`closure_of`."""
+    wall, ((u, v), a, slack), ((p, q), b, other) = contacts
+    length, margin = arb(problem.wrench_length), arb(problem.contact_margin)
+    along = a[0] * b[0]
+    ahead, across = abs(b[0]), abs(a[0])
+    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
+    both = wall * (ahead * a[1] + across * b[1]) / length
+    null = [both - last, last, ahead * wall / length, across * wall / length]
+    size = sum((abs(entry) for entry in null), arb(0))
+    rules = [entry - LEAST_CLOSURE * size for entry in null] + [-along, size - LEAST_SPAN]
+    rules += [end - margin for end in (*slack, *other)]
+    if any(rule <= 0 for rule in rules):
+        return False, null
+    return (True if all(rule > 0 for rule in rules) else None), null
+
+
+def contacts_in_balls(pair: LatticePairs, edge: int, problem: Problem) -> tuple[arb, Contact, Contact] | None:
+    """Return the hull edge's length and both contacts: centre, outward normal, distances to the ends; None if they miss."""
+    start, tangent, wall = line_of(problem.workpiece.hull_edges[edge], problem.workpiece.center)
+    rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.feature[0].tolist()]
+    pitch = problem.toolkit.moving.pitch
+    shift = tuple(arb(one) * int(k) for one, k in zip(pitch, pair.step[0].tolist(), strict=True))
+    (middle, axis, radius), (second, direction, other) = ((row.middle, row.axis, row.radius) for row in rows)
+    between = second[0] - shift[0] - middle[0], second[1] - shift[1] - middle[1]
+    branch = int(pair.branch[0])
+    if radius is None and other is None:
+        sine = axis[0] * direction[1] - axis[1] * direction[0]
+        if not abs(sine) > 0:
+            return None
+        s = (between[0] * direction[1] - between[1] * direction[0]) / sine
+        offset = s * axis[0], s * axis[1]
+    elif other is None or radius is None:
+        swaps = other is None
+        (ax, ay), size = (direction, radius) if swaps else (axis, other)
+        x, y = (-between[0], -between[1]) if swaps else between
+        half = half_chord((size - (ax * y - ay * x)) * (size + (ax * y - ay * x)))
+        if half is None:
+            return None
+        s = ax * x + ay * y + branch * half
+        offset = s * ax, s * ay
+        if swaps:
+            offset = offset[0] + between[0], offset[1] + between[1]
+    else:
+        square = between[0] ** 2 + between[1] ** 2
+        apart = square.sqrt()
+        away = ((radius - other) * (radius + other) / apart + apart) / 2
+        half = half_chord((radius - away) * (radius + away))
+        if half is None:
+            return None
+        x, y = between[0] / apart, between[1] / apart
+        offset = away * x - branch * half * y, away * y + branch * half * x
+    first = middle[0] + offset[0], middle[1] + offset[1]
+    points = first, (first[0] + shift[0], first[1] + shift[1])
+    one, two = (row.contact(point) for row, point in zip(rows, points, strict=True))
+    return wall, one, two
+
+
+def half_chord(square: arb) -> arb | None:
+    """Return the root of a square that may be zero; None where it is surely negative."""
+    if square < 0:
+        return None
+    return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
+
+
+@frozen
+class BallFeature:
+    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
+
+    middle: Point
+    axis: Point
+    radius: arb | None
+    row: list[float]
+
+    def contact(self, point: Point) -> Contact:
+        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
+        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
+        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
+        along = ax * ray[0] + ay * ray[1]
+        if self.radius is None:
+            return point, (ay, -ax), [half - along + high, half + along + low]
+        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
+        if half >= arb.pi():
+            return point, normal, []
+        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
+        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
+
+
+def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
+    """Return a feature as it lies on a hull edge from a start along a tangent."""
+    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
+    tx, ty = tangent
+    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
+    # Axes of features are unit vectors but for rounding.
+    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
+    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)
