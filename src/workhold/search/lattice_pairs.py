@@ -51,6 +51,8 @@ BoolArray = NDArray[np.bool_]
 
 # Pairs of features and steps of the lattice looked at together.
 TOGETHER = 1 << 19
+# mm. Contacts of which no bound is known are off by less: the root of roundings times the size of a part.
+GRAZING = 1e-2
 # Sine of the angle between two normals over the angle by which an error may turn one, at least.
 STEEP = 10.0
 
@@ -134,7 +136,7 @@ def pairs_on(laid: Laid, pitch: tuple[float, float], most: tuple[float, float], 
         which, step = which[forward], step[forward]
         feature = np.stack([one[which], other[which]], axis=1)
         for part in crossings(laid, feature, step, np.array(pitch)):
-            yield part.take(part.slack - margin > -(1.2 * np.minimum(part.reach, SAME_PLACE) + LOOSE))
+            yield part.take(part.slack - margin > -(1.2 * np.minimum(part.reach, GRAZING) + LOOSE))
 
 
 def extents(rows: Array) -> tuple[Array, Array]:
