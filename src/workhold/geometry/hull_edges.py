@@ -77,7 +77,7 @@ class HullEdge:
 
 
 @frozen(eq=False)
-class Pieces:
+class HullPieces:
     """N pieces: (N, 2) centres, (N,) radii, unit vectors (N, 2) to the middles of arcs and cosines (N,) of half their sweeps
     (-2 for a joint, which supports in every direction), and the faces they are of."""
 
@@ -88,7 +88,7 @@ class Pieces:
     faces: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> Pieces:
+    def of(cls, segments: Sequence[Segment]) -> HullPieces:
         """The pieces of a closed chain of segments that may lie on its hull."""
         joints: dict[Point, tuple[int, ...]] = {}
         rows: list[tuple[float, ...]] = []
@@ -113,7 +113,7 @@ class Pieces:
         return np.asarray(along >= self.cosine[chosen])
 
 
-def tangents(pieces: Pieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
+def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
     """Common tangents of all pairs with both pieces on their left: indices (M,) at start and end, outward normals (M, 2).
 
     With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D runs forward.
@@ -135,7 +135,7 @@ def tangents(pieces: Pieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int
         yield one[start[good]], end[good], normal[good]
 
 
-def farthest(pieces: Pieces, normal: Array) -> Array:
+def farthest(pieces: HullPieces, normal: Array) -> Array:
     """Supports (M,) in mm of all pieces together in directions (M, 2)."""
     out = np.empty(len(normal))
     for first in range(0, len(normal), BLOCK):
@@ -161,7 +161,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
     [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
-    pieces = Pieces.of(segments)
+    pieces = HullPieces.of(segments)
     found: list[HullEdge] = []
     for start, end, normal in tangents(pieces):
         level = (pieces.center[start] * normal).sum(axis=1) + pieces.radius[start]
@@ -179,7 +179,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     return tuple(sorted(with_faces, key=lambda edge: (edge.start.faces[-1], edge.end.faces)))
 
 
-def end_of(pieces: Pieces, number: int, normal: Array) -> HullEnd:
+def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
     """The end of a hull edge on a piece."""
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()

@@ -50,7 +50,7 @@ from workhold.statics.contact_matrix import Touched
 from workhold.statics.quality import quality_of
 
 if TYPE_CHECKING:
-    from workhold.proof.interval_newton import Box
+    from workhold.proof.interval_newton import CandidateBox
 
 __all__ = ["FAR", "ChosenPairs", "PairedFixtures"]
 
@@ -208,7 +208,7 @@ class PairedFixtures:
                     reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
 
-    def box(self, seats: Seats, seat: int, clamp: int) -> Box:
+    def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
         """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along x."""
         pitch, integers = np.array(self.toolkit.pitch), seats.clamps.integers[clamp]
         carrier = self.toolkit.carrier(f"clamp {NAMES[integers[DIRECTION]]}")

@@ -14,7 +14,7 @@ from attrs import frozen
 from flint import arb, ctx
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.interval_newton import PRECISIONS, Box, Frame, Places, places, refined
+from workhold.proof.interval_newton import PRECISIONS, BoxContacts, CandidateBox, SingularFrame, places, refined
 
 __all__ = ["SharpReactions", "rounded", "sharp_reactions"]
 
@@ -35,10 +35,10 @@ class SharpReactions:
     push: float
 
 
-def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
+def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
     """The reactions at the one solution of a box of three locators and a clamp; None where it cannot be made out."""
     with ctx.workprec(PRECISIONS[-1]):
-        frame = Frame.of(box, limits)
+        frame = SingularFrame.of(box, limits)
         place: list[arb] | None = frame.start()
         for _ in range(MOST_STEPS):
             assert place is not None
@@ -52,7 +52,7 @@ def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
     return None
 
 
-def reactions(here: Places) -> list[arb]:
+def reactions(here: BoxContacts) -> list[arb]:
     """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w by Cramer's rule, w the clamp's wrench about the first peg."""
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
     whole = determinant(wrenches[:LOCATORS])

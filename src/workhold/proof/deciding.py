@@ -32,7 +32,7 @@ from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
 from workhold.proof.degenerate import hold_nothing
 
 if TYPE_CHECKING:
-    from workhold.proof.interval_newton import Outcome
+    from workhold.proof.interval_newton import BoxOutcome
 
 __all__ = ["Account", "Course", "decided", "is_standing", "merged", "peg_integers"]
 
@@ -278,16 +278,16 @@ def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[
     return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons, left
 
 
-def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | None:
+def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome | None:
     """One record decided in ball arithmetic; None when the work was stopped before."""
-    from workhold.proof.interval_newton import Box, Outcome, solutions_in
+    from workhold.proof.interval_newton import BoxOutcome, CandidateBox, solutions_in
 
     length = problem.wrench_length
     turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])
     if not np.isfinite(row).all():
-        return Outcome((), UNBOUNDED)
+        return BoxOutcome((), UNBOUNDED)
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
-    box = Box(
+    box = CandidateBox(
         features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
         offsets=peg_places(row, problem.frame.lattice),
         standing=int(row[record.STANDING]),

@@ -15,7 +15,7 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.files.dxf.walk import Nest, Walk
+from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing
 from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
@@ -91,9 +91,9 @@ def read_document(
     """
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
-    walk = Walk(document, layers, fit)
+    walk = DxfWalk(document, layers, fit)
     try:
-        walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
+        walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
         walk.refuse_missing_layers()
     except InputError:
         if known is not None:
