@@ -318,7 +318,7 @@ def test_every_face_length_and_number_that_cannot_be_is_refused() -> None:
     """In one sentence each."""
     for fields, words in (
         ({"wall_offset": 2}, "would stand in the fence"),
-        ({"wall_offset": float("nan")}, "would stand in the fence"),
+        ({"wall_offset": float("nan")}, "not a positive length"),
         ({"wall_offset": 10, "directions": ["up"]}, "none in which a clamp moves"),
         ({"wall_offset": 10, "travel": (5, 3)}, "none that a clamp has"),
     ):

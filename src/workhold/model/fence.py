@@ -8,24 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from math import isfinite
 from typing import ClassVar
 
-from attrs import field, frozen
-
-from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
-from workhold.limits import refuse_long
+from workhold.fixels.fields import TABLES, Table
 from workhold.model.fixture import WALL
+from workhold.model.making import made_from_table
 from workhold.model.plate import Plate
-from workhold.model.real import real
 from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.model.units import Unit
 
 __all__ = ["Fence"]
 
 
-@frozen
+@made_from_table
 class Fence(Plate):
     """A plate with a straight fence along x at y = 0: the part lies flush against it, above it.
 
@@ -51,6 +47,7 @@ class Fence(Plate):
     """
 
     kind: ClassVar[str] = "edge"
+    table: ClassVar[Table] = TABLES["edge"]
     noun: ClassVar[str] = "fence"
     wording: ClassVar[Wording] = Wording(
         two="fence and locator",
@@ -72,16 +69,7 @@ class Fence(Plate):
         ),
     )
 
-    wall_offset: float = field(kw_only=True, converter=real)
-
-    def __attrs_post_init__(self) -> None:
-        super().__attrs_post_init__()
-        if not (isfinite(self.wall_offset) and self.wall_offset >= self.peg_radius):
-            raise InputError(
-                f"wall offset {self.wall_offset:g} is less than the peg radius {self.peg_radius:g}: a locator in the first "
-                "row would stand in the fence; give the distance from the fence to the first row of holes, in mm."
-            )
-        refuse_long("wall offset", self.wall_offset)
+    wall_offset: float
 
     @property
     def usual_directions(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import cos, sin
-from typing import Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from attrs import evolve, frozen
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.directions import TOWARDS
+from workhold.fixels.fields import Table, ToolkitField
 from workhold.model.beyond import beyond
 from workhold.model.flat import Flat
 from workhold.model.holes import Holes, column_letters, hole_name, letter_of
@@ -31,6 +32,8 @@ from workhold.model.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
+# The order in which a person would ask for limits to be lifted.
+LIFTED = ("bodies", "travel", "holes")
 # Contacts that fix the pose and the travel of what moves.
 MOST_OF_A_WAY = 4
 
@@ -286,6 +289,7 @@ class Toolkit:
     Attributes
     ----------
     kind : the name of its kind in files.
+    table : its fields.
     noun : what it is called, such as "vise".
     locked : what it is with a screw that locks what moves, in words that "locked" follows.
     arrangements : what may stand on its carriers.
@@ -294,13 +298,17 @@ class Toolkit:
     symmetries : motions besides the identity that make two fixtures the same.
     carriers : those that stand still first; at most one moves while a pose is sought.
     gap : the gap rule in mm, or None when there is none.
-    limits : its limits, in the order in which a person would ask them.
     wording : what its things are called where it holds nothing.
     """
 
     __slots__ = ()
 
+    if TYPE_CHECKING:
+        # Made from the table of fields, where a type checker does not look.
+        def __init__(self, *args: Any, **fields: Any) -> None: ...
+
     kind: ClassVar[str]
+    table: ClassVar[Table]
     noun: ClassVar[str]
     locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
@@ -340,13 +348,24 @@ class Toolkit:
 
     @property
     def gap(self) -> float | None:
-        """The gap rule in mm."""
-        raise NotImplementedError
+        """The gap rule in mm; None where pegs may stand on any side of what moves."""
+        return None
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """What it could do without."""
-        raise NotImplementedError
+        """The limits that it has and could do without."""
+        limits = []
+        for row in self.table.fields:
+            free = self.followed(row) if row.follows else row.default
+            if row.lifted is not None and getattr(self, row.name) != free:
+                change = Change(row.lifted.words, {row.name: free})
+                limits.append(Limit(row.lifted.rule, row.lifted.bounds, change))
+        return tuple(sorted(limits, key=lambda limit: LIFTED.index(limit.bounds)))
+
+    def followed(self, row: ToolkitField) -> float:
+        """The length in mm that stands for one that is not given; of a pitch that in x."""
+        value = getattr(self, row.follows)
+        return float(value[0] if isinstance(value, tuple) else value)
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Changes to try where it holds nothing, besides lifting its limits; lengths in their words are in a unit."""
@@ -391,7 +410,7 @@ class Toolkit:
         names: tuple[str, ...] = beyond("preset_names_of")(cls)
         return names
 
-    def changed(self, fields: Mapping[str, Any]) -> Toolkit:
+    def changed(self, fields: Mapping[str, Any]) -> Self:
         """The toolkit with some of its fields changed.
 
         Raises
@@ -401,7 +420,7 @@ class Toolkit:
         """
         return evolve(self, **fields)  # type: ignore[misc]
 
-    def without(self, limits: Iterable[Limit]) -> Toolkit:
+    def without(self, limits: Iterable[Limit]) -> Self:
         """The toolkit without some of its limits."""
         return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
 

@@ -96,7 +96,7 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
         if kind == paired:
             columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
             (columns if direction.endswith("x") else rows)[LOCATORS] = 0
-        plate = evolve(toolkit, clamps=1, directions=(direction,))
+        plate = toolkit.changed({"clamps": 1, "directions": (direction,)})
         single = evolve(query, toolkit=plate, arrangements=None, ranking=None, best=None, listing=None)
         holes = tuple(faces), tuple(columns), tuple(rows)
         yield Undecided(f"{alone} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
