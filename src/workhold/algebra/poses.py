@@ -1,8 +1,8 @@
 """Simultaneous contact poses: from orientations back to phi, the separation and the place (paper, section 4).
 
 For each orientation the second peg's constraint, a trigonometric polynomial, gives up to two phi, and a right peg's
-constraint up to two separations. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
-themselves, and stays if it meets them to the last digits.
+constraint up to two separations. Every combination that nearly meets all constraints is refined by Newton's method on the
+contact equations themselves, and stays if it meets them to the last digits.
 """
 
 from __future__ import annotations

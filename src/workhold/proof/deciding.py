@@ -101,8 +101,8 @@ class Course:
 class Account:
     """What became of records: how many there were, and how many are proven fixtures.
 
-    Escalated are those that the first certificate left open, given up are pairs of chords of which the engine made none, and
-    left are those not decided when the work was stopped.
+    Escalated are records that the first certificate left open, and left are those not decided when the work was stopped.
+    Given up are pairs of chords that the engine did not follow to their crossings.
     """
 
     records: int
