@@ -41,11 +41,11 @@ ELLIPSIS = re.compile(
 )
 # Verbs that open a docstring in the imperative; words that are nouns as well stand among them only with an article.
 IMPERATIVE = re.compile(
-    r"(?:Add|Append|Ask|Begin|Bring|Build|Choose|Close|Collect|Compile|Compute|Count|Create|Decide|Derive|Do|Draw|Examine"
-    r"|Explain|Fail|Fill|Find|Follow|Forget|Get|Give|Have|Hold|Invert|Join|Keep|Leave|Let|Look|Make|Move|Print|Prove|Put"
-    r"|Read|Refuse|Remove|Return|Run|Say|See|Send|Serve|Set|Sort|Split|Start|Store|Take|Tell|Try|Turn|Visit|Wait|Widen"
-    r"|Write|Yield|(?:Answer|Bound|Check|Cross|Cut|List|Load|Mark|Measure|Name|Note|Open|Order|Place|Show|Stop|Work)"
-    r"(?= (?:a|an|the|it|one|what|how|every|each|all)\b))\b"
+    r"(?:Add|Append|Ask|Begin|Bring|Build|Choose|Collect|Compile|Compute|Create|Decide|Derive|Do|Draw|Examine|Explain|Fail"
+    r"|Fill|Find|Follow|Forget|Get|Give|Have|Hold|Invert|Join|Keep|Leave|Let|Make|Print|Prove|Put|Read|Refuse|Remove|Return"
+    r"|Say|See|Send|Serve|Sort|Store|Take|Tell|Try|Visit|Wait|Widen|Write|Yield"
+    r"|(?:Answer|Bound|Check|Close|Count|Cross|Cut|List|Load|Look|Mark|Measure|Move|Name|Note|Open|Order|Place|Run|Set|Show"
+    r"|Split|Start|Stop|Turn|Work)(?= (?:a|an|the|it|one|what|how|every|each|all)\b))\b"
 )
 # The end of a sentence.
 STOP = re.compile(r"(?<=[.?!])[\"')`]*\s+(?=[A-Z`\"(])")
@@ -244,7 +244,7 @@ def sentences(text: str) -> Iterator[str]:
     An entry of a section and an item of a list are sentences of their own, as is what stands before a blank line.
     """
     prose = SECTION.sub("\n\n", EXAMPLE.sub("\n\n", text))
-    units = re.split(r"\n\s*\n|\n(?=[\w*, ]+ : )|\n(?=- )", prose)
+    units = re.split(r"\n\s*\n|\n(?=[\w*, ]+ : )|\n(?=- |\d+\. )", prose)
     return (sentence for unit in units for sentence in STOP.split(" ".join(unit.split())))
 
 

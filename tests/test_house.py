@@ -157,6 +157,8 @@ def test_a_poor_opening_is_found(opening: str) -> None:
         "The length of a line.",
         "Whether a peg stands there.",
         "Order of rows.",
+        "Start of an edge.",
+        "Set of numbers.",
         "Items of a list.",
         "Open and closed loops.",
         "The other side of a part.",
@@ -180,6 +182,8 @@ def test_entries_and_examples_are_no_part_of_a_sentence() -> None:
         f"{words}.\n\nParameters\n----------\na : {words}\nb : {words}\n\nExamples\n--------\n>>> f({words})\n{words}\n"
     )
     assert places(rules.long_sentences(planted(f'"""{text}"""'))) == []
+    numbered = f"Steps:\n\n1. {words};\n2. {words}.\n- {words}"
+    assert places(rules.long_sentences(planted(f'"""{numbered}"""'))) == []
     entry = f"{words}.\n\nParameters\n----------\na : {words}\n    {words}\n"
     assert len(places(rules.long_sentences(planted(f'"""{entry}"""')))) == 1
 

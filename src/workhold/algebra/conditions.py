@@ -1,4 +1,4 @@
-"""From simultaneous contacts to fixtures: ends of features, the gap rule, force closure, clamping (paper, section 3, test).
+"""The test of simultaneous contacts: ends of features, the gap rule, force closure, clamping (paper, section 3).
 
 The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that the closing steps
 would not exclude. What passes is written as records, in the layout of the compiled kernels, for those steps, which both
@@ -126,7 +126,7 @@ def may_close(
 ) -> BoolArray:
     """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
-    Normals on arcs of radius R are off by at most radius / R, and every minor as ``closure.minor_band`` tells.
+    Normals on arcs of radius R are off by at most radius / R, and every minor by ``closure.minor_band``.
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(

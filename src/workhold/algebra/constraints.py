@@ -1,20 +1,20 @@
 r"""Contact constraints h, g, h_sigma and g_sigma (paper, sections 4.1 to 4.4).
 
-The points (pegs) are mapped onto the features: turned by the orientation psi and moved so that the characteristic point,
-the first peg, stays on the characteristic circle, the first feature, at the angle phi. The paper writes this with
+The points (pegs) are mapped onto the features. They are turned by the orientation psi and moved so that the characteristic
+point, the first peg, stays on the characteristic circle, the first feature, at the angle phi. The paper writes this with
 t = tan(psi / 2) and u = tan(phi / 2). Here the same is written with
 
     z = exp(i psi) = (1 + i t) / (1 - i t),    w = exp(i phi) = (1 + i u) / (1 - i u):
 
 a change of variables of degree one, so polynomials keep their degrees and their real roots, which move from the line to
-the unit circle. Nothing is at infinity there (psi = pi is z = -1), and the factors 1 + t^2 and 1 + u^2 that the paper's
-denominators leave behind are z = 0 and z = infinity, which drop out of a Laurent polynomial by themselves.
+the unit circle. Nothing is at infinity there (psi = pi is z = -1). The factors 1 + t^2 and 1 + u^2 that the
+paper's denominators leave behind are z = 0 and z = infinity, which drop out of a Laurent polynomial by themselves.
 
-A point x maps to C + R w + z x, with C, R the characteristic circle; a point of the right jaw to C + R w + z (x + s), s the
-separation, the paper's sigma. At a fixed z a constraint is a polynomial in w and s, real when \|w\| = 1, kept as numbers:
+A point x maps to C + R w + z x, with C, R the characteristic circle. A point of the right jaw maps to C + R w + z (x + s),
+with s the separation, the paper's sigma. At a fixed z a constraint is a polynomial in w and s, real when \|w\| = 1:
 
-    w_0 + 2 Re(w_1 w)                                   a trigonometric polynomial in phi, called a ring here.
-    s^2 square + s linear(w) + constant(w)              a constraint with rings as coefficients.
+    w_0 + 2 Re(w_1 w)                                   a trigonometric polynomial in phi.
+    s^2 square + s linear(w) + constant(w)              a constraint with such polynomials as coefficients.
 """
 
 from __future__ import annotations
@@ -85,8 +85,9 @@ class ContactSystems:
         return ContactSystems(self.rows[which], self.point[which])
 
     def misfit(self, k: int, m: int) -> Array:
-        """How far arcs k and m are from sliding, (N,): by how much their radii differ, or their centres' distance differs
-        from that of their pegs; infinite where one of them is a line.
+        """How far arcs k and m are from sliding, (N,); infinite where one of them is a line.
+
+        It is by how much their radii differ, or by how much their centres' distance differs from their pegs' distance.
         """
         arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
         apart = np.abs(self.middle[:, m] - self.middle[:, k])
@@ -98,15 +99,15 @@ class ContactSystems:
         """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
 
         There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
-        that tells them apart then have the factor z - z0.
+        between them then have the factor z - z0.
         """
         return np.asarray(self.misfit(k, m) <= COINCIDENT)
 
     def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
         """z x + D of pegs k and m, as length (N, M) times direction: x the step from k to m, D from centre m to centre k.
 
-        Where the arcs slide, the length (with a sign) and the direction are exact right through the coincidence:
-        z x + D = x (z - z0) and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2).
+        Where the arcs slide, the length (with a sign) and the direction are exact right through the coincidence.
+        There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2).
         """
         step = (self.point[:, m] - self.point[:, k])[:, None]
         between = (self.middle[:, k] - self.middle[:, m])[:, None]

@@ -175,7 +175,7 @@ def joined(parts: list[Systems]) -> Systems:
 
 
 def refuse_unlike(frame: Frame) -> None:
-    """Refuse a toolkit of which the paper does not treat.
+    """Refuses a toolkit of which the paper does not treat.
 
     Raises
     ------
@@ -204,7 +204,7 @@ def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Arr
 
 
 def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel: Event | None = None) -> Result:
-    """Find every fixture that a query asks for as the paper does, by resultants.
+    """Finds every fixture that a query asks for as the paper does, by resultants.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Resultants as polynomials over complex balls, for systems whose roots double precision cannot tell apart.
+"""Resultants as polynomials over complex balls, for systems whose roots double precision cannot separate.
 
 Nearly sliding pairs (equal arcs almost as far apart as their pegs) crowd up to eight roots together. The formulas are those
-of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are balls of python-flint; doubles are
-exact rationals, so the resultant is that of the very same system, at any precision, and its roots are isolated.
+of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are balls of python-flint. Doubles
+are exact rationals, so the resultant belongs to the very same system at any precision, and its roots are isolated.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Laurent:
         return out
 
 
-# up w + middle + down / w, with Laurent polynomials in z.
+# Coefficients of up w + middle + down / w, Laurent polynomials in z: a trigonometric polynomial in phi.
 LaurentTriple = tuple[Laurent, Laurent, Laurent]
 
 
@@ -157,14 +157,14 @@ class System:
 
 
 def of_rings(one: LaurentTriple, two: LaurentTriple) -> Laurent:
-    """Resultant in w of two rings."""
+    """Resultant in w of two trigonometric polynomials."""
     (a, b, c), (d, e, f) = one, two
     across = a * f - c * d
     return across * across - (a * e - b * d) * (b * f - c * e)
 
 
 def product(one: LaurentTriple, two: LaurentTriple) -> list[Laurent]:
-    """Product of two rings: coefficients of w^2 ... w^-2."""
+    """Product of two trigonometric polynomials: coefficients of w^2 ... w^-2."""
     (a, b, c), (d, e, f) = one, two
     return [a * d, a * e + b * d, a * f + b * e + c * d, b * f + c * e, c * f]
 
@@ -181,7 +181,7 @@ def without_separation(
 
 
 def with_square(ring: LaurentTriple, double: list[Laurent]) -> Laurent:
-    """Resultant in w of a ring and a polynomial with coefficients of w^2 ... w^-2 (see ``resultants``)."""
+    """Resultant in w of a trigonometric polynomial and one with coefficients of w^2 ... w^-2 (see ``resultants``)."""
     a, b, low = ring
     both, square = a * low, b * b
     powers = [

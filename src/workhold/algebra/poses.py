@@ -1,8 +1,8 @@
 """Simultaneous contact poses: from orientations back to phi, the separation and the place (paper, section 4).
 
-For each orientation the constraint of the second peg, a ring, gives up to two phi, and a right peg's constraint up to two
-separations. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
-themselves, and stays if it meets them to the last digits.
+For each orientation the second peg's constraint, a trigonometric polynomial, gives up to two phi, and a right peg's
+constraint up to two separations. Every combination that nearly meets all constraints is refined by Newton's method on the
+contact equations themselves, and stays if it meets them to the last digits.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def linearized(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
 
 
 def angles_of(ring: TrigPolynomial) -> tuple[Complex, Complex]:
-    """The two points w of the unit circle where rings vanish or come nearest to it."""
+    """The two points w of the unit circle where trigonometric polynomials vanish or come nearest to it."""
     size = 2.0 * np.abs(ring.first)
     cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))
@@ -165,11 +165,6 @@ def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, p
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
         for separation in separations(chosen, case, column, w):
             found.append(Poses(owner, psi, place[:, 0], separation[:, 0], np.zeros(len(owner))))
-    everything = Poses(
-        np.concatenate([p.owner for p in found]),
-        np.concatenate([p.psi for p in found]),
-        np.concatenate([p.place for p in found]),
-        np.concatenate([p.separation for p in found]),
-        np.concatenate([p.reach for p in found]),
-    )
+    names = ("owner", "psi", "place", "separation", "reach")
+    everything = Poses(*(np.concatenate([getattr(one, name) for one in found]) for name in names))
     return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY_MET))

@@ -1,14 +1,15 @@
 r"""Eliminating the separation and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
 
 A resultant is never written out as a polynomial of symbols. It is evaluated at as many orientations as it has
-coefficients, from closed formulas for the small resultants in w, and its coefficients follow by a discrete Fourier
-transform: a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
+coefficients, from closed formulas for the small resultants in w. Its coefficients follow by a discrete Fourier transform.
+They make a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
 
 Ranges of the exponents of z, from the constraints' formulas, bound d (Newton polygons; D. Bernstein 1975). They give
 the numbers of complex solutions of general systems, below the degrees of the paper's Table 2:
 
-    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16;
-    three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
+    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16.
+
+    Three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def degree_bound(case: tuple[int, int]) -> int:
 
 
 def resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
-    """Resultant in w of two rings, and the sum of the sizes of its terms.
+    """Resultant in w of two trigonometric polynomials, and the sum of the sizes of its terms.
 
     For a w + b + a* / w and c w + d + c* / w it is \\|a d - c b\\|^2 - 4 Im(a c*)^2.
     """
@@ -69,7 +70,7 @@ def resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array,
 
 
 def product(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Complex, Complex]:
-    """Product of two rings: c0 + 2 Re(c1 w + c2 w^2)."""
+    """Product of two trigonometric polynomials: c0 + 2 Re(c1 w + c2 w^2)."""
     return (
         one.middle * two.middle + 2.0 * (one.first * np.conj(two.first)).real,
         one.middle * two.first + two.middle * one.first,
@@ -94,10 +95,10 @@ def without_separation(
 
 
 def resultant_with_square(ring: TrigPolynomial, double: tuple[Array, Complex, Complex]) -> tuple[Array, Array]:
-    """Resultant in w of a ring and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
+    """Resultant in w of a trigonometric polynomial and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
 
-    \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, written without division:
-    the roots' product is a* / a and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
+    It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without division. The
+    roots' product is a* / a, and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
     """
     a, b = ring.first, ring.middle
     low = np.conj(a)

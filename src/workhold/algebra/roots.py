@@ -1,9 +1,9 @@
 """All orientations at which a real trigonometric polynomial vanishes.
 
 The polynomials come as coefficients of z^-d ... z^d, z = exp(i psi); real roots psi are the roots z on the unit circle.
-Well-conditioned ones are solved as eigenvalues of companion matrices, many at a time; those whose outermost coefficients
-nearly vanish, or whose roots are crowded, go to ball arithmetic (python-flint), which isolates every root at a precision
-raised until it can.
+Well-conditioned ones are solved as eigenvalues of companion matrices, many at a time. Others, whose outermost coefficients
+nearly vanish or whose roots are crowded, go to ball arithmetic (python-flint). It isolates every root at a precision raised
+until it can.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def ball_roots(values: Complex) -> Complex:
                 continue
     finally:
         ctx.prec = before
-    # Roots that no precision tells apart are equal; their derivative's root is as good.
+    # Roots that no precision separates are equal; their derivative's root is as good.
     return np.asarray(np.roots(values[::-1]), np.complex128)
 
 

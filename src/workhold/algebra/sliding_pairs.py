@@ -1,15 +1,15 @@
 r"""Peg pairs at which the resultant says nothing: the orientation is fixed and the part slides.
 
 Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs, fix the
-orientation by themselves; along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
+orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
 resultant such a pair is a factor that carries no information about the others, and is divided out. So the orientation is
 taken from the pair, and the rest of the pose from the other contacts at that orientation: two circles or lines met at a
-time. What is divided out and what is listed here is told by one measure, ``ContactSystems.misfit``.
+time. One measure, ``ContactSystems.misfit``, decides what is divided out and what is listed here.
 
 Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
 
 The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same step, level with
-each other: pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
+each other. Pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
 the two different places that an orientation allows, which are level at a few orientations only.
 """
 
@@ -195,10 +195,10 @@ def two_and_two_sliding_pairs(
 
 
 def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArray, Complex, Array]:
-    """Rows of the first right peg, counted from the first left peg, places of the latter on its feature, and how much these
-    move when the height or the orientation does.
+    """Rows of the first right peg, places of the first left peg on its feature, and how much these places move.
 
-    ``height`` is that of the first right peg along the frame's y axis in mm.
+    Rows are counted from the first left peg. Places move when the height or the orientation does. ``height`` is the place of
+    the first right peg along the frame's y axis in mm.
     """
     middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
     tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
@@ -276,8 +276,8 @@ def alike_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
     """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
 
     The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs brought
-    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0, with x the
-    step and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
+    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0. There x is
+    the step, and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

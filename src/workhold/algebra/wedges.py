@@ -2,8 +2,8 @@
 
 Glossary
 --------
-orientation : psi in radians, by which the pegs turn in the workpiece's frame (section 4 maps the points onto the features
-    and inverts the map; the workpiece's own orientation is -psi).
+orientation : psi in radians, by which the pegs turn in the workpiece's frame. Section 4 maps the points onto the features
+    and inverts the map; the workpiece's own orientation is -psi.
 sector : one of 360 equal parts of the circle of orientations. Sets of orientations are sets of sectors, always too large
     rather than too small.
 piece : a short stretch of a feature inside a disc. The vectors between points of two pieces lie in a disc, hence in an
@@ -76,7 +76,7 @@ class FeaturePieces:
 
 
 def pieces_of(row: Array, size: float) -> FeaturePieces:
-    """Cut a feature into pieces of about ``size`` mm."""
+    """Cuts a feature into pieces of about ``size`` mm."""
     straight = row[IS_ARC] == 0.0
     length = 2.0 * row[HALF_EXTENT] * (1.0 if straight else row[RADIUS])
     count = max(2 if straight else 4, ceil(length / size))

@@ -94,7 +94,7 @@ def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> F
 def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
     """The biarc in place of a stretch of a smooth curve; None where it departs by more than the tolerance.
 
-    Each arc is held against the part of the curve between its ends: both centres lie on the normal at the joint, so the
+    Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the joint, so the
     curve changes from one arc to the other where it crosses that.
     """
     start, end = point_at(pieces, first), point_at(pieces, last)

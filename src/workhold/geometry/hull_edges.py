@@ -1,7 +1,7 @@
 """Hull edges: the straight pieces of the boundary of an outline's convex hull, on which the outline can lie flush.
 
-Each is a common tangent of two corners, of a corner and a convex arc, or of two convex arcs, that has everything on its
-left; all pairs are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a
+Each is a common tangent of two corners, of a corner and a convex arc, or of two convex arcs, and has everything on its
+left. All pairs are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a
 drawing, are one edge: it may run over several faces and the gaps between them.
 
 Glossary
@@ -60,7 +60,7 @@ class HullEdge:
 
     @property
     def length(self) -> float:
-        """In mm."""
+        """Length in mm."""
         (ax, ay), (bx, by) = self.start.point, self.end.point
         return hypot(bx - ax, by - ay)
 
@@ -78,8 +78,15 @@ class HullEdge:
 
 @frozen(eq=False)
 class HullPieces:
-    """N pieces: (N, 2) centres, (N,) radii, unit vectors (N, 2) to the middles of arcs and cosines (N,) of half their sweeps
-    (-2 for a joint, which supports in every direction), and the faces they are of."""
+    """N pieces of an outline that may lie on its hull.
+
+    Parameters
+    ----------
+    center, radius : (N, 2) and (N,), in mm.
+    middle : unit vectors (N, 2) to the middles of arcs.
+    cosine : (N,) of half their sweeps; -2 for a joint, which supports in every direction.
+    faces : those that each piece is of.
+    """
 
     center: Array
     radius: Array
@@ -198,7 +205,7 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
 
 
 def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
-    """A hull edge of which an end at a corner is told by the face that lies along the edge there, if one does."""
+    """A hull edge of which an end at a corner belongs to the face that lies along the edge there, if one does."""
     ends = []
     # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end the one before.
     for end, index in ((edge.start, -1), (edge.end, 0)):

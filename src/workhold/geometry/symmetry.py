@@ -60,8 +60,8 @@ class CenteredOutline:
 
     Parameters
     ----------
-    points : (N, 4, 2) anchor (the middle, or the centre of a whole circle), start, end and centre (of a line its middle); of
-        a whole circle all are its centre.
+    points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole circle, of which
+        all four are the centre. The centre of a line is its middle.
     kinds : (N, 2) signed radius (0 for a line), and 1 for a whole circle.
     """
 
@@ -95,7 +95,7 @@ class CenteredOutline:
         return int(off_center[0]) if len(off_center) else None
 
     def angles(self, other: CenteredOutline) -> Array:
-        """By what angles (M,) in [0, 2 pi) the anchor of the first segment may be carried to those of another outline."""
+        """Angles (M,) in [0, 2 pi) that may carry the anchor of the first segment to anchors of another outline."""
         assert self.first is not None
         x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
         return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
@@ -103,7 +103,7 @@ class CenteredOutline:
     def image(self, other: CenteredOutline, angle: float) -> NDArray[np.int64] | None:
         """The segment of another outline that a rotation carries each to, or None when one has no image."""
         assert self.first is not None
-        # One segment tells of most angles that they cannot be.
+        # One segment rules most angles out.
         one = self.images(other, angle, slice(self.first, self.first + 1))
         found = one if (one < 0).any() else self.images(other, angle, slice(None))
         return None if (found < 0).any() else found

@@ -1,4 +1,4 @@
-"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, where doubles do not tell it well enough.
+"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, where doubles are not enough.
 
 Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through the point in
 which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far below what decides. And a
@@ -27,8 +27,10 @@ ROUNDING = 2.3e-16
 
 @frozen
 class SharpReactions:
-    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and its push: the share of
-    the clamp's own force that such a unit is."""
+    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and the clamp's push.
+
+    The push is the share of the clamp's own force that such a unit is.
+    """
 
     taken: tuple[float, float, float]
     doubt: float

@@ -15,15 +15,15 @@ turning : two of three pegs of one carrier, on arcs about one centre, fix where 
     left. The third peg goes around it at a distance D. It meets a line h from the centre where D cos phi = h. It meets an
     arc of radius r about a point e from the centre where it is r from that, which is between \|D - e\| and D + e. With
     D = h, or r at an end of its range, it is there at phi = 0 alone. Its normal then passes through the centre as well.
-sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. When
-    the third peg's way is just the radius from an arc's centre, it touches that arc where its normal is square to the way,
-    as the other two normals are.
+sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. The
+    third peg's way may be just the radius from an arc's centre. Then it touches that arc where its normal is square to the
+    way, as the other two normals are.
 
 Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly shaped objects",
 IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
 
 Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the exact one by m,
-normals are off by sqrt(2 m / r), with r the smallest length that bends; in ``turning`` the third passes the centre at
+normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the third passes the centre at
 sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most ``DEPENDENT``, or this part of L.
 """
 
@@ -67,7 +67,7 @@ class TouchedFeatures(NamedTuple):
     place: Points
 
     def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
-        """The same of some records."""
+        """What the peg touches in some of the records."""
         is_arc, middle, axis, radius, place = self
         return TouchedFeatures(is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers])
 

@@ -3,8 +3,8 @@
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if there is one. At
 a nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
 directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in which some rule
-is broken everywhere, are dropped; the interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
-there is none or exactly one solution, which then is judged at rising precision; what remains is halved. What is left after
+is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
+there is none or exactly one solution, which then is judged at rising precision. What remains is halved. What is left after
 ``MOST_BOXES`` boxes stays undecided.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
@@ -133,8 +133,10 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
 
 
 def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
-    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign); of
-    one of two clamps ends, the determinant of the standing pegs' wrenches, and its push."""
+    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign).
+
+    Of one of two clamps they are ends, the determinant of the standing pegs' wrenches, and its push.
+    """
     out = [
         slack
         for row, center in zip(box.features, here.centers, strict=True)
@@ -262,7 +264,8 @@ class SingularFrame:
         whether it holds exactly one. ``here`` are the contacts at the place.
 
         A ``regular`` step combines the equations by the inverse of their own Jacobian at the place's middle, where it has
-        one: near a simple solution next to a double one that of the whole box's middle does not tell the directions apart.
+        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle does not separate the
+        directions.
         """
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(self.places(middle)), self.slopes(here)
@@ -296,7 +299,7 @@ def never() -> bool:
 
 
 def solutions_in(box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = never) -> BoxOutcome | None:
-    """Find every fixture of a box, or say why that cannot be decided; None when the work was stopped before."""
+    """Finds every fixture of a box, or says why that cannot be decided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
         frame = SingularFrame.of(box, limits)
         waiting = [frame.start()]

@@ -50,7 +50,7 @@ def read_dxf(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline entities of a DXF file's model space.
+    """Reads the outline entities of a DXF file's model space.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def read_document(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
+    """Reads the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def read_document(
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuse what is plainly no DXF, or cut short, before ezdxf tries its best with it.
+    """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it.
 
     Raises
     ------

@@ -75,12 +75,12 @@ class DxfWalk:
         }
 
     def visit_all(self, entities: Iterable[Any], nest: BlockNesting) -> None:
-        """Visit entities in drawing order."""
+        """Visits entities in drawing order."""
         for entity in entities:
             self.visit(entity, nest)
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Collect one entity, or note why it was left out.
+        """Collects one entity, or notes why it was left out.
 
         Raises
         ------
@@ -128,7 +128,7 @@ class DxfWalk:
         return True
 
     def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
-        """Add an entity's chain.
+        """Adds an entity's chain.
 
         Raises
         ------
@@ -154,7 +154,7 @@ class DxfWalk:
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Refuse entities that are not level, or lie at another height than those before.
+        """Refuses entities that are not level, or lie at another height than those before.
 
         Raises
         ------
@@ -173,7 +173,7 @@ class DxfWalk:
                 )
 
     def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
-        """Visit the entities of an inserted block, once for every place of an array.
+        """Visits the entities of an inserted block, once for every place of an array.
 
         Raises
         ------
@@ -209,7 +209,7 @@ class DxfWalk:
             self.visit_all(block, evolve(inner, placement=placement))
 
     def refuse_missing_layers(self) -> None:
-        """Refuse chosen layers on which there is no outline entity.
+        """Refuses chosen layers on which there is no outline entity.
 
         Raises
         ------
@@ -281,7 +281,7 @@ def block_placement(insert: Any) -> Placement:
 
 
 def place_of(entity: Any) -> tuple[float, float]:
-    """Some point of an entity, in its own coordinates; the origin when it tells none."""
+    """Some point of an entity, in its own coordinates; the origin where it has none."""
     for name in ("center", "start", "vtx0", "start_location"):
         if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
             point = entity.dxf.get(name)

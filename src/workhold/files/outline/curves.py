@@ -147,7 +147,7 @@ def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dic
 def refuse_true_curves(
     labels: Iterable[str], found: Mapping[str, CurveReading], fit: float | None, layered: bool
 ) -> None:
-    """Refuse an outline with curves that are no lines or arcs, unless a fit is given.
+    """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
 
     Parameters
     ----------

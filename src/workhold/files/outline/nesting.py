@@ -65,7 +65,7 @@ class MeasuredLoop:
 
 
 def ring(loop: Loop) -> MeasuredLoop:
-    """Measure a loop."""
+    """Measures a loop."""
     segments = loop_segments(loop.vertices)
     area = signed_area(segments)
     if area < 0:
@@ -77,7 +77,7 @@ def ring(loop: Loop) -> MeasuredLoop:
 
 
 def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
-    """Sort loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
+    """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
     rings = sorted((ring(loop) for loop in loops), key=lambda r: -r.area)
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
@@ -108,7 +108,7 @@ def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
-    """Refuse a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
+    """Refuses a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
 
     Raises
     ------

@@ -41,7 +41,7 @@ def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> No
 
 
 def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
-    """Refuse to take a hole for the part when the outline around it is nearly closed, but not quite.
+    """Refuses to take a hole for the part when the outline around it is nearly closed, but not quite.
 
     Raises
     ------

@@ -173,7 +173,7 @@ def curve_of(segment: Any, kind: str, label: str) -> Pieces | None:
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
-    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which tells side and direction."""
+    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which gives side and direction."""
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
     half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)

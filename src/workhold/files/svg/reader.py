@@ -1,8 +1,8 @@
 """SVG drawings: from bytes to chains in mm.
 
 What the author of a drawing sees is read, or refused by name; svgelements resolves path data. SVG's y axis points
-down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen, with the page's lower
-left corner as the origin (or the point x = 0, y = 0 of the user units when the page has no size).
+down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen. The origin is the page's
+lower left corner, or the point x = 0, y = 0 of the user units when the page has no size.
 
 Glossary
 --------
@@ -27,7 +27,7 @@ __all__ = ["read_svg"]
 
 
 def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None) -> Drawing:
-    """Read the visible outlines of an SVG file.
+    """Reads the visible outlines of an SVG file.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class SvgWalk:
         self.count = 0
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
-        """Collect one element and those inside it.
+        """Collects one element and those inside it.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class SvgWalk:
             self.ignored[tag] += style.shown
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
-        """Visit the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
+        """Visits the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
         for element in parent:
             if not self.document.drawn(element):
                 continue
@@ -128,7 +128,7 @@ class SvgWalk:
             self.visit(element, nest)
 
     def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Add the chains of a shape that is seen.
+        """Adds the chains of a shape that is seen.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class SvgWalk:
                 yield chain
 
     def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Visit what a <use> shows.
+        """Visits what a <use> shows.
 
         Raises
         ------
@@ -193,7 +193,7 @@ class SvgWalk:
             self.visit(target, inner)
 
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
-        """Visit a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
+        """Visits a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
 
         Raises
         ------
@@ -220,7 +220,7 @@ class SvgWalk:
     def visit_view(
         self, figure: ShapeElement, nest: ElementNesting, corner: tuple[float, float], sizes: ShapeElement
     ) -> None:
-        """Visit the children of a nested drawing or symbol in its own viewport.
+        """Visits the children of a nested drawing or symbol in its own viewport.
 
         Raises
         ------
