@@ -14,7 +14,7 @@ from attrs import evolve
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, InputError, Result, design
-from workhold.listing.paired import PairedFixtures
+from workhold.listing.clamped_seats import undecided_pairs
 from workhold.model.load import Load
 from workhold.model.notes import no_pair_note
 from workhold.model.proof import Undecided
@@ -225,9 +225,7 @@ def test_a_tip_keeps_off_the_wall() -> None:
 def test_an_undecided_pair_is_named_as_it_must_be(results: dict[str, Result]) -> None:
     """By its kind, directions and faces."""
     result = results["best"]
-    fake = PairedFixtures.__new__(PairedFixtures)
-    fake.toolkit = result.toolkit
-    entries: list[Undecided] = fake.named(result.table.take(np.arange(3)))
+    entries: list[Undecided] = undecided_pairs(result.table.take(np.arange(3)), result.toolkit)
     assert list(undecided_faults(entries, result.query)) == []
     single = f"edge {entries[0].type.split()[1]}"
     four = evolve(entries[0], type=single, faces=entries[0].faces[:4], columns=(0,) * 4, rows=(0,) * 4)

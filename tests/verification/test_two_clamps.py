@@ -17,7 +17,7 @@ from flint import arb
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
-from workhold.listing.paired import PairedFixtures
+from workhold.listing.clamped_seats import undecided_pairs
 from workhold.model.fixture import Pair, Peg
 from workhold.model.load import Load
 from workhold.model.notes import no_pair_note
@@ -380,10 +380,7 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
     """Its locators with each of its clamps."""
     result = results["best"]
     table = result.table.take(np.arange(3))
-    fake = PairedFixtures.__new__(PairedFixtures)
-    assert isinstance(result.toolkit, Plate)
-    fake.toolkit = result.toolkit
-    entries = fake.named(table)
+    entries = undecided_pairs(table, result.toolkit)
     assert all(entry.reason == AT_AN_EDGE and len(entry.faces) == 5 for entry in entries)
     assert list(undecided_faults(entries, result.query)) == []
     for edit in (

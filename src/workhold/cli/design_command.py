@@ -176,8 +176,9 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     """The answer of an engine, which is imported only now, written on the way where a file is named for that."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
+        from workhold.search.seated import seated_answer
 
-        return answer_by_algebra(query, **watching)
+        return seated_answer(query, answer_by_algebra, **watching)
     if streamed is not None:
         from workhold.files.result.columns import answer_to_file
 

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates, listed_once, most_holes, packed_holes
-from workhold.listing.distinct import Turns
 from workhold.listing.finish import Batches, listed_form
+from workhold.listing.identity import PartRotations
 from workhold.listing.placing import placed
 from workhold.listing.ranking import measured, ranking_keys
 from workhold.listing.runs import Run, Runs, in_order, key_of
@@ -68,12 +68,12 @@ class Gathering:
     by_holes: Runs = field(init=False)
     by_turn: Runs = field(init=False)
     by_rank: Runs = field(init=False)
-    turns: Turns = field(init=False)
+    turns: PartRotations = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.course = Course(0, cancel=self.cancel)
         self.by_holes, self.by_turn, self.by_rank = (Runs(self.folder) for _ in range(3))
-        self.turns = Turns.of(self.problem)
+        self.turns = PartRotations.of(self.problem)
         kinds = len(self.problem.query.toolkit.arrangements)
         self.found, self.distinct = np.zeros(kinds, np.int64), np.zeros(kinds, np.int64)
 

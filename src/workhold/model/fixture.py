@@ -12,7 +12,7 @@ from attrs import field, frozen
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.holes import hole_name
 
 __all__ = ["WALL", "Fixture", "Listed", "Pair", "Peg", "Pose"]
@@ -253,7 +253,7 @@ class Fixture:
         >>> "Fixture 1 of" in result[0].draw()
         True
         """
-        picture: str = beyond("fixture_picture")(self, path, title=title, unit=unit)
+        picture: str = delegate("fixture_picture")(self, path, title=title, unit=unit)
         return picture
 
     def save_sheet(
@@ -282,4 +282,4 @@ class Fixture:
         InputError
             For a fixture that is not one of a result, values that cannot be, and when the file cannot be written.
         """
-        beyond("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)
+        delegate("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)

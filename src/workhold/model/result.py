@@ -11,7 +11,7 @@ from attrs import define, evolve, field, fields
 from numpy.typing import NDArray
 
 from workhold.geometry.segment import Line
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
 from workhold.model.notes import cut_note, fitted_note
@@ -271,7 +271,7 @@ class Result:
         InputError
             For a result without a fixture, and when the file cannot be written.
         """
-        picture: str = beyond("result_picture")(self, path, unit=unit)
+        picture: str = delegate("result_picture")(self, path, unit=unit)
         return picture
 
     def to_pandas(self) -> Any:
@@ -282,7 +282,7 @@ class Result:
         InputError
             Where pandas is not installed.
         """
-        return beyond("to_pandas")(self)
+        return delegate("to_pandas")(self)
 
     def to_arrow(self) -> Any:
         """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
@@ -292,7 +292,7 @@ class Result:
         InputError
             Where pyarrow is not installed.
         """
-        return beyond("to_arrow")(self)
+        return delegate("to_arrow")(self)
 
 
 def whole_turn_degrees(theta: float) -> float:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.fixels.directions import TOWARDS
 from workhold.fixels.fields import Table, ToolkitField
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.flat import Flat
 from workhold.model.holes import Holes, column_letters, hole_name, letter_of
 from workhold.model.units import Unit
@@ -391,7 +391,7 @@ class Toolkit:
         >>> Vise.preset("plate-20mm", columns=2).pitch, Plate.preset("clamp-plate-20mm").clamp_radius
         ((20.0, 20.0), 5.0)
         """
-        given = {**beyond("preset_fields")(cls, name), **changes}
+        given = {**delegate("preset_fields")(cls, name), **changes}
         try:
             return cls(**given)
         except TypeError as error:
@@ -407,7 +407,7 @@ class Toolkit:
         >>> Fence.presets()
         ('fence-20mm',)
         """
-        names: tuple[str, ...] = beyond("preset_names_of")(cls)
+        names: tuple[str, ...] = delegate("preset_names_of")(cls)
         return names
 
     def changed(self, fields: Mapping[str, Any]) -> Self:

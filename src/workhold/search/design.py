@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from threading import Event
 
 from attrs import evolve
@@ -27,11 +28,12 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks
-from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
+from workhold.search.lattice_shares import LatticeShares
 from workhold.search.preview import Preview, Previews
+from workhold.search.seated import Receiver, receive_seated, seated_answer
+from workhold.search.shares import answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
-from workhold.seating.first import Receiver, receive_seated, seated_answer
 
 __all__ = ["Receiver", "answer", "design"]
 
@@ -142,17 +144,14 @@ def answer(
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
         return answer_with_seating(query, workers, progress, cancel, preview, receiver)
-    if query.toolkit.needs_pairs:
-        if query.toolkit.wall is not None:
-            # What searches fences loads ball arithmetic, which no other toolkit needs beforehand.
-            from workhold.search.fence_pairs import answer_of_pairs_on_fence
-
-            return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
-        return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
     if query.toolkit.wall is not None:
-        from workhold.search.fence import answer_on_fence
+        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+        from workhold.search.wall_shares import WallShares
 
-        return handed_over(answer_on_fence(query, progress, cancel), receiver)
+        return handed_over(answer_in_shares(WallShares.of(query, cancel), progress, cancel), receiver)
+    if query.toolkit.needs_pairs:
+        with LatticeShares.of(query, workers, cancel) as shares:
+            return handed_over(answer_in_shares(shares, progress, cancel, preview), receiver)
     ways = query.toolkit.ways
     if len(ways) == 1:
         return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
@@ -172,10 +171,7 @@ def answer_with_seating(
     receiver: Receiver | None,
 ) -> Result:
     """The answer with the seating of the first fixtures, see :func:`answer`."""
-
-    def search(asked: Query, share: Progress | None, receiver: Receiver | None = None) -> Result:
-        return answer(asked, threads=threads, progress=share, cancel=cancel, preview=preview, receiver=receiver)
-
+    search = partial(answer, threads=threads, preview=preview)
     if receiver is None:
         return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
     return receive_seated(query, search, receiver, threads=threads, progress=progress, cancel=cancel)

@@ -29,7 +29,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 
-__all__ = ["Laid", "Places", "laid_on", "places_on"]
+__all__ = ["PartOnWall", "PinContacts", "part_on_wall", "pin_contacts_on"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -44,7 +44,7 @@ TOGETHER = 1 << 19
 
 
 @frozen(eq=False)
-class Laid:
+class PartOnWall:
     """Features of a part that lies on a hull edge.
 
     Parameters
@@ -61,8 +61,8 @@ class Laid:
     off: float
 
 
-def laid_on(rows: Array, start: Array, end: Array) -> Laid:
-    """Features (F, 12) of a part laid on the hull edge from a start to an end (2,), all about the same point."""
+def part_on_wall(rows: Array, start: Array, end: Array) -> PartOnWall:
+    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same point."""
     step = end - start
     length = float(np.hypot(*step))
     (tx, ty), out = step / length, rows.copy()
@@ -72,11 +72,11 @@ def laid_on(rows: Array, start: Array, end: Array) -> Laid:
     out[:, AXIS_Y] = rows[:, AXIS_Y] * tx - rows[:, AXIS_X] * ty
     size = float(np.abs(out[:, [X, Y, RADIUS]]).max(initial=length) + np.abs([start, end]).max())
     turn = 8 * ROUNDING * (1.0 + size / length)
-    return Laid(out, length, turn, 16 * ROUNDING * size + turn * size)
+    return PartOnWall(out, length, turn, 16 * ROUNDING * size + turn * size)
 
 
 @define(frozen=True, eq=False)
-class Places:
+class PinContacts:
     """M contacts of pegs on lines.
 
     Parameters
@@ -102,17 +102,19 @@ class Places:
     def __len__(self) -> int:
         return len(self.line)
 
-    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Places:
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> PinContacts:
         """The contacts of an index array or mask, in its order."""
-        return Places(*(getattr(self, one.name)[order] for one in fields(Places)))
+        return PinContacts(*(getattr(self, one.name)[order] for one in fields(PinContacts)))
 
     @classmethod
-    def joined(cls, parts: list[Places]) -> Places:
+    def joined(cls, parts: list[PinContacts]) -> PinContacts:
         """All contacts of several."""
-        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Places)))
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(PinContacts)))
 
 
-def places_on(laid: Laid, chosen: tuple[int, int], levels: Array, upright: bool, margin: float) -> Places:
+def pin_contacts_on(
+    lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
+) -> PinContacts:
     """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a tangent joint with
     both features that meet there.
 
@@ -123,57 +125,61 @@ def places_on(laid: Laid, chosen: tuple[int, int], levels: Array, upright: bool,
     margin : smallest distance in mm from the end of a feature.
     """
     first, last = chosen
-    rows = laid.rows[first:last]
+    rows = lying.rows[first:last]
     along, across = ((Y, X) if upright else (X, Y)), ((AXIS_Y, AXIS_X) if upright else (AXIS_X, AXIS_Y))
     together = max(TOGETHER // max(len(rows), 1), 1)
     parts = []
     for start in range(0, max(len(levels), 1), together):
         some = levels[start : start + together]
-        for part in (on_lines(laid, rows, some, along, across), on_arcs(laid, rows, some, along, across)):
+        for part in (on_lines(lying, rows, some, along, across), on_arcs(lying, rows, some, along, across)):
             inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
             kept = part if inside.all() else part.take(inside)
-            parts.append(Places(kept.line + start, kept.feature + first, *tail(kept)))
-    return Places.joined(parts)
+            parts.append(PinContacts(kept.line + start, kept.feature + first, *tail(kept)))
+    return PinContacts.joined(parts)
 
 
-def tail(places: Places) -> tuple[Array, ...]:
+def tail(places: PinContacts) -> tuple[Array, ...]:
     """All but the lines and features of contacts."""
-    return tuple(getattr(places, one.name) for one in fields(Places))[2:]
+    return tuple(getattr(places, one.name) for one in fields(PinContacts))[2:]
 
 
-def on_lines(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]) -> Places:
+def on_lines(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
     """Contacts with straight features; those parallel to the lines have none."""
     straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
     some = rows[straight]
     rises = np.abs(some[:, across[1]])
     # Most pairs of a line and a feature are far from each other: the bound below solved for s, generously.
-    farthest = 1.01 * (some[:, HALF_EXTENT] + 4.0 * laid.off / rises + LOOSE)
-    farthest[4.0 * laid.turn > 0.009 * rises] = np.inf
+    farthest = 1.01 * (some[:, HALF_EXTENT] + 4.0 * lying.off / rises + LOOSE)
+    farthest[4.0 * lying.turn > 0.009 * rises] = np.inf
     line, which = np.nonzero(np.abs(levels[:, None] - some[:, along[1]]) <= farthest * rises)
     s = (levels[line] - some[which, along[1]]) / some[which, across[1]]
-    reach = 4.0 * (laid.off + laid.turn * np.abs(s)) / rises[which]
+    reach = 4.0 * (lying.off + lying.turn * np.abs(s)) / rises[which]
     near = np.abs(s) <= some[which, HALF_EXTENT] + (reach + LOOSE)
     line, which, s, reach = line[near], which[near], s[near], reach[near]
     part = some.T[:, which]
     point = np.stack([part[X] + s * part[AXIS_X], part[Y] + s * part[AXIS_Y]], axis=1)
     slack = np.minimum(part[HALF_EXTENT] - s + part[HIGH_SLACK], part[HALF_EXTENT] + s + part[LOW_SLACK])
     normal = np.stack([part[AXIS_Y], -part[AXIS_X]], axis=1)
-    turned = np.full(len(s), 2.0 * laid.turn)
-    return Places(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
+    turned = np.full(len(s), 2.0 * lying.turn)
+    return PinContacts(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
 
 
-def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]) -> Places:
+def on_arcs(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
     """Contacts with arcs."""
     round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     some = rows[round_]
     radius, place = some[:, RADIUS], some[:, along[1]]
     # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than both roots.
     # Its normal is across the line to within its swing, so no contact there is told to press, but by balls.
-    least = 16.0 * laid.off * radius
+    least = 16.0 * lying.off * radius
     low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
     line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
     up = levels[line] - place[which]
-    met = np.abs(up) <= radius[which] + 2.0 * laid.off
+    met = np.abs(up) <= radius[which] + 2.0 * lying.off
     line, which, up = line[met], which[met], up[met]
     part = some.T[:, which]
     half = np.sqrt(np.maximum((part[RADIUS] - up) * (part[RADIUS] + up), 0.0))
@@ -185,7 +191,7 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     up, half, grazing = up[chosen], half[chosen], grazing[chosen]
     part, branch = part[:, chosen], np.array([-1.0, 1.0])[side]
     with np.errstate(divide="ignore", invalid="ignore"):
-        reach = 4.0 * laid.off * part[RADIUS] / half
+        reach = 4.0 * lying.off * part[RADIUS] / half
     reach[grazing] = half[grazing] + np.sqrt(2.0 * least[which[grazing]])
     ray = np.empty((len(up), 2))
     upright = along[0] == Y
@@ -199,9 +205,9 @@ def on_arcs(laid: Laid, rows: Array, levels: Array, along: tuple[int, int], acro
     )
     slack[part[HALF_EXTENT] >= np.pi] = np.inf
     normal = part[SIGN][:, None] * ray / part[RADIUS][:, None]
-    swing = 2.0 * (laid.turn + (reach + laid.off) / part[RADIUS])
+    swing = 2.0 * (lying.turn + (reach + lying.off) / part[RADIUS])
     point = np.stack([part[X] + ray[:, 0], part[Y] + ray[:, 1]], axis=1)
-    return Places(line, round_[which], point, normal, slack, reach, swing, branch)
+    return PinContacts(line, round_[which], point, normal, slack, reach, swing, branch)
 
 
 def half_angles(rows: Array) -> Array:

@@ -29,15 +29,15 @@ from workhold.conventions import (
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
-from workhold.listing.on_fence import Pressed
+from workhold.listing.wall_fixtures import WallFixtures
 from workhold.model.fixture import Pose
 from workhold.model.query import Query
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
-from workhold.search.fence_closure import Clamps, closure, may_oppose, reaction_doubts, seating
-from workhold.search.fence_places import Laid, Places, laid_on, places_on
+from workhold.search.pin_contacts import PartOnWall, PinContacts, part_on_wall, pin_contacts_on
+from workhold.search.wall_closure import ContactPairs, closure, may_oppose, reaction_doubts, seating
 
-__all__ = ["FenceSearch", "pressed_by", "searches_of"]
+__all__ = ["WallSearch", "fixtures_on", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -50,7 +50,7 @@ TOGETHER = 1 << 17
 
 
 @define(eq=False)
-class FenceSearch:
+class WallSearch:
     """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp.
 
     Parameters
@@ -78,7 +78,7 @@ class FenceSearch:
     escalated: int = field(default=0, init=False)
     undecided: list[Candidate] = field(factory=list, init=False)
     is_square: bool = field(default=True, init=False)
-    nearest: tuple[float, Pressed] | None = field(default=None, init=False)
+    nearest: tuple[float, WallFixtures] | None = field(default=None, init=False)
 
     def __attrs_post_init__(self) -> None:
         toolkit = self.problem.toolkit
@@ -101,25 +101,25 @@ class FenceSearch:
             if off and not any(ahead <= width for ahead, width in off):
                 continue
             x, y = part.flush.ends[number, 0].tolist()
-            laid = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
-            zones = [laid.carry(segment) for zone in asked.zones for segment in zone.segments]
+            pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
+            zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
             if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
                 out.append(number)
         return out
 
-    def laid(self, edge: int) -> Laid:
+    def laid(self, edge: int) -> PartOnWall:
         """The features as the part lies on a hull edge."""
         ends = self.problem.workpiece.flush.ends[edge] - np.array(self.problem.workpiece.center)
-        return laid_on(self.problem.rows, ends[0], ends[1])
+        return part_on_wall(self.problem.rows, ends[0], ends[1])
 
-    def pressed(self, edge: int) -> Iterator[Pressed]:
+    def fixtures(self, edge: int) -> Iterator[WallFixtures]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
-        return (part for _, part in pressed_by([self], edge))
+        return (part for _, part in fixtures_on([self], edge))
 
-    def on_rows(self, edge: int, laid: Laid, chosen: tuple[int, int], rows: Array) -> Places:
+    def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
         """Contacts of pegs in rows of holes, those where a row grazes an arc told by balls."""
         problem = self.problem
-        places = places_on(laid, chosen, rows, False, problem.contact_margin)
+        places = pin_contacts_on(lying, chosen, rows, False, problem.contact_margin)
         near = np.flatnonzero(places.reach > SAME_PLACE / 2)
         kept = np.ones(len(places), np.bool_)
         for k in near.tolist():
@@ -128,29 +128,29 @@ class FenceSearch:
             kept[k] = sharp is not None
             if sharp is not None:
                 places.point[k], places.normal[k], places.slack[k] = sharp.point, sharp.normal, sharp.slack
-                places.reach[k], places.swing[k] = 4.0 * laid.off, 4.0 * laid.turn
+                places.reach[k], places.swing[k] = 4.0 * lying.off, 4.0 * lying.turn
         return places.take(kept)
 
-    def rows_of(self, laid: Laid, chosen: tuple[int, int]) -> Array:
+    def rows_of(self, lying: PartOnWall, chosen: tuple[int, int]) -> Array:
         """v of the rows of holes, from the first one on, that some features reach."""
         first, pitch = self.plate.offset[1], self.plate.pitch[1]
-        _, high = reach_of(laid.rows[slice(*chosen)], upward=True)
+        _, high = reach_of(lying.rows[slice(*chosen)], upward=True)
         count = max(floor((high - first) / pitch + 1e-9) + 1, 0)
         rows = np.arange(count if self.plate.rows is None else min(count, self.plate.rows), dtype=np.float64)
         return np.asarray(first + pitch * rows)
 
-    def of_rows(self, places: Places, locators: Places) -> Iterator[Clamps]:
+    def of_rows(self, places: PinContacts, locators: PinContacts) -> Iterator[ContactPairs]:
         """Contacts of the clamp on rows, each with every locator, some at a time."""
         chosen = np.flatnonzero(self.may_press(places))
         together = max(TOGETHER // max(len(chosen), 1), 1)
         for start in range(0, len(locators), together):
             numbers = np.arange(start, min(start + together, len(locators)))
-            yield Clamps(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
+            yield ContactPairs(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
 
-    def on_columns(self, laid: Laid, locators: Places) -> Iterator[Clamps]:
+    def on_columns(self, lying: PartOnWall, locators: PinContacts) -> Iterator[ContactPairs]:
         """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted from."""
         problem = self.problem
-        low, high = reach_of(laid.rows[slice(*problem.moving)], upward=False)
+        low, high = reach_of(lying.rows[slice(*problem.moving)], upward=False)
         pitch, columns = self.plate.pitch[0], self.plate.columns
         most = inf if columns is None else columns - 1
         u = locators.point[:, 0]
@@ -161,28 +161,30 @@ class FenceSearch:
         for start in range(0, len(locators) if len(steps) else 0, together):
             some = u[start : start + together]
             levels = (some[:, None] + pitch * steps).ravel()
-            places = places_on(laid, problem.moving, levels, True, problem.contact_margin)
+            places = pin_contacts_on(lying, problem.moving, levels, True, problem.contact_margin)
             locator, step = np.divmod(places.line, len(steps))
             locator += start
             # The column is as uncertain as the locator it is counted from.
-            grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + laid.off) / laid.off)
-            yield Clamps(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
+            grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + lying.off) / lying.off)
+            yield ContactPairs(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
 
-    def may_press(self, places: Places) -> BoolArray:
+    def may_press(self, places: PinContacts) -> BoolArray:
         """Which contacts (M,) of the tip are clear of the wall, and push the part."""
         x, y = self.push
         push = -(places.normal[:, 0] * x + places.normal[:, 1] * y)
         above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
         return np.asarray(above & (push > -2.0 * places.swing))
 
-    def closing(self, edge: int, laid: Laid, one: Places, clamps: Clamps) -> Pressed:
+    def closing(self, edge: int, lying: PartOnWall, one: PinContacts, clamps: ContactPairs) -> WallFixtures:
         """The pairs of locators and clamps that press the part against the wall."""
         self.examined += len(clamps)
         pairing = self.problem.pairing
         if not (pairing or self.explains):
-            clamps = clamps.take(may_oppose(laid, one, clamps, self.problem))
+            clamps = clamps.take(may_oppose(lying, one, clamps, self.problem))
         two, locator = clamps.places.take(clamps.which), clamps.locator
-        null, push, held, doubtful = (seating if pairing else closure)(laid, one, two, locator, self.push, self.problem)
+        null, push, held, doubtful = (seating if pairing else closure)(
+            lying, one, two, locator, self.push, self.problem
+        )
         open_ = np.flatnonzero(doubtful)
         for k in open_.tolist():
             candidate = self.candidate(edge, one, two, locator, k)
@@ -192,9 +194,9 @@ class FenceSearch:
                 self.undecided.append(candidate)
         self.escalated += len(open_)
 
-        def pairs(chosen: IntArray) -> Pressed:
+        def pairs(chosen: IntArray) -> WallFixtures:
             behind = locator[chosen]
-            return Pressed(
+            return WallFixtures(
                 edge=np.full(len(chosen), edge),
                 row=one.line[behind],
                 line=two.line[chosen],
@@ -207,7 +209,7 @@ class FenceSearch:
 
         good = np.flatnonzero(held)
         self.verified += len(good)
-        found = self.sharpened(pairs(good), edge, laid, one, two.take(good), locator[good])
+        found = self.sharpened(pairs(good), edge, lying, one, two.take(good), locator[good])
         if self.explains and self.verified == 0:
             size = np.abs(null).sum(axis=1)
             share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
@@ -220,14 +222,14 @@ class FenceSearch:
         return found
 
     def sharpened(
-        self, pressed: Pressed, edge: int, laid: Laid, one: Places, two: Places, locator: IntArray
-    ) -> Pressed:
+        self, pressed: WallFixtures, edge: int, lying: PartOnWall, one: PinContacts, two: PinContacts, locator: IntArray
+    ) -> WallFixtures:
         """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may be off, too."""
         places = self.placed(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
         null, push = places.null.copy(), places.push.copy()
-        doubt = reaction_doubts(places, laid, one, two, locator, self.problem)
+        doubt = reaction_doubts(places, lying, one, two, locator, self.problem)
         grazes = two.swing > FORCES_OFF * push
         for k in np.flatnonzero((doubt > DOUBTFUL) | grazes).tolist():
             candidate = self.candidate(edge, one, two, locator, k)
@@ -237,7 +239,9 @@ class FenceSearch:
                 push[k] = sharp.push if grazes[k] else push[k]
         return evolve(places, null=null, doubt=doubt, push=push)
 
-    def placed(self, pressed: Pressed, edge: int, one: Places, two: Places, locator: IntArray) -> Pressed:
+    def placed(
+        self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
+    ) -> WallFixtures:
         """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
         column that grazes an arc."""
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
@@ -249,7 +253,7 @@ class FenceSearch:
                 null[k] = null[k] if self.problem.pairing else sharp.null
         return evolve(pressed, locator=places, tip=tip, null=null) if len(far) else pressed
 
-    def candidate(self, edge: int, one: Places, two: Places, locator: IntArray, k: int) -> Candidate:
+    def candidate(self, edge: int, one: PinContacts, two: PinContacts, locator: IntArray, k: int) -> Candidate:
         """A pair as balls decide it."""
         behind = int(locator[k])
         return Candidate(
@@ -262,24 +266,24 @@ class FenceSearch:
         )
 
 
-def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[FenceSearch]:
+def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
     """The searches of a query on the ways of a fence, which differ in the clamp's direction alone."""
     one, *others = (evolve(query, toolkit=way) for way in ways)
     problem = Problem.of(one, pairing=pairing)
-    return [FenceSearch(problem), *(FenceSearch(evolve(problem, query=other)) for other in others)]
+    return [WallSearch(problem), *(WallSearch(evolve(problem, query=other)) for other in others)]
 
 
-def pressed_by(searches: Sequence[FenceSearch], edge: int) -> Iterator[tuple[FenceSearch, Pressed]]:
+def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[WallSearch, WallFixtures]]:
     """The pairs that press the part as it lies on a hull edge, some at a time, each with its search.
 
     What does not depend on the clamp's direction is looked at once for all searches (``searches_of``): where the part lies,
     the locators, and what pegs touch on rows and on columns.
     """
     one = searches[0]
-    problem, laid = one.problem, one.laid(edge)
-    lines = laid.rows[:, IS_ARC] == 0.0
-    tilted = np.minimum(np.abs(laid.rows[:, AXIS_X]), np.abs(laid.rows[:, AXIS_Y])) > PARALLEL
-    locators = one.on_rows(edge, laid, problem.standing, one.rows_of(laid, problem.standing))
+    problem, lying = one.problem, one.laid(edge)
+    lines = lying.rows[:, IS_ARC] == 0.0
+    tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
+    locators = one.on_rows(edge, lying, problem.standing, one.rows_of(lying, problem.standing))
     for search in searches:
         search.is_square = search.is_square and bool((lines & ~tilted).all())
         search.locators += len(locators)
@@ -289,17 +293,17 @@ def pressed_by(searches: Sequence[FenceSearch], edge: int) -> Iterator[tuple[Fen
     if along:
         places = locators
         if problem.moving != problem.standing:
-            places = one.on_rows(edge, laid, problem.moving, one.rows_of(laid, problem.moving))
+            places = one.on_rows(edge, lying, problem.moving, one.rows_of(lying, problem.moving))
         for search in along:
             for part in search.of_rows(places, locators):
                 if len(part):
-                    yield search, search.closing(edge, laid, locators, part)
+                    yield search, search.closing(edge, lying, locators, part)
     upright = [search for search in searches if not search.clamp.is_along_x]
-    for part in one.on_columns(laid, locators) if upright else ():
+    for part in one.on_columns(lying, locators) if upright else ():
         for search in upright:
             pushing = part.take(search.may_press(part.places))
             if len(pushing):
-                yield search, search.closing(edge, laid, locators, pushing)
+                yield search, search.closing(edge, lying, locators, pushing)
 
 
 def reach_of(rows: Array, upward: bool) -> tuple[float, float]:

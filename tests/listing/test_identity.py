@@ -13,8 +13,8 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import Candidates, canonical_form, joined
-from workhold.listing.distinct import Turns
 from workhold.listing.finish import finish
+from workhold.listing.identity import PartRotations
 from workhold.search.cells import run_blocks
 from workhold.search.toolkit_search import ToolkitSearch
 
@@ -36,7 +36,7 @@ def found(problem: Problem) -> Candidates:
 def test_what_is_turned_has_the_same_smallest_form(corners: int) -> None:
     """Whatever rotation a fixture is carried by: the set it makes is the same, and so is the number of sets."""
     problem = Problem.of(Query(polygon(corners), Vise(pitch=9, columns=2, peg_radius=2)))
-    turns, c = Turns.of(problem), found(problem)
+    turns, c = PartRotations.of(problem), found(problem)
     assert len(turns.rotations) == corners and len(c.standing) > 100
     words, pose, kind = turns.smallest(c)
     sets = turns.count((*words, *pose.T, kind))
