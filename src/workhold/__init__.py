@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from workhold.files.result.save import save
     from workhold.model.fence import Fence
     from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.flat_jaw import FlatJaw
     from workhold.model.load import Load
     from workhold.model.plate import Plate
     from workhold.model.query import Query
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Fence",
+    "FlatJaw",
     "Fixture",
     "WorkholdError",
     "InputError",
@@ -66,6 +68,7 @@ __all__ = [
 
 HOMES = {
     "Fence": "workhold.model.fence",
+    "FlatJaw": "workhold.model.flat_jaw",
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",

@@ -59,8 +59,10 @@ class Frame:
         InputError
             When the lattices are not alike, or the moving carrier slides neither along its rows nor along its columns.
         """
-        (standing,) = (carrier for carrier in toolkit.carriers if carrier.travel is None and not carrier.is_wall)
         moving = toolkit.moving
+        still = (carrier for carrier in toolkit.carriers if carrier.travel is None and not carrier.is_wall)
+        # Beside a wall a lattice that slides may be all there is.
+        standing = next(still, moving)
         assert moving.travel is not None
         turns = moving.travel.direction / (pi / 2)
         if abs(turns - round(turns)) > ROUNDING or standing.pitch != moving.pitch:

@@ -439,12 +439,30 @@ OF_A_FENCE = Table(
         FLAT,
     ),
 )
+OF_A_FLAT_JAW = Table(
+    "flat-jaw vise",
+    "A vise with one flat jaw, and pegs on the other",
+    (
+        *ON_A_PLATE[:3],
+        PEG_RADIUS,
+        MIN_GAP.shown(
+            Label("Smallest opening", "peg radius"),
+            follows="peg_radius",
+            figure="smallest opening",
+            at_least="peg_radius",
+            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the flat jaw.",
+        ),
+        MAX_OPENING,
+        FLAT,
+    ),
+)
 # By kind.
 TABLES: Mapping[str, Table] = {
     "vise": OF_A_VISE,
     "opening-vise": OF_A_VISE,
     "translating-clamp": OF_A_PLATE,
     "edge": OF_A_FENCE,
+    "flat-jaw": OF_A_FLAT_JAW,
 }
 # The kind that is meant where nobody says.
 USUAL = "vise"

@@ -221,8 +221,10 @@ def clamps_of(table: FixtureTable, toolkit: Toolkit) -> tuple[BoolArray, Array]:
     directions = [
         [DIRECTION_NAMES.index(name) for name in (one.direction or "").split()] for one in toolkit.arrangements
     ]
-    direction, plate = np.array(directions)[table.arrangement], toolkit.carriers[0]
+    direction, plate = np.array(directions, np.int64)[table.arrangement], toolkit.carriers[0]
     upright = is_upright(direction)
+    if upright.shape[1] == 0:
+        return upright, np.zeros(upright.shape)
     columns, rows = (
         values[:, 3:] * pitch + first
         for values, pitch, first in zip((table.column, table.row), plate.pitch, plate.offset, strict=True)
@@ -243,7 +245,8 @@ def identity_numbers(table: FixtureTable, locators: int, upright: BoolArray, tur
     standing = [values[:, :locators] for values in (table.column, table.row)]
     first = [values.min(axis=1, keepdims=True) for values in standing]
     column, row = (values - lowest for values, lowest in zip(standing, first, strict=True))
-    line = np.where(upright, table.column[:, 3:] - first[0], table.row[:, 3:] - first[1])
+    clamped = slice(table.column.shape[1] - upright.shape[1], None)
+    line = np.where(upright, table.column[:, clamped] - first[0], table.row[:, clamped] - first[1])
     width, height = column.max(axis=1, keepdims=True), row.max(axis=1, keepdims=True)
     back = turned[:, None]
     out = [

@@ -9,13 +9,14 @@ from attrs import NOTHING, fields_dict
 
 from workhold.errors import InputError
 from workhold.model.fence import Fence
+from workhold.model.flat_jaw import FlatJaw
 from workhold.model.plate import Plate
 from workhold.model.toolkit import Toolkit
 from workhold.model.vise import OpeningVise, Vise
 
 __all__ = ["ALIASES", "KINDS", "kind_of", "toolkit_of"]
 
-KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence)}
+KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw)}
 # Other names, each with its kind and the fields that it says.
 ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "gripper": (Vise.kind, {"columns": 1}),

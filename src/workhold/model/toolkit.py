@@ -244,6 +244,7 @@ class Wording:
     backwards : when a set of four that closes without clamping would hold.
     holes : the rule about holes, such as "holes that the jaws do not have".
     sets : what holds the part together, in the plural.
+    clear : the rule that is asked last of what holds the part beside a wall.
     reasons : why it holds nothing, from what is asked first to what is asked last; empty for the usual ones
         (``model.notes``).
     """
@@ -256,6 +257,7 @@ class Wording:
     backwards: str
     holes: str
     sets: str = "sets of four pegs"
+    clear: str = "locator clear of the clamp"
     reasons: tuple[str, ...] = ()
 
 

@@ -32,7 +32,7 @@ from workhold.search.contacts import contacts_of
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.preview import Preview, Previews
 from workhold.search.seated import Receiver, receive_seated, seated_answer
-from workhold.search.shares import answer_in_shares
+from workhold.search.shares import Locating, answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["Receiver", "answer", "design"]
@@ -145,10 +145,7 @@ def answer(
     if query.seating is not None:
         return answer_with_seating(query, workers, progress, cancel, preview, receiver)
     if query.toolkit.wall is not None:
-        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
-        from workhold.search.wall_shares import WallShares
-
-        return handed_over(answer_in_shares(WallShares.of(query, cancel), progress, cancel), receiver)
+        return handed_over(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), receiver)
     if query.toolkit.needs_pairs:
         with LatticeShares.of(query, workers, cancel) as shares:
             return handed_over(answer_in_shares(shares, progress, cancel, preview), receiver)
@@ -160,6 +157,15 @@ def answer(
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
     return handed_over(joined_ways(results, query), receiver)
+
+
+def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
+    """The search beside a wall: of what slides in holes of its own, or of a locator with clamps in the same holes."""
+    # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+    from workhold.search.lattice_pair_shares import LatticePairShares
+    from workhold.search.wall_shares import WallShares
+
+    return (LatticePairShares if query.toolkit.moving.on is None else WallShares).of(query, cancel)
 
 
 def answer_with_seating(

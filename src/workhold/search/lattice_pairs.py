@@ -21,11 +21,10 @@ from math import inf
 
 import numpy as np
 from attrs import evolve, field, fields, frozen
-from flint import arb, ctx
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import LEAST_CLOSURE, LEAST_SPAN, LOOSE, PARALLEL, SAME_PLACE
+from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, LOOSE, PARALLEL, SAME_PLACE
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -39,9 +38,8 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.closure import ROUNDING
-from workhold.proof.deciding import BALLS
-from workhold.proof.flush import PRECISIONS, line_of
-from workhold.search.fence_places import Laid
+from workhold.proof.lattice_pair import LatticePair, verdict_on_pair
+from workhold.search.pin_contacts import PartOnWall
 
 __all__ = ["LatticePairs", "are_pressed", "pairs_on"]
 
@@ -94,13 +92,20 @@ class LatticePairs:
         """Return the pairs of an index array or mask, in its order."""
         return LatticePairs(*(getattr(self, one.name)[order] for one in fields(LatticePairs)))
 
+    def candidate(self, number: int, edge: int) -> LatticePair:
+        """Return a pair on a hull edge as balls decide it."""
+        features, step = (tuple(values[number].tolist()) for values in (self.feature, self.step))
+        return LatticePair(edge, features, step, int(self.branch[number]))
+
     @classmethod
     def joined(cls, parts: list[LatticePairs]) -> LatticePairs:
         """Return all pairs of several, at least one."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
-def pairs_on(laid: Laid, pitch: tuple[float, float], most: tuple[float, float], margin: float) -> Iterator[LatticePairs]:
+def pairs_on(
+    lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
+) -> Iterator[LatticePairs]:
     """Yield the pairs of pegs that touch a part on a wall, at least nearly ``margin`` mm inside their features, some at a time.
 
     Parameters
@@ -109,11 +114,11 @@ def pairs_on(laid: Laid, pitch: tuple[float, float], most: tuple[float, float], 
     most : the most columns and rows from one peg to the other; infinite where nothing bounds them.
     margin : smallest distance in mm from the end of a feature.
     """
-    rows = laid.rows
+    rows = lying.rows
     low, high = extents(rows)
     # Normals must have opposed parts along the wall, which arcs may have either way and level lines have not.
     ahead = rows[:, AXIS_Y]
-    across = np.where(np.abs(ahead) > 4.0 * laid.turn, np.sign(ahead), np.nan)
+    across = np.where(np.abs(ahead) > 4.0 * lying.turn, np.sign(ahead), np.nan)
     across[rows[:, IS_ARC] != 0.0] = 0.0
     one, other = np.nonzero(across[:, None] * across[None, :] <= 0.0)
     nearest = low[other] - high[one] - LOOSE
@@ -135,7 +140,7 @@ def pairs_on(laid: Laid, pitch: tuple[float, float], most: tuple[float, float], 
         forward = (step[:, 0] > 0) | (step[:, 1] > 0)
         which, step = which[forward], step[forward]
         feature = np.stack([one[which], other[which]], axis=1)
-        for part in crossings(laid, feature, step, np.array(pitch)):
+        for part in crossings(lying, feature, step, np.array(pitch)):
             yield part.take(part.slack - margin > -(1.2 * np.minimum(part.reach, GRAZING) + LOOSE))
 
 
@@ -146,9 +151,9 @@ def extents(rows: Array) -> tuple[Array, Array]:
     return center - size, center + size
 
 
-def crossings(laid: Laid, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
+def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
     """Yield where the first features of pairs (M, 2) cross the second ones, moved back by steps (M, 2) of a lattice."""
-    rows = laid.rows
+    rows = lying.rows
     is_arc = rows[feature, IS_ARC] != 0.0
     shift = step * pitch
     between = rows[feature[:, 1]][:, [X, Y]] - shift - rows[feature[:, 0]][:, [X, Y]]
@@ -163,15 +168,19 @@ def crossings(laid: Laid, feature: IntArray, step: IntArray, pitch: Array) -> It
             if number == 0:
                 which, branch, offset = of_two_lines(between[chosen], axes[chosen])
             elif number == 1:
-                which, branch, offset = of_line_and_circle(between[chosen], axes[chosen, 0], radius[chosen, 1], laid.off)
+                which, branch, offset = of_line_and_circle(
+                    between[chosen], axes[chosen, 0], radius[chosen, 1], lying.off
+                )
             elif number == 2:
-                which, branch, offset = of_line_and_circle(-between[chosen], axes[chosen, 1], radius[chosen, 0], laid.off)
+                which, branch, offset = of_line_and_circle(
+                    -between[chosen], axes[chosen, 1], radius[chosen, 0], lying.off
+                )
                 offset = offset + between[chosen[which]]
             else:
-                which, branch, offset = of_two_circles(between[chosen], radius[chosen], laid.off)
+                which, branch, offset = of_two_circles(between[chosen], radius[chosen], lying.off)
         chosen = chosen[which]
         point = rows[feature[chosen, 0]][:, [X, Y]] + offset
-        yield touching(laid, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1))
+        yield touching(lying, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1))
 
 
 def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
@@ -220,7 +229,9 @@ def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray,
     return which, branch, beside + away[which, None] * unit[which]
 
 
-def both_of(square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array) -> tuple[IntArray, Array, Array]:
+def both_of(
+    square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array
+) -> tuple[IntArray, Array, Array]:
     """Return the pairs (M,) whose half chord has a square (M,) that may be positive, each twice: branch and place (K, 2)."""
     met = np.flatnonzero(square > -16.0 * off * size)
     half = np.sqrt(np.maximum(square[met], 0.0))
@@ -230,9 +241,9 @@ def both_of(square: Array, size: Array, off: Array | float, foot: Array | float,
     return which, branch, along[:, None] * axis[which]
 
 
-def touching(laid: Laid, feature: IntArray, step: IntArray, branch: Array, point: Array) -> LatticePairs:
+def touching(lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array) -> LatticePairs:
     """Return pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
-    rows = laid.rows[feature]
+    rows = lying.rows[feature]
     is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
     is_arc = is_arc != 0.0
     axis, ray = rows[:, :, [AXIS_X, AXIS_Y]], point - rows[:, :, [X, Y]]
@@ -240,12 +251,14 @@ def touching(laid: Laid, feature: IntArray, step: IntArray, branch: Array, point
     with np.errstate(divide="ignore", invalid="ignore"):
         turned = np.where(is_arc, np.arctan2(cross(axis, ray), along), along)
         scale = np.where(is_arc, radius, 1.0)
-        slack = np.minimum((half - turned) * scale + rows[:, :, HIGH_SLACK], (half + turned) * scale + rows[:, :, LOW_SLACK])
+        slack = np.minimum(
+            (half - turned) * scale + rows[:, :, HIGH_SLACK], (half + turned) * scale + rows[:, :, LOW_SLACK]
+        )
         slack[is_arc & (half >= np.pi)] = np.inf
         normal = np.where(is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -perpendicular(axis))
         sine = np.abs(cross(normal[:, 0], normal[:, 1]))
-        reach = 16.0 * (laid.off + laid.turn * np.abs(ray).max(axis=(1, 2))) / sine
-        swing = 2.0 * (laid.turn + np.where(is_arc, (reach[:, None] + laid.off) / radius, 0.0).max(axis=1))
+        reach = 16.0 * (lying.off + lying.turn * np.abs(ray).max(axis=(1, 2))) / sine
+        swing = 2.0 * (lying.turn + np.where(is_arc, (reach[:, None] + lying.off) / radius, 0.0).max(axis=1))
         open_ = ~(sine > STEEP * swing)
     reach[open_], swing[open_] = np.inf, np.inf
     return LatticePairs(feature, step, branch, point, normal, slack.min(axis=1), reach, swing)
@@ -261,7 +274,7 @@ def perpendicular(vectors: Array) -> Array:
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
-def closure_of(pairs: LatticePairs, laid: Laid, problem: Problem) -> tuple[LatticePairs, BoolArray, BoolArray]:
+def closure_of(pairs: LatticePairs, lying: PartOnWall, problem: Problem) -> tuple[LatticePairs, BoolArray, BoolArray]:
     """Return pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which that is open.
 
     With normals a, b of the part at the pegs and moments m, M about the start of the hull edge of length l, the null vector
@@ -270,7 +283,7 @@ def closure_of(pairs: LatticePairs, laid: Laid, problem: Problem) -> tuple[Latti
     """
     length = problem.wrench_length
     a, b = pairs.normal[:, 0], pairs.normal[:, 1]
-    wall = laid.length / length
+    wall = lying.length / length
     ahead, across = -b[:, 0] * np.copysign(1.0, a[:, 0]), np.abs(a[:, 0])
     one, other = (cross(pairs.point[:, k] / length, pairs.normal[:, k]) for k in (0, 1))
     last = ahead * one + across * other
@@ -278,8 +291,9 @@ def closure_of(pairs: LatticePairs, laid: Laid, problem: Problem) -> tuple[Latti
     null = np.stack([both - last, last, ahead * wall, across * wall], axis=1)
     size = np.abs(null).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        band = 20.0 * pairs.swing + 4.0 * (pairs.reach + laid.off) / length + ROUNDING
+        band = 20.0 * pairs.swing + 4.0 * (pairs.reach + lying.off) / length + ROUNDING
         least = np.minimum(null.min(axis=1) - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        least = np.minimum(least, both - LEAST_CLAMPING * size)
         ends = (pairs.slack - problem.contact_margin) / np.maximum(1.2 * pairs.reach, 1e-300)
         worst = np.nan_to_num(np.minimum(least / band, ends), nan=0.0)
     held = worst > 1.1
@@ -288,140 +302,21 @@ def closure_of(pairs: LatticePairs, laid: Laid, problem: Problem) -> tuple[Latti
     return evolve(pairs, null=null), held, ~held & ~hopeless
 
 
-def are_pressed(pairs: LatticePairs, edge: int, laid: Laid, problem: Problem) -> tuple[LatticePairs, IntArray, int]:
+def are_pressed(
+    pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
+) -> tuple[LatticePairs, IntArray, int]:
     """Return the pairs that press the part as it lies on a hull edge, the numbers of those not decided, and of those in balls.
 
     Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
     """
-    pairs, held, open_ = closure_of(pairs, laid, problem)
+    pairs, held, open_ = closure_of(pairs, lying, problem)
     point, null, undecided = pairs.point.copy(), pairs.null.copy(), []
     sharpened = np.flatnonzero(open_ | (held & (pairs.reach > SAME_PLACE / 2)))
     for k in sharpened.tolist():
-        verdict, sharp = verdict_in_balls(pairs.take(np.array([k])), edge, problem)
+        verdict, sharp = verdict_on_pair(pairs.candidate(k, edge), problem)
         held[k] = verdict is True
         if verdict is None:
             undecided.append(k)
         if sharp is not None:
-            point[k], null[k] = sharp
+            point[k], null[k] = sharp.points, sharp.null
     return evolve(pairs, point=point, null=null).take(held), np.array(undecided, np.int64), len(sharpened)
-
-
-def verdict_in_balls(
-    pair: LatticePairs, edge: int, problem: Problem
-) -> tuple[bool | None, tuple[list[list[float]], list[float]] | None]:
-    """Return whether a pair presses the part, None where that stays open, and its places and forces to the last digit."""
-    verdict, sharp = None, None
-    with BALLS:
-        for bits in PRECISIONS:
-            with ctx.workprec(bits):
-                contacts = contacts_in_balls(pair, edge, problem)
-                if contacts is None:
-                    return False, None
-                verdict, null = judged(contacts, problem)
-                if verdict is not None:
-                    sharp = [[float(v.mid()) for v in point] for point, _, _ in contacts[1:]], [float(v.mid()) for v in null]
-                    break
-    return verdict, sharp
-
-
-Point = tuple[arb, arb]
-Contact = tuple[Point, Point, list[arb]]
-
-
-def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bool | None, list[arb]]:
-    """Return the verdict on the contacts of a pair at the precision in force, and the null vector of :func:`closure_of`."""
-    wall, ((u, v), a, slack), ((p, q), b, other) = contacts
-    length, margin = arb(problem.wrench_length), arb(problem.contact_margin)
-    along = a[0] * b[0]
-    ahead, across = abs(b[0]), abs(a[0])
-    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
-    both = wall * (ahead * a[1] + across * b[1]) / length
-    null = [both - last, last, ahead * wall / length, across * wall / length]
-    size = sum((abs(entry) for entry in null), arb(0))
-    rules = [entry - LEAST_CLOSURE * size for entry in null] + [-along, size - LEAST_SPAN]
-    rules += [end - margin for end in (*slack, *other)]
-    if any(rule <= 0 for rule in rules):
-        return False, null
-    return (True if all(rule > 0 for rule in rules) else None), null
-
-
-def contacts_in_balls(pair: LatticePairs, edge: int, problem: Problem) -> tuple[arb, Contact, Contact] | None:
-    """Return the hull edge's length and both contacts: centre, outward normal, distances to the ends; None if they miss."""
-    start, tangent, wall = line_of(problem.workpiece.hull_edges[edge], problem.workpiece.center)
-    rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.feature[0].tolist()]
-    pitch = problem.toolkit.moving.pitch
-    shift = tuple(arb(one) * int(k) for one, k in zip(pitch, pair.step[0].tolist(), strict=True))
-    (middle, axis, radius), (second, direction, other) = ((row.middle, row.axis, row.radius) for row in rows)
-    between = second[0] - shift[0] - middle[0], second[1] - shift[1] - middle[1]
-    branch = int(pair.branch[0])
-    if radius is None and other is None:
-        sine = axis[0] * direction[1] - axis[1] * direction[0]
-        if not abs(sine) > 0:
-            return None
-        s = (between[0] * direction[1] - between[1] * direction[0]) / sine
-        offset = s * axis[0], s * axis[1]
-    elif other is None or radius is None:
-        swaps = other is None
-        (ax, ay), size = (direction, radius) if swaps else (axis, other)
-        x, y = (-between[0], -between[1]) if swaps else between
-        half = half_chord((size - (ax * y - ay * x)) * (size + (ax * y - ay * x)))
-        if half is None:
-            return None
-        s = ax * x + ay * y + branch * half
-        offset = s * ax, s * ay
-        if swaps:
-            offset = offset[0] + between[0], offset[1] + between[1]
-    else:
-        square = between[0] ** 2 + between[1] ** 2
-        apart = square.sqrt()
-        away = ((radius - other) * (radius + other) / apart + apart) / 2
-        half = half_chord((radius - away) * (radius + away))
-        if half is None:
-            return None
-        x, y = between[0] / apart, between[1] / apart
-        offset = away * x - branch * half * y, away * y + branch * half * x
-    first = middle[0] + offset[0], middle[1] + offset[1]
-    points = first, (first[0] + shift[0], first[1] + shift[1])
-    one, two = (row.contact(point) for row, point in zip(rows, points, strict=True))
-    return wall, one, two
-
-
-def half_chord(square: arb) -> arb | None:
-    """Return the root of a square that may be zero; None where it is surely negative."""
-    if square < 0:
-        return None
-    return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
-
-
-@frozen
-class BallFeature:
-    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
-
-    middle: Point
-    axis: Point
-    radius: arb | None
-    row: list[float]
-
-    def contact(self, point: Point) -> Contact:
-        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
-        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
-        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
-        along = ax * ray[0] + ay * ray[1]
-        if self.radius is None:
-            return point, (ay, -ax), [half - along + high, half + along + low]
-        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
-        if half >= arb.pi():
-            return point, normal, []
-        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
-        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
-
-
-def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
-    """Return a feature as it lies on a hull edge from a start along a tangent."""
-    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
-    tx, ty = tangent
-    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
-    # Axes of features are unit vectors but for rounding.
-    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
-    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
-    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)

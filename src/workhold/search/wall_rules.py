@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 from attrs import evolve
 
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
 from workhold.model.explanation import NearestMiss, Removal
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
-from workhold.model.result import fixture_at
+from workhold.model.result import FixtureTable, fixture_at
+from workhold.search.lattice_pair_shares import LatticePairSearch
 from workhold.search.removals import SECOND_CLAMP, Removals
 from workhold.search.wall_search import WallSearch
 
@@ -38,7 +37,7 @@ def removals_beside_wall(query: Query, alone: bool) -> Removals:
         before = after
     search, nearest = searched(query) if alone else None, None
     if search is not None and search.verified == 0 and search.nearest is not None:
-        nearest = miss_of(search, search.nearest[1])
+        nearest = miss_of(*search.nearest_alone())
     return Removals(first, removals, nearest)
 
 
@@ -65,19 +64,28 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
         return
     search = searched(bare)
     yield "closure and clamping", 0 if search is None else search.verified
-    yield "locator clear of the clamp", placed(bare)
+    yield toolkit.wording.clear, placed(bare)
     if toolkit.limits != holes.limits:
-        yield "stroke of the clamp", placed(evolve(bare, toolkit=toolkit))
+        yield (
+            next(limit.rule for limit in toolkit.limits if limit.bounds != "holes"),
+            placed(evolve(bare, toolkit=toolkit)),
+        )
 
 
-def searched(query: Query) -> WallSearch | None:
-    """The search of a query, done; None where nothing is left to touch."""
+def search_of(query: Query, explains: bool = False) -> WallSearch | LatticePairSearch | None:
+    """The search of a query; None where nothing is left to touch."""
+    kind = LatticePairSearch if query.toolkit.moving.on is None else WallSearch
     try:
-        search = WallSearch(Problem.of(query), explains=True)
+        return kind(Problem.of(query), explains)
     except InputError:
         return None
-    for edge in search.edges:
-        for _ in search.fixtures(edge):
+
+
+def searched(query: Query) -> WallSearch | LatticePairSearch | None:
+    """The search of a query, done; None where nothing is left to touch."""
+    search = search_of(query, explains=True)
+    for edge in [] if search is None else search.edges:
+        for _ in search.fixtures(edge) if search is not None else ():
             pass
     return search
 
@@ -90,17 +98,13 @@ def examined(query: Query) -> int:
 
 def placed(query: Query) -> int:
     """How many pairs have a place."""
-    try:
-        search = WallSearch(Problem.of(query))
-    except InputError:
-        return 0
-    return sum(len(placed_on_wall(part, search.problem)) for edge in search.edges for part in search.fixtures(edge))
+    search = search_of(query)
+    return 0 if search is None else sum(len(part) for edge in search.edges for part in search.tables(edge))
 
 
-def miss_of(search: WallSearch, pair: WallFixtures) -> NearestMiss:
+def miss_of(table: FixtureTable, problem: Problem) -> NearestMiss:
     """The pair that comes nearest to pressing the part, as it would stand."""
-    table = wall_table(pair, np.zeros(1, np.int64), without_travel(search.problem))
-    fixture = fixture_at(table, without_travel(search.problem).toolkit, 0, search.problem.workpiece)
+    fixture = fixture_at(table, problem.toolkit, 0, problem.workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
     if pulls == 0:
         words = "one of its contacts would not press at all."
@@ -108,8 +112,3 @@ def miss_of(search: WallSearch, pair: WallFixtures) -> NearestMiss:
         one = "one of its contacts" if pulls == 1 else f"{pulls} of its contacts"
         words = f"{one} would have to pull the part instead of pressing on it: the part can slip out."
     return NearestMiss(fixture, words)
-
-
-def without_travel(problem: Problem) -> Problem:
-    """A problem whose clamp is its tip alone."""
-    return evolve(problem, query=evolve(problem.query, toolkit=problem.toolkit.changed({"travel": None})))

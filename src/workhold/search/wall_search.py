@@ -29,15 +29,16 @@ from workhold.conventions import (
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
-from workhold.listing.wall_fixtures import WallFixtures
+from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
 from workhold.model.fixture import Pose
 from workhold.model.query import Query
+from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
 from workhold.search.pin_contacts import PartOnWall, PinContacts, part_on_wall, pin_contacts_on
 from workhold.search.wall_closure import ContactPairs, closure, may_oppose, reaction_doubts, seating
 
-__all__ = ["WallSearch", "fixtures_on", "searches_of"]
+__all__ = ["allowed_edges", "faces_are_square", "lying_on", "WallSearch", "fixtures_on", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -88,33 +89,23 @@ class WallSearch:
 
     @property
     def edges(self) -> list[int]:
-        """The numbers of the hull edges on which the part may lie: at an angle that is allowed, on faces that may be
-        touched, and with no keep-out zone reaching into the wall."""
-        part, asked = self.problem.workpiece, self.problem.restrictions
-        avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
-        out = []
-        for number, (theta, touching) in enumerate(zip(part.flush.theta.tolist(), part.flush.touching, strict=True)):
-            if any(avoided.issuperset(end.faces) for end in touching):
-                continue
-            turned = float(np.degrees(theta))
-            off = [((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles]
-            if off and not any(ahead <= width for ahead, width in off):
-                continue
-            x, y = part.flush.ends[number, 0].tolist()
-            pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
-            zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
-            if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
-                out.append(number)
-        return out
-
-    def laid(self, edge: int) -> PartOnWall:
-        """The features as the part lies on a hull edge."""
-        ends = self.problem.workpiece.flush.ends[edge] - np.array(self.problem.workpiece.center)
-        return part_on_wall(self.problem.rows, ends[0], ends[1])
+        """The numbers of the hull edges on which the part may lie."""
+        return allowed_edges(self.problem)
 
     def fixtures(self, edge: int) -> Iterator[WallFixtures]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
         return (part for _, part in fixtures_on([self], edge))
+
+    def tables(self, edge: int) -> Iterator[FixtureTable]:
+        """Those whose clamps have a place, some at a time."""
+        return (placed_on_wall(part, self.problem) for part in self.fixtures(edge))
+
+    def nearest_alone(self) -> tuple[FixtureTable, Problem]:
+        """The pair that comes nearest, with a clamp that is its tip alone, and the search of such clamps."""
+        assert self.nearest is not None
+        toolkit = self.problem.toolkit.changed({"travel": None})
+        problem = evolve(self.problem, query=evolve(self.problem.query, toolkit=toolkit))
+        return wall_table(self.nearest[1], np.zeros(1, np.int64), problem), problem
 
     def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
         """Contacts of pegs in rows of holes, those where a row grazes an arc told by balls."""
@@ -266,6 +257,39 @@ class WallSearch:
         )
 
 
+def allowed_edges(problem: Problem) -> list[int]:
+    """The numbers of the hull edges on which a part may lie: at an angle that is allowed, on faces that may be
+    touched, and with no keep-out zone reaching into the wall."""
+    part, asked = problem.workpiece, problem.restrictions
+    avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
+    out = []
+    for number, (theta, touching) in enumerate(zip(part.flush.theta.tolist(), part.flush.touching, strict=True)):
+        if any(avoided.issuperset(end.faces) for end in touching):
+            continue
+        turned = float(np.degrees(theta))
+        off = [((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles]
+        if off and not any(ahead <= width for ahead, width in off):
+            continue
+        x, y = part.flush.ends[number, 0].tolist()
+        pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
+        zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
+        if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
+            out.append(number)
+    return out
+
+
+def lying_on(problem: Problem, edge: int) -> PartOnWall:
+    """The features as the part lies on a hull edge."""
+    ends = problem.workpiece.flush.ends[edge] - np.array(problem.workpiece.center)
+    return part_on_wall(problem.rows, ends[0], ends[1])
+
+
+def faces_are_square(lying: PartOnWall) -> bool:
+    """Whether every face that is offered is straight, and parallel or square to the wall."""
+    tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
+    return bool(((lying.rows[:, IS_ARC] == 0.0) & ~tilted).all())
+
+
 def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
     """The searches of a query on the ways of a fence, which differ in the clamp's direction alone."""
     one, *others = (evolve(query, toolkit=way) for way in ways)
@@ -280,12 +304,11 @@ def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[Wal
     the locators, and what pegs touch on rows and on columns.
     """
     one = searches[0]
-    problem, lying = one.problem, one.laid(edge)
-    lines = lying.rows[:, IS_ARC] == 0.0
-    tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
+    problem = one.problem
+    lying = lying_on(problem, edge)
     locators = one.on_rows(edge, lying, problem.standing, one.rows_of(lying, problem.standing))
     for search in searches:
-        search.is_square = search.is_square and bool((lines & ~tilted).all())
+        search.is_square = search.is_square and faces_are_square(lying)
         search.locators += len(locators)
     if len(locators) == 0:
         return

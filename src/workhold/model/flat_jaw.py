@@ -1,0 +1,104 @@
+"""A machine vise with one flat jaw: the part lies flush against it, two pegs on the jaw that moves press it there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from math import pi
+from typing import ClassVar
+
+from workhold.fixels.fields import TABLES, Table
+from workhold.model.fixture import WALL
+from workhold.model.flat import Flat
+from workhold.model.making import made_from_table, settle
+from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.model.units import Unit
+
+__all__ = ["FlatJaw"]
+
+
+@made_from_table
+class FlatJaw(Toolkit):
+    """A vise whose fixed jaw is flat, along x at y = 0, with a plate of pegs on the jaw that moves, along y.
+
+    The part lies flush against the flat jaw, above it, on a hull edge: a straight piece of the boundary of its convex hull.
+    Two pegs in holes of one lattice press it down as the jaw closes.
+
+    Parameters
+    ----------
+    pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
+    peg_radius : in mm; 0 is allowed.
+    columns, rows : of holes on the jaw that moves, or None for as many as needed.
+    min_gap : smallest distance in mm from the flat jaw to the centres of the first row of holes; None means the peg radius.
+    max_opening : largest such distance in mm, or None for no limit.
+    flat : of the pegs, see :class:`workhold.Vise`.
+
+    Raises
+    ------
+    InputError
+        For values that are not finite and positive, and for pegs too fat for neighbouring holes.
+
+    Examples
+    --------
+    >>> from workhold import FlatJaw
+    >>> FlatJaw(pitch=10, peg_radius=3).min_gap
+    3.0
+    """
+
+    kind: ClassVar[str] = "flat-jaw"
+    table: ClassVar[Table] = TABLES["flat-jaw"]
+    noun: ClassVar[str] = "flat-jaw vise"
+    locked: ClassVar[str] = "a screw vise, its jaw"
+    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("flat", (2, 2)),)
+    clamping: ClassVar[int] = 1
+    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
+    wording: ClassVar[Wording] = Wording(
+        two="two pegs",
+        four="flat jaw and two pegs",
+        inside="in this vise",
+        within="the jaw as asked: with the columns, rows and opening given",
+        rules="presses the part against the flat jaw",
+        backwards="the jaws are pressed apart, not when they close",
+        holes="holes that the jaw does not have",
+        sets="pairs of pegs",
+        clear="smallest gap, and holes that the jaw has then",
+        reasons=(
+            "The part cannot lie flush against the flat jaw: no straight piece of its convex hull is there to lie on it, "
+            "or none at an angle and on faces that are allowed.",
+            "No two pegs of the jaw can touch opposed sides of the part while it lies flush against the flat jaw.",
+            "Every face is parallel or square to the side that lies against the flat jaw: two pegs against two sides, or a "
+            "side and the top, leave the part free to slide; a fence with two clamps holds such a part.",
+            "Two pegs can touch the part at the same time, but no such pair presses it against the flat jaw.",
+        ),
+    )
+
+    pitch: tuple[float, float]
+    peg_radius: float
+    columns: int | None
+    rows: int | None
+    min_gap: float
+    max_opening: float | None
+    flat: Flat | None
+
+    def __attrs_post_init__(self) -> None:
+        settle(self, noun="jaw", peg="peg")
+
+    @cached_property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The jaw that moves, whose travel is the jaw separation, and the flat jaw."""
+        size = self.pitch, self.columns, self.rows
+        travel = Travel(pi / 2, self.min_gap, self.max_opening)
+        jaw = Carrier("jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw")
+        return jaw, Carrier(WALL, *size, 0.0, 0.0, noun="flat jaw", peg="end", is_wall=True)
+
+    @property
+    def gap(self) -> float:
+        """The smallest gap in mm."""
+        return self.min_gap
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Half the pitch."""
+        if min(self.pitch) >= 4 * self.peg_radius:
+            half = (self.pitch[0] / 2, self.pitch[1] / 2)
+            counts = {name: 2 * count - 1 for name in ("columns", "rows") if (count := getattr(self, name))}
+            yield Change("with half the pitch", {"pitch": half, **counts})

@@ -1,0 +1,161 @@
+"""Whether two pegs of one lattice press a part that lies flush on a wall, in balls.
+
+Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice, as the
+exact numbers that their doubles are, to as many digits as it takes.
+"""
+
+from __future__ import annotations
+
+from attrs import frozen
+from flint import arb, ctx
+
+from workhold.contact.problem import Problem
+from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
+from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
+from workhold.proof.deciding import BALLS
+from workhold.proof.flush import PRECISIONS, Contact, Point, line_of
+
+__all__ = ["LatticePair", "SharpPair", "verdict_on_pair"]
+
+
+@frozen
+class LatticePair:
+    """Two pegs of one lattice that may press a part on a wall.
+
+    Parameters
+    ----------
+    edge : number of the hull edge that lies on the wall.
+    features : those that both pegs touch.
+    step : columns and rows from the first peg's hole to the second's.
+    branch : -1 or 1, which of two crossings it is.
+    """
+
+    edge: int
+    features: tuple[int, int]
+    step: tuple[int, int]
+    branch: int
+
+
+@frozen
+class SharpPair:
+    """A pair to the last digit: the pegs' centres along the hull edge from its start and above it, in mm, and the forces
+    of the wall's two ends and both pegs, not scaled."""
+
+    points: list[list[float]]
+    null: list[float]
+
+
+def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpPair | None]:
+    """Return whether a pair presses the part, None where that stays open, and the pair to the last digit if it does."""
+    with BALLS:
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                contacts = contacts_of(pair, problem)
+                if contacts is None:
+                    return False, None
+                verdict, null = judged(contacts, problem)
+                if verdict is False:
+                    return False, None
+                if verdict:
+                    points = [[float(value.mid()) for value in contact[0]] for contact in contacts[1:]]
+                    return True, SharpPair(points, [float(entry.mid()) for entry in null])
+    return None, None
+
+
+def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bool | None, list[arb]]:
+    """Return the verdict on the contacts of a pair at the precision in force, and the null vector of ``search.lattice_pairs.closure_of``."""
+    wall, ((u, v), a, slack), ((p, q), b, other) = contacts
+    length, margin = arb(problem.wrench_length), arb(problem.contact_margin)
+    along = a[0] * b[0]
+    ahead, across = abs(b[0]), abs(a[0])
+    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
+    both = wall * (ahead * a[1] + across * b[1]) / length
+    null = [both - last, last, ahead * wall / length, across * wall / length]
+    size = sum((abs(entry) for entry in null), arb(0))
+    rules = [entry - LEAST_CLOSURE * size for entry in null]
+    rules += [-along, size - LEAST_SPAN, both - LEAST_CLAMPING * size]
+    rules += [end - margin for end in (*slack, *other)]
+    if any(rule <= 0 for rule in rules):
+        return False, null
+    return (True if all(rule > 0 for rule in rules) else None), null
+
+
+def contacts_of(pair: LatticePair, problem: Problem) -> tuple[arb, Contact, Contact] | None:
+    """Return the hull edge's length and both contacts: centre, outward normal, distances to the ends; None if they miss."""
+    start, tangent, wall = line_of(problem.workpiece.hull_edges[pair.edge], problem.workpiece.center)
+    rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.features]
+    pitch = problem.toolkit.moving.pitch
+    shift = tuple(arb(one) * int(k) for one, k in zip(pitch, pair.step, strict=True))
+    (middle, axis, radius), (second, direction, other) = ((row.middle, row.axis, row.radius) for row in rows)
+    between = second[0] - shift[0] - middle[0], second[1] - shift[1] - middle[1]
+    if radius is None and other is None:
+        sine = axis[0] * direction[1] - axis[1] * direction[0]
+        if not abs(sine) > 0:
+            return None
+        s = (between[0] * direction[1] - between[1] * direction[0]) / sine
+        offset = s * axis[0], s * axis[1]
+    elif other is None or radius is None:
+        swaps = other is None
+        (ax, ay), size = (direction, radius) if swaps else (axis, other)
+        x, y = (-between[0], -between[1]) if swaps else between
+        half = half_chord((size - (ax * y - ay * x)) * (size + (ax * y - ay * x)))
+        if half is None:
+            return None
+        s = ax * x + ay * y + pair.branch * half
+        offset = s * ax, s * ay
+        if swaps:
+            offset = offset[0] + between[0], offset[1] + between[1]
+    else:
+        square = between[0] ** 2 + between[1] ** 2
+        apart = square.sqrt()
+        away = ((radius - other) * (radius + other) / apart + apart) / 2
+        half = half_chord((radius - away) * (radius + away))
+        if half is None:
+            return None
+        x, y = between[0] / apart, between[1] / apart
+        offset = away * x - pair.branch * half * y, away * y + pair.branch * half * x
+    first = middle[0] + offset[0], middle[1] + offset[1]
+    points = first, (first[0] + shift[0], first[1] + shift[1])
+    one, two = (row.contact(point) for row, point in zip(rows, points, strict=True))
+    return wall, one, two
+
+
+def half_chord(square: arb) -> arb | None:
+    """Return the root of a square that may be zero; None where it is surely negative."""
+    if square < 0:
+        return None
+    return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
+
+
+@frozen
+class BallFeature:
+    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
+
+    middle: Point
+    axis: Point
+    radius: arb | None
+    row: list[float]
+
+    def contact(self, point: Point) -> Contact:
+        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
+        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
+        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
+        along = ax * ray[0] + ay * ray[1]
+        if self.radius is None:
+            return point, (ay, -ax), [half - along + high, half + along + low]
+        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
+        if half >= arb.pi():
+            return point, normal, []
+        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
+        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
+
+
+def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
+    """Return a feature as it lies on a hull edge from a start along a tangent."""
+    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
+    tx, ty = tangent
+    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
+    # Axes of features are unit vectors but for rounding.
+    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
+    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)
