@@ -22,7 +22,7 @@ from workhold.files.loads_form import LoadTable
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.result.save import save
 from workhold.files.toolkit.presets import load_toolkit
-from workhold.listing.alike import entries
+from workhold.listing.near_duplicates import entries
 from workhold.model.kinds import ALIASES, KINDS, toolkit_of
 from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking

@@ -17,7 +17,7 @@ from workhold.plain import plain, shortened
 
 if TYPE_CHECKING:
     from workhold.geometry.face import Face
-    from workhold.listing.alike import Entries
+    from workhold.listing.near_duplicates import Entries
     from workhold.model.fixture import Fixture, Peg
     from workhold.model.proof import Proof, Undecided
     from workhold.model.quality import Figure

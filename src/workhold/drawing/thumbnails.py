@@ -11,7 +11,7 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import closure_margin, plural
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.errors import InputError
-from workhold.listing.alike import Entries
+from workhold.listing.near_duplicates import Entries
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit

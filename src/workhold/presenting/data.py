@@ -25,7 +25,7 @@ from workhold.seating.by_hand import by_hand
 
 if TYPE_CHECKING:
     from workhold.files.toolkit.reader import LoadedToolkit
-    from workhold.listing.alike import Entries
+    from workhold.listing.near_duplicates import Entries
     from workhold.search.exploring import Explored
     from workhold.statics.loads import LoadCase, Worst
     from workhold.verification import Verification
