@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import isinf, pi, radians, tau
 
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import RANKED
 from workhold.model.query import Query
 from workhold.model.seating import Seating
@@ -127,15 +127,16 @@ def rank(fixture: Fixture, hardware: Hardware) -> Rank:
     """
     ways = [list(WAYS).index(name) for name in directions_of(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
-    groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
-    clamps = [peg for peg in fixture.pegs if direction_of(peg)]
     theta = radians(fixture.pose.theta_deg)
     if hardware.wall is not None or len(ways) > 1:
-        pegs = [*sorted(groups[0], key=lambda peg: (peg.column, peg.row, peg.face)), *clamps]
-        on_wall = [peg.face for peg in fixture.pegs if peg.is_on_wall]
-        faces = [*(peg.face for peg in pegs[: len(groups[0])]), *on_wall, *(peg.face for peg in clamps)]
-        holes = [*(peg.column for peg in pegs), *(peg.row for peg in pegs)]
-        return [*numbers, *holes], (theta + SAME) % tau - SAME, faces
+        pegs = list[Peg]()
+        for carrier in hardware.carriers.values():
+            group = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
+            pegs += sorted(group, key=hole_and_face) if carrier in hardware.lattices else group
+        holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
+        return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
+    groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
+    clamps = [peg for peg in fixture.pegs if direction_of(peg)]
     turns = quarter_turns(fixture.direction) if fixture.direction else 0
     if len(groups) > 1 and len(groups[0]) == len(groups[1]) and (theta + SAME) % tau >= pi:
         turns, groups = 2, groups[::-1]
@@ -148,6 +149,11 @@ def rank(fixture: Fixture, hardware: Hardware) -> Rank:
         places += sorted((column - first, row - lowest, face) for column, row, face in group)
     columns, rows, faces = (list(each) for each in zip(*places, strict=True))
     return [*numbers, *columns, *rows], (theta - turns * pi / 2 + SAME) % tau - SAME, faces
+
+
+def hole_and_face(peg: Peg) -> tuple[int, int, int]:
+    """By what pegs of one carrier stand in order."""
+    return peg.column, peg.row, peg.face
 
 
 def unfit(fixture: Fixture, off: float) -> Range:

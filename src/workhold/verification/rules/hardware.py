@@ -146,7 +146,7 @@ class Hardware:
         """What is wrong where the clamping force is none."""
         if self.clamps:
             return "the clamp does not push the part"
-        return f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the vise does not clamp"
+        return f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the {self.toolkit.noun} does not clamp"
 
     @property
     def wider_words(self) -> str:
