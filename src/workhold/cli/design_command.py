@@ -124,7 +124,7 @@ def design(
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
         if first_run and engine == "curves":
             compile_kernels(cancel, second)
-        if query.seating is not None and not query.toolkit.needs_pairs:
+        if query.seating is not None and query.toolkit.closes_at_once:
             from workhold.cli.warming import compile_seating
 
             compile_seating(cancel)

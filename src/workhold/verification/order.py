@@ -143,10 +143,10 @@ def rank(fixture: Fixture, hardware: Hardware) -> Rank:
     seen = [
         [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in group] for group in (*groups, clamps) if group
     ]
-    lowest, places = min(row for group in seen for _, row, _ in group), list[tuple[int, int, int]]()
-    for group in seen:
-        first = min(column for column, *_ in group)
-        places += sorted((column - first, row - lowest, face) for column, row, face in group)
+    lowest, places = min(row for part in seen for _, row, _ in part), list[tuple[int, int, int]]()
+    for part in seen:
+        first = min(column for column, *_ in part)
+        places += sorted((column - first, row - lowest, face) for column, row, face in part)
     columns, rows, faces = (list(each) for each in zip(*places, strict=True))
     return [*numbers, *columns, *rows], (theta - turns * pi / 2 + SAME) % tau - SAME, faces
 
