@@ -1,54 +1,151 @@
-"""When two fixtures are the same, and how many sets fixtures form under the rotations of a part onto itself.
+"""When two fixtures are the same, and how many sets they form under the rotations of a part onto itself.
 
-A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched. Faces are left out,
-since a contact at a tangent joint is on two of them and only one is listed. Fixtures that a rotation of the part, or half a
-turn of the toolkit, carries into each other share the smallest of their images, which stands for the set.
+A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched. Faces are
+left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that a rotation of
+the part, or half a turn of the toolkit, carries into each other share the smallest of their images, which stands
+for the set.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi, tau
-from typing import Any
 
 import numpy as np
-from attrs import define, field
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.problem import Problem
 from workhold.conventions import SAME_IMAGE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
-from workhold.kernels.contact.canonical_form import to_canonical_form
-from workhold.listing.canonical_form import (
-    MOST_PEGS,
-    Candidates,
-    changes,
-    clusters,
-    most_holes,
-    packed,
-    place_number,
-)
-from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_upright
+from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Toolkit
+from workhold.model.toolkit import Arrangement, Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["PartRotations", "SetCount", "identity_order", "smallest_images"]
+__all__ = ["Identity", "SetCount", "identity_order"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-
-def rotations_of(part: Workpiece) -> tuple[Rotation, ...]:
-    """The rotations of a part onto itself, the identity first."""
-    return tuple(rotations_onto_itself([face.segment for face in part.faces]))
+# Columns and rows from the lowest of a fixture are fewer than this, lines as many to either side.
+MOST_HOLES = (1 << 20) - 1
 
 
-def kept_point(part: Workpiece) -> Array:
-    """The point (2,) that all rotations of a part onto itself keep, in mm in its frame."""
-    return np.array(centroid_of_joints([face.segment for face in part.faces]))
+@frozen(eq=False)
+class Identity:
+    """What names the fixtures of a toolkit that hold a part.
+
+    Parameters
+    ----------
+    toolkit, part : what holds, and what is held.
+    every : whether each choice of clamps is a fixture; else one stands for all of its directions.
+    rotations : those of the part onto itself, the identity first.
+    """
+
+    toolkit: Toolkit
+    part: Workpiece
+    every: bool = True
+    rotations: tuple[Rotation, ...] = field(init=False)
+
+    @rotations.default
+    def onto_itself(self) -> tuple[Rotation, ...]:
+        """The rotations of the part onto itself."""
+        return tuple(rotations_onto_itself([face.segment for face in self.part.faces]))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether a fixture need not be a set of its own."""
+        return len(self.rotations) > 1
+
+    def smallest(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
+        """The smallest images of fixtures under the rotations: packed whole numbers (N,), and orientations and places
+        (N, P)."""
+        x, y = self.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+        forms = [self.form(table, x, y, sign) for sign in (1, -1)]
+        halves = np.array([turns_into_itself(one, self.toolkit) for one in self.toolkit.arrangements])[
+            table.arrangement
+        ]
+        period = np.where(halves, np.pi, 2.0 * np.pi)
+        kept = np.array(centroid_of_joints([face.segment for face in self.part.faces]))
+        after = [table.theta - rotation.angle + SAME_POSE for rotation in self.rotations]
+        least = np.min([theta % period for theta in after], axis=0)
+        words, pose = list[IntArray](), np.zeros((0, 0))
+        for rotation, theta in zip(self.rotations, after, strict=True):
+            # Only the images of the least orientation can be the smallest.
+            chosen = np.flatnonzero(theta % period <= least + SAME_POSE)
+            turned = halves & (theta % (2.0 * np.pi) >= np.pi)
+            numbers = [np.where(turned, two, one)[chosen] for one, two in zip(forms[0][0], forms[1][0], strict=True)]
+            anchor, ahead = (
+                np.where(turned[:, None], two, one)[chosen] for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
+            )
+            (u, v), back = (anchor - table.position[chosen]).T, -table.theta[chosen]
+            seen = rotated(u, v, back)
+            place = rotated(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
+            image = np.column_stack([(theta % period)[chosen] - SAME_POSE, *place, ahead])
+            if not words:
+                words = [np.full(len(table), np.iinfo(np.int64).max) for _ in numbers]
+                pose = np.full((len(table), image.shape[1]), np.inf)
+            better = precedes(numbers, image, [word[chosen] for word in words], pose[chosen])
+            pose[chosen[better]] = image[better]
+            for word, number in zip(words, numbers, strict=True):
+                word[chosen[better]] = number[better]
+        return words, pose
+
+    def form(self, table: FixtureTable, x: Array, y: Array, sign: int) -> tuple[list[IntArray], Array, Array]:
+        """What names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the first peg, and how far
+        (N, M) ahead of it what moves is.
+
+        Parameters
+        ----------
+        x, y : (N, K) places of pegs in mm.
+        sign : -1 for fixtures after half a turn of everything, which turns the order of pegs round, else 1.
+        """
+        carriers, on = self.toolkit.carriers, self.toolkit.peg_carriers(table.arrangement)
+        pegs = [carriers[number] for number in self.toolkit.arrangements[0].carriers][::sign]
+        # Whole numbers of pegs: of those in holes of their own, of clamps, and of what moves.
+        places = np.arange(len(pegs))[::sign]
+        clamps = places[[peg.on is not None for peg in pegs]]
+        own = places[[peg.on is None and not peg.is_wall for peg in pegs]]
+        movers = clamps if len(clamps) else own[-1:]
+        column, row = sign * table.column.astype(np.int64), sign * table.row.astype(np.int64)
+        each = [np.where(on[:, own] == k, column[:, own], MOST_HOLES).min(axis=1) for k in range(len(carriers))]
+        first, lowest = np.stack(each, axis=1), row[:, own].min(axis=1, keepdims=True)
+        numbers = [
+            (table.arrangement[:, None], len(self.toolkit.arrangements)),
+            (column[:, own] - np.take_along_axis(first, on[:, own], axis=1), MOST_HOLES),
+            (row[:, own] - lowest, MOST_HOLES),
+        ]
+        along_y = np.array([carrier.travel is not None and not carrier.is_along_x for carrier in carriers])
+        upright = along_y[on[:, movers]]
+        if self.every:
+            # A clamp is named by its line; jaws have holes of their own.
+            line = np.where(upright, column[:, movers] - first[:, :1], row[:, movers] - lowest)
+            numbers.append((line[:, : len(clamps)] + MOST_HOLES, 2 * MOST_HOLES + 1))
+        away = np.where(upright, y[:, movers] - y[:, own[:1]], x[:, movers] - x[:, own[:1]])
+        anchor = np.stack([x[:, own[0]], y[:, own[0]]], axis=1)
+        return packed(*numbers), anchor, sign * away[:, : None if self.every else 0]
+
+    def count(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
+        """How many sets of each arrangement (A,) there are among fixtures with these smallest images, of arrangements
+        (N,)."""
+        order = np.lexsort(words[::-1])
+        fresh = changes([word[order] for word in words])
+        order, fresh = clusters(order, fresh, *((numbers, SAME_IMAGE) for numbers in pose.T))
+        return np.bincount(arrangement[order[fresh]], minlength=len(self.toolkit.arrangements))
+
+
+def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
+    """Whether half a turn of everything makes an arrangement the same again: with as many pegs on either jaw, or with two
+    clamps in opposite directions, unless a wall stays where it is."""
+    ways = [
+        toolkit.carriers[number].travel for number in arrangement.carriers if toolkit.carriers[number].on is not None
+    ]
+    if not ways:
+        swaps = any(one.half_turns % 2 and one.carriers == (1, 0) for one in toolkit.symmetries)
+        return swaps and arrangement.pegs == arrangement.pegs[::-1]
+    units = np.array([way.unit for way in ways if way is not None])
+    return toolkit.wall is None and len(units) == 2 and not units.sum(axis=0).any()
 
 
 def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array) -> BoolArray:
@@ -61,201 +158,43 @@ def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray],
     return before
 
 
-def one_of_each_set(words: Sequence[IntArray], pose: Array) -> IntArray:
-    """Which (S,) fixtures stand for the sets of those that have whole numbers (N,) and, to a hair, the pose (N, P) in
-    common."""
-    order = np.lexsort(words[::-1])
-    order, fresh = clusters(
-        order, changes([word[order] for word in words]), *((numbers, SAME_IMAGE) for numbers in pose.T)
-    )
-    return order[fresh]
-
-
-def orientation_after(theta: Array, rotation: Rotation, period: Array) -> Array:
-    """Orientations (N,) in the listed form, up to a hair, after the part is turned onto itself."""
-    return np.asarray((theta - rotation.angle + SAME_POSE) % period - SAME_POSE)
-
-
-@define(frozen=True, eq=False)
-class PartRotations:
-    """The rotations of a part onto itself, and what they make of candidates.
-
-    Parameters
-    ----------
-    problem : what was searched.
-    rotations : the identity first.
-    kept : (2,) the point that they keep, in mm in the frame of contacts.
-    """
-
-    problem: Problem
-    rotations: tuple[Rotation, ...]
-    kept: Array
-
-    @classmethod
-    def of(cls, problem: Problem) -> PartRotations:
-        """The rotations of a problem's part."""
-        part = problem.workpiece
-        return cls(problem, rotations_of(part), kept_point(part) - part.center)
-
-    @property
-    def is_symmetric(self) -> bool:
-        """Whether there is more than the part as it lies, so that a fixture need not be a set of its own."""
-        return len(self.rotations) > 1
-
-    def smallest(self, c: Candidates) -> tuple[list[IntArray], Array, IntArray]:
-        """The smallest form of fixtures among those they are carried into: (N,) packed arrangements and holes, (N, 2)
-        orientations and numbers for the place; and (N,) the numbers of the arrangements."""
-        # Of a part of many rotations only those are tried that make the orientation the least.
-        period = np.where(c.standing == self.problem.frame.swapped, np.pi, 2 * np.pi)
-        least = np.min([orientation_after(c.theta, rotation, period) for rotation in self.rotations], axis=0)
-        words, pose = list[IntArray](), np.full((len(least), 2), np.inf)
-        for rotation in self.rotations:
-            chosen = np.flatnonzero(orientation_after(c.theta, rotation, period) <= least + SAME_POSE)
-            turned, turned_pose = self.carried(c.take(chosen), rotation.angle)
-            words = words or [np.full(len(least), np.iinfo(np.int64).max) for _ in turned]
-            better = precedes(turned, turned_pose, [word[chosen] for word in words], pose[chosen])
-            pose[chosen[better]] = turned_pose[better]
-            for word, new in zip(words, turned, strict=True):
-                word[chosen[better]] = new[better]
-        return words, pose, self.problem.query.toolkit.arrangement_numbers(c.standing)
-
-    def carried(self, c: Candidates, angle: float) -> tuple[list[IntArray], Array]:
-        """What :meth:`smallest` chooses from: fixtures after the part is turned onto itself by an angle in radians."""
-        theta, column, row = c.theta - angle, c.column.copy(), c.row.copy()
-        order = np.empty((len(theta), 4), np.int64)
-        to_canonical_form(c.standing, theta, column, row, order, self.problem.frame.swapped, SAME_POSE)
-        first = c.point[np.arange(len(theta)), order[:, 0]] - self.kept
-        place = place_number(np.stack(rotated(first[:, 0], first[:, 1], angle), axis=1), c.gap)
-        holes = zip((column, row), most_holes(self.problem), strict=True)
-        return packed((c.standing[:, None], MOST_PEGS), *holes), np.stack([theta, place], axis=1)
-
-    def count(self, columns: Sequence[NDArray[Any]]) -> IntArray:
-        """How many sets of each arrangement there are among all fixtures of some packed numbers: (N,) columns as
-        :meth:`smallest` gives them, the pose in two."""
-        *words, theta, place, kind = columns
-        chosen = one_of_each_set(words, np.stack([theta, place], axis=1))
-        return np.bincount(kind[chosen], minlength=len(self.problem.query.toolkit.arrangements))
-
-
 @define(eq=False)
 class SetCount:
-    """How many fixtures of plates and walls there are, and how many sets they form under the rotations of the part.
+    """How many fixtures there are, and how many sets they form, as they come.
 
     Parameters
     ----------
-    toolkit, part : what holds, and what is held.
-    every : whether each choice of clamps is a fixture; else one stands for all choices of one pair of directions.
+    identity : what names them.
     found : (A,) fixtures of each arrangement so far.
     """
 
-    toolkit: Toolkit
-    part: Workpiece
-    every: bool
+    identity: Identity
     found: IntArray = field(init=False)
-    rotations: tuple[Rotation, ...] = field(init=False)
-    images: list[tuple[IntArray, Array]] = field(factory=list, init=False)
+    images: list[tuple[NDArray[np.generic], ...]] = field(factory=list, init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.found = np.zeros(len(self.toolkit.arrangements), np.int64)
-        self.rotations = rotations_of(self.part)
+        self.found = np.zeros(len(self.identity.toolkit.arrangements), np.int64)
 
     def add(self, table: FixtureTable) -> None:
         """Count further fixtures."""
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
-        if len(self.rotations) > 1:
-            self.images.append(smallest_images(table, self.toolkit, self.part, self.rotations, self.every))
+        if self.identity.is_symmetric and len(table):
+            words, pose = self.identity.smallest(table)
+            self.images.append((table.arrangement, pose, *words))
 
     @property
     def distinct(self) -> IntArray:
         """Sets (A,) of each arrangement so far."""
         if not self.images:
             return self.found
-        key, pose = (np.concatenate(values) for values in zip(*self.images, strict=True))
-        chosen = one_of_each_set(packed((key, int(key.max(initial=0)))), pose)
-        return np.bincount(key[chosen, 0], minlength=len(self.found))
+        arrangement, pose, *words = (np.concatenate(values) for values in zip(*self.images, strict=True))
+        return self.identity.count(words, pose, arrangement)
 
     def by_type(self, counts: IntArray) -> dict[str, int]:
         """Counts (A,) of arrangements, summed by their names."""
-        each = list(zip(self.toolkit.arrangements, counts.tolist(), strict=True))
-        return {name: sum(count for one, count in each if one.name == name) for name in self.toolkit.types}
-
-
-def opposed_arrangements(toolkit: Toolkit) -> BoolArray:
-    """Which arrangements (A,) half a turn of everything makes the same again, with the clamps swapped: those of two clamps
-    in opposite directions, unless a wall stays where it is."""
-    pairs = [(one.direction or "").split() for one in toolkit.arrangements]
-    swaps = [len(set(pair)) == 2 and pair[0][1] == pair[1][1] for pair in pairs]
-    return np.array(swaps) & (toolkit.wall is None)
-
-
-def smallest_images(
-    table: FixtureTable, toolkit: Toolkit, part: Workpiece, rotations: Sequence[Rotation], every: bool
-) -> tuple[IntArray, Array]:
-    """The first of the forms that a part's rotations give each fixture: whole numbers (N, K), and orientations and places
-    (N, P); of its clamps their directions alone, unless ``every`` choice of them is a fixture."""
-    upright, tips = clamps_of(table, toolkit)
-    plate, locators = toolkit.carriers[0], toolkit.arrangements[0].pegs[0]
-    opposed, kept = opposed_arrangements(toolkit)[table.arrangement], kept_point(part)
-    holes = np.stack([table.column, table.row], axis=2)[:, [0, locators - 1]]
-    anchors = holes * np.array(plate.pitch) + np.array(plate.offset)
-    best = np.zeros((0, 0), np.int64), np.zeros((0, 0))
-    for rotation in rotations:
-        theta = (table.theta - rotation.angle + SAME_POSE) % tau - SAME_POSE
-        turned = opposed & (theta >= pi - SAME_POSE)
-        key = identity_numbers(table, locators, upright, turned)
-        anchor = np.where(turned[:, None], anchors[:, 1], anchors[:, 0])
-        x, y = rotated(anchor[:, 0] - table.position[:, 0], anchor[:, 1] - table.position[:, 1], -table.theta)
-        places = [np.where(turned, theta - pi, theta), *rotated(x - kept[0], y - kept[1], rotation.angle)]
-        if every:
-            ahead = tips - np.where(upright, anchor[:, [1]], anchor[:, [0]])
-            places += [*np.where(turned[:, None], -ahead[:, ::-1], ahead).T]
-        key, pose = key if every else key[:, : 1 + 2 * locators], np.stack(places, axis=1)
-        best = best if len(best[0]) else (key, pose)
-        before = precedes([*key.T], pose, [*best[0].T], best[1])[:, None]
-        best = np.where(before, key, best[0]), np.where(before, pose, best[1])
-    return best
-
-
-def clamps_of(table: FixtureTable, toolkit: Toolkit) -> tuple[BoolArray, Array]:
-    """Which clamps (N, C) of fixtures push along columns, and where (N, C) on their lines their tips are, in mm."""
-    directions = [
-        [DIRECTION_NAMES.index(name) for name in (one.direction or "").split()] for one in toolkit.arrangements
-    ]
-    direction, plate = np.array(directions, np.int64)[table.arrangement], toolkit.carriers[0]
-    upright = is_upright(direction)
-    if upright.shape[1] == 0:
-        return upright, np.zeros(upright.shape)
-    columns, rows = (
-        values[:, 3:] * pitch + first
-        for values, pitch, first in zip((table.column, table.row), plate.pitch, plate.offset, strict=True)
-    )
-    travelled = OPENING[direction].sum(axis=2) * table.jaw_separation.reshape(direction.shape)
-    return upright, np.where(upright, rows, columns) + travelled
-
-
-def identity_numbers(table: FixtureTable, locators: int, upright: BoolArray, turned: BoolArray) -> IntArray:
-    """Directions (N, 1), the columns and then the rows of so many locators, and the lines of clamps (N, C), all counted from
-    the locators' lowest hole.
-
-    Parameters
-    ----------
-    upright : (N, C) which clamps push along columns.
-    turned : (N,) which fixtures are meant after half a turn of everything, which swaps the clamps.
-    """
-    standing = [values[:, :locators] for values in (table.column, table.row)]
-    first = [values.min(axis=1, keepdims=True) for values in standing]
-    column, row = (values - lowest for values, lowest in zip(standing, first, strict=True))
-    clamped = slice(table.column.shape[1] - upright.shape[1], None)
-    line = np.where(upright, table.column[:, clamped] - first[0], table.row[:, clamped] - first[1])
-    width, height = column.max(axis=1, keepdims=True), row.max(axis=1, keepdims=True)
-    back = turned[:, None]
-    out = [
-        table.arrangement[:, None],
-        np.where(back, (width - column)[:, ::-1], column),
-        np.where(back, (height - row)[:, ::-1], row),
-        np.where(back, (np.where(upright, width, height) - line)[:, ::-1], line) + FAR,
-    ]
-    return np.hstack(out).astype(np.int64)
+        toolkit = self.identity.toolkit
+        each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
+        return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}
 
 
 def identity_order(table: FixtureTable) -> NDArray[np.intp]:

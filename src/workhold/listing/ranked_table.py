@@ -6,7 +6,7 @@ from __future__ import annotations
 from attrs import define, field
 
 from workhold.contact.problem import Problem
-from workhold.listing.identity import SetCount, identity_order
+from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.listing.listed import Work, proof_of
 from workhold.listing.ranking import best_marked, measured_as, rank
 from workhold.model.notes import undecided_note
@@ -37,7 +37,7 @@ class RankedTable:
     def __attrs_post_init__(self) -> None:
         part, toolkit = self.query.workpiece, self.query.toolkit
         self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
-        self.count = SetCount(toolkit, part, self.query.listing != "best")
+        self.count = SetCount(Identity(toolkit, part, self.query.listing != "best"))
         self.tables = [FixtureTable.empty(toolkit)]
 
     def __len__(self) -> int:

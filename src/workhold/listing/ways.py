@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from attrs import evolve
 
-from workhold.listing.identity import SetCount
+from workhold.listing.identity import Identity, SetCount
 from workhold.listing.ranking import rank
 from workhold.model.notes import best_note, cut_note, no_fixture_notes, no_place_note, undecided_note
 from workhold.model.proof import Proof
@@ -29,7 +29,7 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
     found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
     if query.best is not None and any(best_note(query.best) in result.notes for result in results):
         # Each way left others out than the best of its own, so of all no more are known than the best.
-        counted = SetCount(query.toolkit, query.workpiece, every=True)
+        counted = SetCount(Identity(query.toolkit, query.workpiece))
         counted.add(ranked)
         found, distinct = counted.by_type(counted.found), counted.by_type(counted.distinct)
     joined = Result(

@@ -209,6 +209,16 @@ class Fixture:
         return None if self.listed is None else str(self.draw())
 
     @property
+    def travels(self) -> tuple[float, ...]:
+        """How far each thing that moves has travelled, in mm: the jaw, or the clamps in their order."""
+        return (self.jaw_separation,) if self.pair is None else self.pair.travels
+
+    @property
+    def placed(self) -> tuple[Peg, ...]:
+        """The pegs and clamps that stand in places of their own; the ends of a contact with a wall do not."""
+        return tuple(peg for peg in self.pegs if not peg.is_on_wall)
+
+    @property
     def figures(self) -> dict[str, float]:
         """The figures of quality and, where it is told, of seating, whose warnings count as well."""
         if self.seating is None:

@@ -15,8 +15,8 @@ from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
 from workhold.limits import thread_count
 from workhold.listing.best import BestFixtures
-from workhold.listing.gathering import Gathering
-from workhold.listing.listed import MEASURED, Work, best_result, gathered_result, listed_result, stage
+from workhold.listing.collector import ResultCollector
+from workhold.listing.listed import MEASURED, Work, best_result, collected_result, listed_result, stage
 from workhold.listing.ways import joined_ways
 from workhold.model.load import Load
 from workhold.model.notes import no_fixture_notes, no_place_note
@@ -202,15 +202,15 @@ def answer_of_a_way(
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
     if receiver is not None and kept is None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
-            gathering = Gathering(problem, pool, 2 * threads, cancel, receiver.folder)
-            with gathering.given_up_on_errors():
-                _, done = run_blocks(blocks, threads, before, cancel, gathering.take, look, search.stop, pool)
-                result = gathered_result(gathering, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
+            collector = ResultCollector(problem, pool, 2 * threads, cancel, receiver.folder)
+            with collector.given_up_on_errors():
+                _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
+                result = collected_result(collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
                 result = with_reason(result, search, threads, cancel)
-                listed = gathering.listed
+                listed = collector.listed
                 if listed < sum(result.found.values()):
                     result = result.cut_short(listed)
-                receiver.receive(result, listed, gathering.tables(stage(rest, MEASURED, 1.0)))
+                receiver.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
         return result
     records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
     work = work_of(search, blocks, done)

@@ -21,14 +21,14 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates, listed_once, most_holes, packed_holes
 from workhold.listing.finish import Batches, listed_form
-from workhold.listing.identity import PartRotations
+from workhold.listing.identity import Identity
 from workhold.listing.placing import placed
 from workhold.listing.ranking import measured, ranking_keys
 from workhold.listing.runs import Run, Runs, in_order, key_of
 from workhold.model.result import FixtureTable
 from workhold.proof.deciding import Account, Course
 
-__all__ = ["Gathering"]
+__all__ = ["ResultCollector"]
 
 # Bits of a fixture's place in its part.
 PLACE_BITS = 40
@@ -39,7 +39,7 @@ LISTED_LATE = 50_000
 
 
 @define(eq=False)
-class Gathering:
+class ResultCollector:
     """The fixtures of a search.
 
     Parameters
@@ -68,12 +68,12 @@ class Gathering:
     by_holes: Runs = field(init=False)
     by_turn: Runs = field(init=False)
     by_rank: Runs = field(init=False)
-    turns: PartRotations = field(init=False)
+    identity: Identity = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.course = Course(0, cancel=self.cancel)
         self.by_holes, self.by_turn, self.by_rank = (Runs(self.folder) for _ in range(3))
-        self.turns = PartRotations.of(self.problem)
+        self.identity = Identity(self.problem.query.toolkit, self.problem.workpiece)
         kinds = len(self.problem.query.toolkit.arrangements)
         self.found, self.distinct = np.zeros(kinds, np.int64), np.zeros(kinds, np.int64)
 
@@ -144,9 +144,10 @@ class Gathering:
             if course.is_late:
                 break
         self.by_holes.close()
-        if self.turns.is_symmetric:
+        if self.identity.is_symmetric:
             for part in in_order(self.pool, self.ahead, taken, self.by_turn.parts()):
-                self.distinct += self.turns.count(part.columns)
+                arrangement, pose, *words = part.columns
+                self.distinct += self.identity.count(words, pose, arrangement)
             self.by_turn.close()
         else:
             self.distinct += self.found
@@ -163,10 +164,10 @@ class Gathering:
         query = self.problem.query
         keys = key_of(*ranking_keys(table.quality, query.ranking, query.tolerance), identity)
         ranked = Run.of(keys, table.columns)
-        if not self.turns.is_symmetric:
+        if not self.identity.is_symmetric:
             return ranked, None
-        words, pose, kind = self.turns.smallest(candidates)
-        return ranked, Run.of(key_of(*words), (*words, *pose.T, kind))
+        words, pose = self.identity.smallest(table)
+        return ranked, Run.of(key_of(*words), (table.arrangement, pose, *words))
 
     @property
     def listed(self) -> int:

@@ -24,7 +24,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.judging import unfit
 
-__all__ = ["Entries", "alike", "entries", "first_of_each"]
+__all__ = ["Entries", "entries", "first_of_each", "near_duplicates"]
 
 IntArray = NDArray[np.int64]
 
@@ -56,7 +56,7 @@ def entries(result: Result, with_unfit: bool = False) -> Entries:
     bad = np.concatenate([np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)])
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
     looked_at = shown[:MOST_LOOKED_AT]
-    index, like = first_of_each(alike(table.take(looked_at), result.workpiece, result.toolkit))
+    index, like = first_of_each(near_duplicates(table.take(looked_at), result.workpiece, result.toolkit))
     return Entries(shown[index], like, len(bad) - len(shown))
 
 
@@ -67,7 +67,7 @@ def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
     return first[order], count[order] - 1
 
 
-def alike(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """A number (N,) for each fixture, the same for those that are alike."""
     if len(table) == 0:
         return np.zeros(0, np.int64)

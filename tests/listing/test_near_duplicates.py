@@ -10,7 +10,7 @@ from attrs import evolve, fields
 
 from workhold import Plate, Vise, Workpiece, design, load
 from workhold.geometry.symmetry import symmetries
-from workhold.listing.alike import alike, entries, smallest_images
+from workhold.listing.near_duplicates import entries, near_duplicates, smallest_images
 from workhold.model.quality import TILT
 from workhold.model.result import FixtureTable
 from workhold.statics.judging import unfit
@@ -41,7 +41,7 @@ def test_rotations_and_mirror_images_are_found(loop: list[list[float]], count: i
 def test_fixtures_of_a_symmetric_part_fall_together() -> None:
     """In a square plate a group is closed: with a fixture it has those on faces turned or mirrored."""
     result = design(PLATE, VISE)
-    group = alike(result.table, PLATE, VISE)
+    group = near_duplicates(result.table, PLATE, VISE)
     seen: dict[tuple[object, ...], set[int]] = {}
     for number, fixture, tilt in zip(group.tolist(), result, result.table.quality[:, TILT], strict=True):
         # Up to turns and mirror images, what four faces of a square have in common is how often each is touched and
@@ -63,7 +63,7 @@ def test_clamps_keep_their_faces(clamps: int) -> None:
     part = Workpiece.from_loops("lopsided", [[[0, 0, 0], [70, 0, 0], [58, 44, 0], [0, 36, 0]]])
     plate = Plate(pitch=20, peg_radius=3, columns=6, rows=5, clamps=clamps, directions=["-x", "-y"])
     result = design(part, plate)
-    group = alike(result.table, part, plate)
+    group = near_duplicates(result.table, part, plate)
     seen: dict[int, set[object]] = {}
     for number, fixture in zip(group.tolist(), result, strict=True):
         locators = tuple(sorted(peg.face for peg in fixture.pegs[:3]))
@@ -101,7 +101,7 @@ def test_entries_count_every_fixture_once() -> None:
     assert (np.diff(shown.index) > 0).all()
     everything = entries(result, with_unfit=True)
     assert everything.unfit == 0 and len(everything.index) + everything.like.sum() == len(result)
-    group = alike(result.table, result.workpiece, result.toolkit)
+    group = near_duplicates(result.table, result.workpiece, result.toolkit)
     assert all(index == np.flatnonzero(group == group[index])[0] for index in everything.index)
 
 
@@ -112,6 +112,6 @@ def test_what_the_half_turn_swaps_is_alike() -> None:
     both = FixtureTable(
         **{a.name: np.concatenate([getattr(t, a.name) for t in (result.table, swapped)]) for a in fields(FixtureTable)}
     )
-    one, other = np.split(alike(both, result.workpiece, result.toolkit), 2)
+    one, other = np.split(near_duplicates(both, result.workpiece, result.toolkit), 2)
     two_and_two = result.table.arrangement == 0
     assert (one == other)[two_and_two].all() and not (one == other)[~two_and_two].all()
