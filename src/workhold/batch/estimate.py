@@ -40,7 +40,7 @@ def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[s
     ----------
     size : width and height of the part in mm.
     """
-    carrier = toolkit.carriers[0]
+    carrier = toolkit.plates[0]
     diameter = hypot(*size) + 2.0 * carrier.peg_radius
     across, along = (
         diameter / pitch if count is None else min(count - 1.0, diameter / pitch)

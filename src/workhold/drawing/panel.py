@@ -160,7 +160,7 @@ def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
 
 def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
     """How far the rows of the carrier that slides lie above or below those of the first one; None where they are level."""
-    offset = toolkit.moving.offset[1] - toolkit.carriers[0].offset[1]
+    offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.words(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
 
 
@@ -175,7 +175,7 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, settings, several = toolkit.carriers[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
+    first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
     for setting in settings:
@@ -229,7 +229,7 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 
 def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write the pegs: hole, face, place and force."""
-    first, rows = toolkit.carriers[0], []
+    first, rows = toolkit.plates[0], []
     for peg, name in zip(fixture.pegs, contact_names(fixture, toolkit), strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
         named = name.removeprefix(f"{carrier.noun} ") if carrier.measure == "tip" else name

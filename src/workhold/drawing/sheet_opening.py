@@ -19,7 +19,7 @@ def opening_writers(sheet: Sheet) -> list[Writer]:
 def write_opening(column: Column, sheet: Sheet) -> None:
     """Write the opening and how to measure it."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
-    first, moving = toolkit.carriers[0], toolkit.moving
+    first, moving = toolkit.plates[0], toolkit.moving
     heading(column, f"Opening S of the {moving.noun}s")
     column.words(lengths.words(fixture.jaw_separation), 28, bold=True, gap=0.4)
     check = caliper_check(fixture, toolkit)
@@ -58,7 +58,7 @@ def opening_steps(sheet: Sheet) -> list[str]:
 
 def write_counting(column: Column, sheet: Sheet) -> None:
     """Write how holes are counted."""
-    lengths, first, moving = sheet.lengths, sheet.toolkit.carriers[0], sheet.toolkit.moving
+    lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     heading(column, "Counting holes")
     pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]

@@ -171,7 +171,7 @@ def looks_words(peg: Peg) -> str:
 
 def write_flats(column: Column, sheet: Sheet) -> None:
     """Write what the flats of the pegs are and how they are turned, where they have some."""
-    flat = sheet.toolkit.carriers[0].flat
+    flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.paragraph(
             "flat: which way it looks, counter-clockwise from +x; it is "
@@ -194,7 +194,7 @@ def inside_words(sheet: Sheet) -> str:
 
 def write_dowel(column: Column, sheet: Sheet) -> None:
     """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
-    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.carriers[0]
+    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.plates[0]
     diameter = 2 * carrier.peg_radius
     fit = details.tolerance.fit
     column.y += 3

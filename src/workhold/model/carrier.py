@@ -159,7 +159,9 @@ class Carrier:
     @property
     def written_as(self) -> tuple[str, str]:
         """How files name what stands on it: by its carrier where there are several lattices, else by its role."""
-        return (self.noun, self.name) if self.has_lattice and self.letter else ("role", self.contact.role)
+        if self.has_lattice and self.letter:
+            return "role" if self.name == self.noun else self.noun, self.name
+        return "role", self.contact.role
 
     def place_name(self, column: int, row: int) -> str:
         """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.

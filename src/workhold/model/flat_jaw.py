@@ -7,10 +7,13 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
+from attrs import evolve
+
 from workhold.fixels.fields import TABLES, Table
 from workhold.model.fixture import WALL
 from workhold.model.flat import Flat
 from workhold.model.making import made_from_table, settle
+from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
@@ -72,6 +75,15 @@ class FlatJaw(Toolkit):
         ),
     )
 
+    setup_words: ClassVar[SetupWords] = SetupWords(
+        standing="Pegs",
+        located_by="The flat jaw",
+        put="Put {peg}s in {holes} of the plate on the jaw that moves.",
+        against="flush against the flat jaw",
+        touching="flush",
+        resting="flush against the flat jaw",
+    )
+
     pitch: tuple[float, float]
     peg_radius: float
     columns: int | None
@@ -85,11 +97,23 @@ class FlatJaw(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The jaw that moves, whose travel is the jaw separation, and the flat jaw."""
+        """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
         size = self.pitch, self.columns, self.rows
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
-        jaw = Carrier("jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw")
-        return jaw, Carrier(WALL, *size, 0.0, 0.0, noun="flat jaw", peg="end", is_wall=True)
+        wall = Carrier(WALL, *size, 0.0, 0.0, noun="flat jaw", peg="end", is_wall=True)
+        jaw = Carrier("jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw", flat=self.flat)
+        return wall, jaw
+
+    @property
+    def law(self) -> str:
+        """That of a wall."""
+        return "fence"
+
+    @property
+    def datum(self) -> Datum:
+        """Where column A meets the flat jaw; rows move with their jaw."""
+        wall, jaw = self.carriers
+        return evolve(Datum.at_wall(wall, jaw), edge=None)
 
     @property
     def gap(self) -> float:

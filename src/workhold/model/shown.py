@@ -270,7 +270,7 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
     carriers = toolkit.plates
     clamps = tuple(shown_clamps(fixture, toolkit))
     held = held_box(part, fixture, clamps)
-    reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.datum.fixes_rows else held.y0
+    reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.ends_on_walls else held.y0
     ranges = [cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
     gaps = facing_gaps(spans)
@@ -310,7 +310,8 @@ def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
     around = plate.plate.union(seen.part)
     bar = Box(around.x0, -thick, around.x1, 0.0)
-    below = evolve(plate.plate, y0=-thick)
+    # What stands still goes on below the bar; what slides ends above it.
+    below = evolve(plate.plate, y0=-thick if plate.clamping is None else max(plate.plate.y0, 0.0))
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
     plate = evolve(plate, plate=below, broken=plate.broken - {"bottom"})
     return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
@@ -332,7 +333,7 @@ def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    return Measured(setting, (axis(setting.start, still), axis(setting.end, own or still)), upright)
+    return Measured(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)
 
 
 def held_box(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:

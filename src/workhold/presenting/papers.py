@@ -127,7 +127,7 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
         from workhold.files.pin_list import pin_list
         from workhold.model.dowel import fit_words
 
-        fit, diameter = result.query.tolerance.fit, 2 * toolkit.carriers[0].peg_radius
+        fit, diameter = result.query.tolerance.fit, 2 * toolkit.plates[0].peg_radius
         dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
         text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
         write_bytes(path, text.encode("utf-8"))

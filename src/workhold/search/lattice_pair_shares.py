@@ -29,9 +29,6 @@ __all__ = ["LatticePairSearch", "LatticePairShares"]
 
 Array = NDArray[np.float64]
 
-# The order of contacts in tables: both pegs, then the wall's two ends; forces come the other way round.
-LISTED = [2, 3, 0, 1]
-
 
 @define(eq=False)
 class LatticePairSearch:
@@ -117,23 +114,22 @@ class LatticePairSearch:
         """Return the table of pairs on a hull edge, their lowest rows so far (N,) back; only the closure margin is known."""
         flush, problem, count = self.problem.workpiece.flush, self.problem, len(pairs)
         column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
-        column[:, 1] = pairs.step[:, 0]
-        row[:, 0], row[:, 1] = np.maximum(-pairs.step[:, 1], 0) + back, np.maximum(pairs.step[:, 1], 0) + back
+        column[:, 3] = pairs.step[:, 0]
+        row[:, 2], row[:, 3] = np.maximum(-pairs.step[:, 1], 0) + back, np.maximum(pairs.step[:, 1], 0) + back
         theta = np.full(count, flush.theta[edge])
         start = turned(np.tile(flush.ends[edge, 0], (count, 1)), theta)
         _, first = self.lattice.place(0, 0)
-        null = pairs.null[:, LISTED]
-        share = null / null.sum(axis=1, keepdims=True)
+        share = pairs.null / pairs.null.sum(axis=1, keepdims=True)
         wall = np.tile(flush.face[edge], (count, 1))
         return FixtureTable(
             arrangement=np.zeros(count, np.int8),
             column=column,
             row=row,
-            face=np.concatenate([problem.faces[pairs.feature], wall], axis=1).astype(np.int32),
+            face=np.concatenate([wall, problem.faces[pairs.feature]], axis=1).astype(np.int32),
             theta=theta,
             position=np.stack([-pairs.point[:, 0, 0], np.zeros(count)], axis=1) - start,
-            jaw_separation=pairs.point[:, 0, 1] - row[:, 0] * self.lattice.pitch[1] - first,
-            force=share / share[:, 2:].sum(axis=1, keepdims=True),
+            jaw_separation=pairs.point[:, 0, 1] - row[:, 2] * self.lattice.pitch[1] - first,
+            force=share / share[:, :2].sum(axis=1, keepdims=True),
             quality=unknown_quality(share.min(axis=1, initial=1.0)),
         )
 
@@ -141,8 +137,8 @@ class LatticePairSearch:
         """Return a pair that is not decided, for the account."""
         flush, step = self.problem.workpiece.flush, pairs.step[number].tolist()
         one, other = self.problem.faces[pairs.feature[number]].tolist()
-        title, rows = self.problem.toolkit.arrangements[0].title, (max(-step[1], 0), max(step[1], 0), 0, 0)
-        faces, columns = (one, other, *flush.face[edge].tolist()), (0, step[0], 0, 0)
+        title, rows = self.problem.toolkit.arrangements[0].title, (0, 0, max(-step[1], 0), max(step[1], 0))
+        faces, columns = (*flush.face[edge].tolist(), one, other), (0, 0, 0, step[0])
         return Undecided(title, faces, columns, rows, float(np.degrees(flush.theta[edge])), AT_AN_EDGE, 0.0)
 
 
@@ -210,6 +206,7 @@ class LatticePairShares:
         statistics = {
             "features": len(search.problem.rows),
             "hull_edges": done,
+            "locator_places": 0,
             "contacts_examined": search.examined,
         }
         return Work(complete, statistics, cells=done)

@@ -157,7 +157,7 @@ def pins(order: PaperOrder) -> tuple[bytes, str | None]:
     from workhold.model.units import unit_named
 
     toolkit, fit = order.result.toolkit, order.result.query.tolerance.fit
-    known = None if fit is None else fit_words(fit, 2 * toolkit.carriers[0].peg_radius)
+    known = None if fit is None else fit_words(fit, 2 * toolkit.plates[0].peg_radius)
     wishes = order.wishes
     text = pin_list(order.fixture, toolkit, unit_named(order.unit), wishes["dowel"] or known, wishes["peg_length"])
     return text.encode("utf-8"), None

@@ -113,6 +113,7 @@ DESCRIBED = (
     ),
     Described("vise", "Vise, pegs on both jaws", "Close vise", IN_JAWS),
     Described("opening-vise", "Vise that holds by opening", "Open vise", IN_JAWS),
+    Described("flat-jaw", "Vise with one flat jaw", "Close vise", {"pitch": [10.0, 10.0], "peg_radius": 3.0}),
     Described("gripper", "Gripper, one column a jaw", "Close gripper", {**IN_JAWS, "columns": 1}),
 )
 

@@ -35,9 +35,9 @@ class JawPegPart(ContactPart):
 
 
 class LocatorPart(ContactPart):
-    """A locator in a hole of a plate."""
+    """A peg in a hole of a plate, which stands still or slides with a jaw."""
 
-    role: Literal["locator"]
+    role: Literal["locator", "jaw"]
     column: Whole
     row: Whole
 

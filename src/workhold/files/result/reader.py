@@ -175,10 +175,12 @@ def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
         return peg["jaw"], peg["column"], peg["row"]
     if peg["role"] == WALL:
         return WALL, 0, 0
+    if peg["role"] == "jaw":
+        return "jaw", peg["column"], peg["row"]
     if peg["role"] == "locator":
         return "plate", peg["column"], peg["row"]
     if peg["role"] != "clamp":
-        raise ValueError("the role of a peg is neither locator nor clamp")
+        raise ValueError("the role of a peg is not locator, clamp or jaw")
     line = ("column", "row")["x" in str(direction)]
     if peg["hole"] is None:
         places = {"column": 0, "row": 0} | {line: peg[line]}
