@@ -42,6 +42,7 @@ from workhold.verification.tolerances import (
     SAME_END,
     TANGENT,
 )
+from workhold.verification.wrench_radius import wrench_radius
 
 __all__ = ["Measure", "box_center", "figure_missing", "pair_numbers", "written_numbers"]
 
@@ -164,7 +165,7 @@ class Measure:
             if not contact.is_flush
         ]
         edges = [edge for peg in pegs if (edge := self.edge_distance(*peg)) is not None]
-        radius = balance.wrench_radius(self.center, self.wrench_length)
+        radius = wrench_radius(self.center, self.wrench_length, balance.points, balance.normals)
         if radius is not None:
             out["wrench_radius"] = radius
         out |= {

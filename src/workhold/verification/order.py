@@ -131,8 +131,8 @@ def rank(fixture: Fixture, hardware: Hardware) -> Rank:
     if hardware.wall is not None or len(ways) > 1:
         pegs = list[Peg]()
         for carrier in hardware.carriers.values():
-            group = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
-            pegs += sorted(group, key=hole_and_face) if carrier in hardware.lattices else group
+            there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
+            pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
         holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
         return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]

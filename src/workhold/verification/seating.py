@@ -32,8 +32,8 @@ from workhold.verification.contacts import Pose
 from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.rules.hardware import Hardware
-from workhold.verification.seating_contacts import Touching, touching_faults, touching_wall
-from workhold.verification.seating_stop import stop_of, travelled
+from workhold.verification.rules.stroke import travelled
+from workhold.verification.seating_contacts import Touching, stop_of, touching_faults, touching_wall
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
 __all__ = ["Judged", "SeatingJudge"]
@@ -106,11 +106,18 @@ class Judged:
         return [number for number, peg in enumerate(self.fixture.pegs) if peg.is_on_wall]
 
     @property
+    def wall(self) -> str:
+        """What the wall is called that the part lies on."""
+        wall = self.judge.query.toolkit.wall
+        return "" if wall is None else wall.noun
+
+    @property
     def travel(self) -> float:
         """How far in mm what moves has gone, of a clamp told by where its tip is."""
         if self.fixture.direction is None:
             return self.fixture.jaw_separation
-        return travelled(self.fixture.pegs[self.moving.index(True)], self.judge.query.toolkit)
+        tip = self.fixture.pegs[self.moving.index(True)]
+        return travelled(tip, self.judge.query.toolkit.carrier(tip.carrier))
 
     @property
     def clamping(self) -> int:
@@ -155,7 +162,7 @@ class Judged:
             return
         yield from self.freedom_faults(seat["pose"], seat["mirrored"], apart)
         contacts = [self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]]
-        yield from touching_faults(contacts, self.on_wall)
+        yield from touching_faults(contacts, self.on_wall, self.wall)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
@@ -245,7 +252,7 @@ class Judged:
         contacts = [self.touching(contact, top["pose"], False, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
-        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall))
+        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall, self.wall))
         yield from (f"the pass {words}" for words in self.freedom_faults(top["pose"], False, rise))
         if not self.can_balance(contacts, top["pose"], False):
             yield "the pass is no equilibrium of its contacts"
@@ -295,8 +302,8 @@ class Judged:
         radii = np.array([toolkit.carrier(self.fixture.pegs[number].carrier).peg_radius for number in numbers])
         if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
             yield "has a peg in the part"
-        if toolkit.wall is not None and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
-            yield "has the part in the fence"
+        if self.wall and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
+            yield f"has the part in the {self.wall}"
 
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
         """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""

@@ -12,49 +12,6 @@ hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coin
 
 from __future__ import annotations
 
-__all__ = [
-    "AGREEMENT",
-    "BODY_SLACK",
-    "CLOSE_READING",
-    "FIGURE_AGREEMENT",
-    "FLAT",
-    "FLUSH",
-    "GENTLE_PEG",
-    "HAIR",
-    "LARGE_LOCATION_ERROR",
-    "FILLED",
-    "LEAST_CLAMPING",
-    "LEAST_FLUSH",
-    "LEAST_PUSH",
-    "LEAST_SEAT",
-    "LEAST_SHARE",
-    "LEAST_SPAN",
-    "MAIN_DIRECTION",
-    "MOST_FORCE",
-    "NEAR_EDGE",
-    "NO_REACTION",
-    "POINTS_PER_DECADE",
-    "ROUNDING",
-    "SAME",
-    "SAME_END",
-    "SAME_FREEDOM",
-    "SAME_PLACE",
-    "SAME_PLACE_SPARE",
-    "SMALL_FACE",
-    "SMALL_FACE_POINTS",
-    "SQUARE_TILT",
-    "STRAIGHT",
-    "SMALL_CAPTURE",
-    "STRONG_PEG",
-    "STRONG_POINTS",
-    "TANGENT",
-    "TILTED_POINTS",
-    "UNFIT_CLOSURE",
-    "UNFIT_LOCATION_ERROR",
-    "WEAK_CLOSURE",
-    "WHOLE",
-]
-
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at most this; a
 # contact may lie so far past a tangent joint, and lies more than this inside any other end.
 HAIR = 1e-9
