@@ -13,7 +13,7 @@ from workhold.model.toolkit import Toolkit
 
 __all__ = ["pattern_faults", "stance"]
 
-# Degrees and mm. A fixture is a seat told whose pose and separation agree to this.
+# Degrees and mm. A fixture is a stated seat whose pose and separation agree to this.
 SAME_SEAT = 1e-5
 
 
@@ -51,7 +51,7 @@ class Stance:
     Parameters
     ----------
     key : what fixtures share that differ by a shift and by the travel of what moves.
-    anchor : in mm, the peg that stands still and is first; where only a wall does, the point of it below the first peg.
+    anchor : in mm, the first peg that stands still; where only a wall does, its point below the first peg.
     apart : how far in mm the first that moves is from it, along the way on which the travel grows.
     met : at how many mm of that a clamp's tip would be in one that stands still.
     """
@@ -63,7 +63,7 @@ class Stance:
 
 
 def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
-    """That of a fixture."""
+    """How the pegs of a fixture stand in a toolkit."""
     by_place = sorted((peg for peg in fixture.pegs if not peg.is_on_wall), key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]

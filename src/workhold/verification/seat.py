@@ -287,7 +287,7 @@ class SeatBalance:
         return closure_margin(*self.pushes)
 
     def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
-        """The inverse of the locators' wrenches, which alone tell where the part is; None where there may be none."""
+        """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 
     def of_all(self, row: Sequence[arb]) -> Sequence[arb]:

@@ -1,4 +1,4 @@
-"""Contacts that a seating tells, whether the part is touched there, and where what moves is stopped without the part."""
+"""Contacts that a seating states, and where what moves stops without the part."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class Touching:
     Parameters
     ----------
     peg : its number.
-    at, normal : in the toolkit's frame, in mm from its origin, where the part is touched, and the outward unit normal there.
+    at, normal : in the toolkit's frame, in mm from its origin, where the part is touched, and the outward
+        unit normal there.
     off : how far in mm the peg is from touching, at most.
     is_inside : whether what is touched is the inside of a face, or a corner.
     """
@@ -41,7 +42,7 @@ class Touching:
 
 
 def touching_wall(outline: Outline, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool) -> Touching:
-    """A contact with a wall along x at y = 0, the part above it: a corner, or the lowest point of a convex arc."""
+    """A contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
     number, down, is_corner = contact["peg"], exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
     sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
@@ -60,8 +61,10 @@ def touching_wall(outline: Outline, contact: Mapping[str, int], pose: Mapping[st
 
 
 def touching_faults(contacts: Sequence[Touching], on_wall: Sequence[int], wall: str) -> Iterator[str]:
-    """Contacts that do not touch what they are said to touch, or are told twice, or on a wall, of which the ends have these
-    numbers, not from the first on; ``wall`` is what it is called."""
+    """Contacts that do not touch what they are said to touch, or stand there twice, or lack the wall's first end.
+
+    The pegs ``on_wall`` are ends of the contact with what is called ``wall``.
+    """
     ends = [one.peg for one in contacts if one.peg in on_wall]
     if ends != list(on_wall[: len(ends)]):
         yield f"does not tell the ends on the {wall} from the first on"

@@ -20,7 +20,7 @@ BODY_SLACK = 1e-7
 # No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in radians by
 # which the rounded coordinates and bulges of a drawing may turn them.
 TANGENT = 1e-5
-# mm. An edge or none may be told at a joint that is tangent, or nearly so, where the ends of contact features are farther
+# mm. An edge or none may be counted at a joint that is tangent, or nearly so, where the ends of contact features are farther
 # apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
 SAME_END = 9e-7
 # mm. A peg fills a hollow whose radius exceeds its own by no more than this: no place there is a contact.
@@ -70,7 +70,7 @@ ROUNDING = 1e-13
 NEAR_EDGE, WEAK_CLOSURE, STRONG_PEG, LARGE_LOCATION_ERROR = 1.0, 0.02, 3.0, 5.0
 UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
 SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1
-# mm. Silhouettes that agree to this cover the same place; within this factor of it either may be told.
+# mm. Silhouettes that agree to this cover the same place; within this factor of it either may be said.
 SAME_PLACE, SAME_PLACE_SPARE = 1e-3, 2.0
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2

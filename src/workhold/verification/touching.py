@@ -2,24 +2,25 @@
 
 Rules, with the hair of ``findings``:
 
-- ends: a contact lies at least margin - hair inside the ends of the face, and more than a hair at an end that is no tangent
-  joint: a margin that is met exactly is met, and without one a contact at an end is none;
-- elsewhere: as far as that along its feature to both sides the peg, as if it had no flat, keeps clear of every other
-  segment. So where the feature is trimmed, because the peg comes to touch a second face across its own, the contact lies so
-  far inside too.
+- ends: a contact lies at least margin - hair inside the ends of the face, and more than a hair at an end that
+  is no tangent joint: a margin that is met exactly is met, and without one a contact at an end is none;
+- elsewhere: as far as that along its feature to both sides the peg, as if it had no flat, keeps clear of
+  every other segment. So where the feature is trimmed, because the peg comes to touch a second face across
+  its own, the contact lies so far inside too.
 
-Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, its foot inside the
-face, and every other segment farther than rho (of a flat: than the peg radius, which is no less). Then p lies on the
-trimmed contact feature, off its ends, and outside the workpiece: the open segment from the foot to p starts on the outer
-side and meets no part of the outline, so it never enters the material.
+Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, its foot
+inside the face, and every other segment farther than rho (of a flat: than the peg radius, which is no less).
+Then p lies on the trimmed contact feature, off its ends, and outside the workpiece: the open segment from the
+foot to p starts on the outer side and meets no part of the outline, so it never enters the material.
 
 Glossary
 --------
 clearance : distance in mm from a side to the peg, negative when the peg enters it.
-alongside : the clearance changes so slowly while the peg slides that its face and the side point the same way, or opposite
-    ways. So it is beside a tangent joint, and in a slot exactly as wide as the peg.
+alongside : the clearance changes so slowly while the peg slides that its face and the side point the same
+    way, or opposite ways. So it is beside a tangent joint, and in a slot exactly as wide as the peg.
 
-A side is clear when the clearance is positive, and one that runs alongside when it is above minus a hair (``findings``).
+A side is clear when the clearance is positive, and one that runs alongside when it is above minus a hair
+(``findings``).
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ SHORTEST = HAIR / 1024
 def touching_findings(
     name: str, contact: Contact, face: int, pose: Pose, outline: Outline, margin: float
 ) -> Iterator[Finding]:
-    """Whether a peg, called ``name``, touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
+    """Whether a peg touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
     center = contact.in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
@@ -96,7 +97,7 @@ def runs_alongside(contact: Contact, center: Point, side: Side) -> bool:
 
 
 def clear_within(contact: Contact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
-    """Whether a peg stays clear of some sides as far as a reach in mm along its feature; None when that is not decided.
+    """Whether a peg stays clear of some sides within a reach in mm along its feature; None if undecided.
 
     Pieces of the feature that are not seen to be clear are halved.
     """
@@ -127,7 +128,7 @@ def clear_within(contact: Contact, center: Point, sides: Sequence[Side], reach: 
 
 
 def steepness(contact: Contact, side: Side, around: Point) -> arb:
-    """Bound on how much a side's clearance changes per mm that the peg slides, its centre in a box; at most 1.
+    """Bound, 1 or less, on how much a side's clearance changes per mm that the peg slides, its centre in a box.
 
     It is the cosine between the peg's way and the way from the side's nearest point to the peg's centre.
     """
