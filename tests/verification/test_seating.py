@@ -22,8 +22,7 @@ from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.patterns import pattern_faults, stance
 from workhold.verification.seating import Judged, SeatingJudge
-from workhold.verification.seating_contacts import touching_wall
-from workhold.verification.seating_stop import stop_of
+from workhold.verification.seating_contacts import stop_of, touching_wall
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
