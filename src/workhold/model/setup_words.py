@@ -23,18 +23,18 @@ class SetupWords:
     Parameters
     ----------
     standing : heading of the places of the pegs, such as "Locators".
-    located_by : what the part is pushed against, such as "Three locators".
     put : the first thing to do, a sentence.
-    against : where the part lies when it is put in; nothing where what moves brings it there.
     touching : how the part lies where it is held, in two words.
+    located_by : what a clamp pushes the part against, such as "Three locators".
+    against : where the part lies before a clamp pushes it.
     resting : the same of a seat that looks like a fixture.
     """
 
     standing: str
-    located_by: str
     put: str
-    against: str
     touching: str
+    located_by: str = ""
+    against: str = ""
     resting: str = "all four pegs on faces"
 
 

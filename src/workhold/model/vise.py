@@ -16,7 +16,7 @@ from workhold.model.holes import Holes, holes_named
 from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
 from workhold.model.real import real
 from workhold.model.setup_words import SetupWords
-from workhold.model.toolkit import NAMED, Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
+from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
@@ -35,9 +35,7 @@ WORDING = Wording(
 )
 SETUP = SetupWords(
     standing="Pegs",
-    located_by="Pegs of the {plate}s",
     put="Put {peg}s in {holes}.",
-    against="",
     touching="four pegs",
 )
 
@@ -80,7 +78,6 @@ class Vise(Toolkit):
     """
 
     kind: ClassVar[str] = "vise"
-    file_key: ClassVar[str] = "vise"
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
@@ -199,7 +196,6 @@ class OpeningVise(Vise):
     """
 
     kind: ClassVar[str] = "opening-vise"
-    file_key: ClassVar[str] = NAMED
     clamping: ClassVar[int] = -1
     wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")
 
