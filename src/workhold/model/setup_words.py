@@ -52,7 +52,7 @@ class Datum:
     lines : the column and the row, or what stands for a row, of the zero point.
     rows_from : where rows are counted from, such as "below".
     substitute : what takes the place of the datum where all of a set-up is moved.
-    edge : distance in mm from what stands for a row to the centres of row 1; None where the zero point is a hole.
+    edge : distance in mm from what stands for a row to the centres of row 1; None where nothing does, or the plate slides.
     """
 
     name: str
@@ -97,7 +97,7 @@ class Datum:
             lines=(f"column {letter}", line),
             rows_from=line,
             substitute=f"the column that takes the place of {letter}",
-            edge=plate.offset[1],
+            edge=plate.offset[1] if plate.travel is None else None,
         )
 
     @property

@@ -135,7 +135,7 @@ class Toolkit:
     @property
     def datum(self) -> Datum:
         """Where zero lies, and what places are measured from: the first hole of the first plate."""
-        return Datum.at_hole(self.carriers[0])
+        return Datum.at_hole(self.plates[0])
 
     @property
     def plates(self) -> tuple[Carrier, ...]:
