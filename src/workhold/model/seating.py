@@ -1,4 +1,4 @@
-"""What is told of a fixture's seating: seats, the pass, the cage, and the figures that follow from them."""
+"""The seating of a fixture: seats, the pass, the cage, and the figures that follow from them."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ __all__ = [
     "DRY_STEEL",
     "SMALL_CAPTURE",
     "Cage",
-    "Contact",
     "Pass",
     "Seat",
+    "SeatContact",
     "Seating",
 ]
 
 # Of lengths in mm, angles in degrees and forces in files.
 DECIMALS = 9
-# What is warned of (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and a part is put
+# Limits of warnings (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and a part is put
 # down with about the room that this gives at each peg.
 SMALL_CAPTURE = 1.0
 # mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
@@ -45,7 +45,7 @@ IS_OWN = 1e-5
 
 
 @frozen
-class Contact:
+class SeatContact:
     """A peg on a face or on a corner of the part.
 
     Parameters
@@ -69,8 +69,8 @@ class Contact:
         return {"peg": self.peg, "corner" if self.corner else "face": self.face}
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, int]) -> Contact:
-        """The contact that a file tells."""
+    def of_fields(cls, fields: Mapping[str, int]) -> SeatContact:
+        """The contact that a file has."""
         corner = "corner" in fields
         return cls(fields["peg"], fields["corner" if corner else "face"], corner)
 
@@ -86,8 +86,8 @@ class Seat:
     jaw_separation : S in mm, of a clamp its travel.
     difference : S less that of the fixture.
     mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the same.
-    contacts, forces : what touches, and each force per unit of jaw force; none of what is loose or not settled.
-    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that was not asked.
+    contacts, forces : what touches, and each force per unit of jaw force; there are none where it is loose or not settled.
+    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that is not known.
     is_own : whether it is the fixture's own.
     """
 
@@ -97,7 +97,7 @@ class Seat:
     difference: float
     mirrored: bool
     same_place: bool
-    contacts: tuple[Contact, ...]
+    contacts: tuple[SeatContact, ...]
     forces: tuple[float, ...]
     depth: float | None
     is_own: bool
@@ -123,7 +123,7 @@ class Seat:
 
     @classmethod
     def of_fields(cls, fields: Mapping[str, Any]) -> Seat:
-        """The seat that a file tells; whose own it is the file's fixture tells."""
+        """The seat that a file has; whether it is the fixture's own follows from the fixture."""
         return cls(
             fields["kind"],
             Pose(**fields["pose"]),
@@ -131,7 +131,7 @@ class Seat:
             fields["difference"],
             fields["mirrored"],
             fields["same_place"],
-            tuple(map(Contact.of_fields, fields["contacts"])),
+            tuple(map(SeatContact.of_fields, fields["contacts"])),
             tuple(fields["forces"]),
             fields["depth"],
             False,
@@ -155,7 +155,7 @@ class Pass:
 
     pose: Pose
     jaw_separation: float
-    contacts: tuple[Contact, ...]
+    contacts: tuple[SeatContact, ...]
 
 
 @frozen
@@ -175,7 +175,7 @@ class Cage:
 
 @frozen
 class Seating:
-    """What a fixture's pegs can do with its part besides holding it in its pose.
+    """The seats of a fixture's pegs and part, and from where closing leads into the fixture's own.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class Seating:
     sticking_friction : the coefficient below which it cannot stick near its seat.
     stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing stops it.
     seats : all, by their separations, the fixture's own among them.
-    unsettled : why what was not settled was not, one sentence each.
+    unsettled : what could not be settled and why, one sentence each.
     opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
         separation; in mm, without end if None.
     clamping : 1 where S gets less as it clamps, -1 where it gets more.
@@ -210,7 +210,7 @@ class Seating:
     opened: str = JAWS[1]
 
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
-        """The same with what a toolkit tells, and an opening up to which seats count."""
+        """A copy with what follows from a toolkit, and an opening up to which seats count."""
         travel, sign = toolkit.moving.travel, toolkit.clamping
         most, opened = None if travel is None else travel.most, JAWS[sign] if toolkit.moving.on is None else CLAMP
         return evolve(self, opening=opening, most=most, clamping=sign, opened=opened)
@@ -239,7 +239,7 @@ class Seating:
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
     def reading_of(self, opening: float | None = None) -> float | None:
-        """What a measurement of the opening must resolve to tell wrong seats, in mm; None where there are none."""
+        """The least difference in mm of the opening between the right seat and a wrong one; None without wrong seats."""
         return min((abs(seat.difference) for seat in self.wrong_within(opening)), default=None)
 
     def catches(self, opening: float) -> bool:
@@ -248,7 +248,7 @@ class Seating:
 
     @property
     def is_foolproof(self) -> bool:
-        """Whether there is no wrong seat that counts, or a caliper tells each of them; what is unsettled counts as one."""
+        """Whether a caliper shows each wrong seat that counts; what is unsettled counts as one."""
         reading = self.reading_of()
         return reading is None or round(reading, DECIMALS) >= CLOSE_READING
 
@@ -259,7 +259,7 @@ class Seating:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What there is to beware of, one sentence each without a full stop; lengths in mm."""
+        """Warnings, one sentence each without a full stop; lengths in mm."""
         out, reading = list[str](), self.reading_of()
         if self.is_untold:
             out.append("from where on the part is caught is not known")
@@ -272,8 +272,10 @@ class Seating:
 
     @property
     def warning_count(self) -> int:
-        """As how many warnings of quality these count: a small capture opening as two, as what is let go in its cage needs
-        no reading."""
+        """The number of warnings of quality for which these count.
+
+        A small capture opening counts for two, because what is let go in its cage needs no reading.
+        """
         return len(self.warnings) + self.is_hardly_caught
 
     @property
@@ -322,12 +324,14 @@ class Seating:
 
     @classmethod
     def of_fields(cls, fields: Mapping[str, Any], pose: Pose) -> Seating:
-        """The seating that a file tells of a fixture in a pose. What follows from other fields is not looked at."""
+        """The seating that a file has of a fixture in a pose. Fields that follow from others are not read."""
         top, cage = fields["pass"], fields["cage"]
         seats = [Seat.of_fields(seat) for seat in fields["seats"]]
         lowest = None
         if top is not None:
-            lowest = Pass(Pose(**top["pose"]), top["jaw_separation"], tuple(map(Contact.of_fields, top["contacts"])))
+            lowest = Pass(
+                Pose(**top["pose"]), top["jaw_separation"], tuple(map(SeatContact.of_fields, top["contacts"]))
+            )
         friction = fields["sticking_friction"]
         return cls(
             fields["capture_opening"],

@@ -217,7 +217,7 @@ def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
     """The seating of all fixtures of a result; None of those that were left undone."""
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
-    from workhold.seating.seating import Solver
+    from workhold.seating.solver import Solver
 
     told = Solver(result.workpiece, result.toolkit).as_many(
         result,
