@@ -26,19 +26,22 @@ __all__ = [
 
 # Of lengths in mm, angles in degrees and forces in files.
 DECIMALS = 9
-# Limits of warnings (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and a part is put
-# down with about the room that this gives at each peg.
+# Limits of warnings (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and
+# a part is put down with about the room that this gives at each peg.
 SMALL_CAPTURE = 1.0
-# mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
+# mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it
+# as much.
 CLOSE_READING = 0.1
 # The coefficient of friction that dry steel reaches.
 DRY_STEEL = 0.2
 # mm: less is none as it is written.
 SAME_READING = 5e-4
-# What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
+# What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a
+# clamp.
 JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
 CLAMP = "the clamp is drawn back"
-# By how much the extremes of a cage may fall short at most: in degrees of turns, of shifts this part of their range.
+# By how much the extremes of a cage may fall short at most: in degrees of turns, of shifts this part of their
+# range.
 CAGE_SHORT = {"theta_deg": 0.5, "share": 0.01}
 # A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
 IS_OWN = 1e-5
@@ -85,9 +88,12 @@ class Seat:
     pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
     jaw_separation : S in mm, of a clamp its travel.
     difference : S less that of the fixture.
-    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the same.
-    contacts, forces : what touches, and each force per unit of jaw force; there are none where it is loose or not settled.
-    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that is not known.
+    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the
+        same.
+    contacts, forces : what touches, and each force per unit of jaw force; there are none where it is loose or
+        not settled.
+    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that is
+        not known.
     is_own : whether it is the fixture's own.
     """
 
@@ -164,8 +170,8 @@ class Cage:
 
     Parameters
     ----------
-    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too large, too small
-        by no more than ``CAGE_SHORT``.
+    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too
+        large, too small by no more than ``CAGE_SHORT``.
     """
 
     theta_deg: tuple[float, float]
@@ -179,17 +185,19 @@ class Seating:
 
     Parameters
     ----------
-    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it never gets out.
+    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it
+        never gets out.
     room_factor : sum of the forces: opening by s gives s over this of room at every peg at once.
     lowest_pass : at which the cage ends; None where it does not.
     way_out : in mm, how far the jaws open before the part can leave all pegs; None where it never can.
     cage, placing : how far the part may be off; None where the cage has no end.
     sticking_friction : the coefficient below which it cannot stick near its seat.
-    stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing stops it.
+    stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing
+        stops it.
     seats : all, by their separations, the fixture's own among them.
     unsettled : what could not be settled and why, one sentence each.
-    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
-        separation; in mm, without end if None.
+    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the
+        other, the largest separation; in mm, without end if None.
     clamping : 1 where S gets less as it clamps, -1 where it gets more.
     opened : what is done so that the part can be put in, such as "the jaws are opened".
     """
@@ -239,7 +247,7 @@ class Seating:
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
     def reading_of(self, opening: float | None = None) -> float | None:
-        """The least difference in mm of the opening between the right seat and a wrong one; None without wrong seats."""
+        """The least difference in mm between the openings of the right and a wrong seat; None without any."""
         return min((abs(seat.difference) for seat in self.wrong_within(opening)), default=None)
 
     def catches(self, opening: float) -> bool:
@@ -280,7 +288,7 @@ class Seating:
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures that fixtures may be ranked by (``model.quality.SEATING_FIGURES``); what has no end is infinite."""
+        """The figures of ``model.quality.SEATING_FIGURES``; what has no end is infinite."""
         known = {
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,

@@ -1,14 +1,16 @@
-"""Two pegs that press a part along one line: on a common normal of two pieces, or in pockets. All in closed form.
+"""Two pegs that press a part along one line, on a common normal of two pieces or in pockets, in closed form.
 
-With both pegs on one line and at a fixed height above each other, the jaw separation grows with their distance d on the
-part. It is counted along the outward normal of what moves, and is below 0 where both press from between, as in a hole. So
-equilibria are the critical points of d over the places on both pieces. With curvatures kappa (of convex pieces above 0)
-the second derivatives of d are 1 / d - kappa along each piece, and -1 / d across.
+With both pegs on one line and at a fixed height above each other, the jaw separation grows with their
+distance d on the part. It is counted along the outward normal of what moves, and is below 0 where both press
+from between, as in a hole. So equilibria are the critical points of d over the places on both pieces. With
+curvatures kappa (of convex pieces above 0) the second derivatives of d are 1 / d - kappa along each piece,
+and -1 / d across.
 
 Glossary
 --------
-antipodal contacts : two places with opposite normals, each on the other's: I.-M. Chen and J. W. Burdick, "Finding antipodal
-    point grasps on irregularly shaped objects", IEEE Transactions on Robotics and Automation 9 (1993).
+antipodal contacts : two places with opposite normals, each on the other's: I.-M. Chen and J. W. Burdick,
+    "Finding antipodal point grasps on irregularly shaped objects", IEEE Transactions on Robotics and
+    Automation 9 (1993).
 """
 
 from __future__ import annotations
@@ -56,7 +58,8 @@ class AntipodalContacts:
     ----------
     pieces : of each place what a peg there touches: one piece, or the two of a pocket.
     one, two : places about the centre, in mm.
-    length : their distance along the outward normal of the second, below 0 where the normals point at each other.
+    length : their distance along the outward normal of the second, below 0 where the normals point at each
+        other.
     curvatures : of the pieces, in 1 / mm; None of a pocket.
     """
 
@@ -183,7 +186,7 @@ def between(x: float, y: float) -> list[tuple[float, float]]:
 
 
 def antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Candidates (N, 24) of a peg of each jaw on antipodal contacts, with the direction in which the separation falls.
+    """Candidates (N, 24) of a peg of each jaw on antipodal contacts, with the direction in which S falls.
 
     Where it falls in two directions, the second derivative is NaN.
     """

@@ -1,8 +1,9 @@
-"""How a part gets into its pose where two clamps hold it: it is pushed against its locators by hand, then clamped.
+"""How a part gets into two clamps: it is pushed against its locators by hand, then clamped.
 
-The locators alone fix the pose, and neither clamp holds the part alone. So it is not known from where one of them would
-bring it home: there is no opening, no reading, no cage. The order of tightening is known, and which locators each clamp
-alone does not press the part on. So is the friction below which both bring home a part that is a little off a locator.
+The locators alone fix the pose, and neither clamp holds the part alone. So it is not known from where one of
+them would bring it home: there is no opening, no reading, no cage. The order of tightening is known, and
+which locators each clamp alone does not press the part on. So is the friction below which both bring home a
+part that is a little off a locator.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ class ByHand:
     Parameters
     ----------
     fixture, toolkit : what holds it.
-    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at their
-        working ratio. It is infinite where the part always does, and None for pegs with a flat.
+    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at
+        their working ratio. It is infinite where the part always does, and None for pegs with a flat.
     """
 
     fixture: Fixture
@@ -63,7 +64,7 @@ class ByHand:
 
     @property
     def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
-        """The locators, or ends of the contact with a wall, that each clamp alone does not press the part on."""
+        """The locators, and ends of the contact with a wall, without force under each clamp alone."""
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 

@@ -1,14 +1,14 @@
 """How far a part can lie off its seat and still come home: the cage, and the placing.
 
-Closing the jaws from a pose decides whether it belongs to the cage. The placing is sought among poses in which the part is
-free with the jaws opened, on a grid of orientations and heights, and known to its step. Paths that begin in the seat and in
-such poses lead to the extremes of the cage (``seating.extents``).
+Closing the jaws from a pose decides whether it belongs to the cage. The placing is sought among poses in
+which the part is free with the jaws opened, on a grid of orientations and heights, and known to its step.
+Paths that begin in the seat and in such poses lead to the extremes of the cage (``seating.extents``).
 
 Glossary
 --------
-caging set : the configurations from which a part cannot get away without the jaws being opened: E. Rimon and A. Blake,
-    "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics Research 18
-    (1999).
+caging set : the configurations from which a part cannot get away without the jaws being opened: E. Rimon and
+    A. Blake, "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of
+    Robotics Research 18 (1999).
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ STEEPEST, LEAST = 500.0, np.array([1e-4, 1e-3])
 FIRST_STEP = 0.05
 # Configurations that are closed together.
 TOGETHER = 64
-# Paths begin in as many cells to each side, and are followed on until no extreme moves by more than this part of the whole.
+# Paths begin in as many cells to each side, and are followed on until no extreme moves by more than this part
+# of the whole.
 CHOSEN, SETTLED = 3, 1e-3
 
 
@@ -97,7 +98,8 @@ class CagingSet:
     def starts(self, found: Extents) -> Array:
         """Configurations (N, 4) in the cage from which paths begin.
 
-        They are those found that lie farthest and, of poses on a grid about all of them, the ends of x in some cells.
+        They are those found that lie farthest and, of poses on a grid about all of them, the ends of x in
+        some cells.
         """
         middle, half = found.reach.mean(axis=1), np.ptp(found.reach, axis=1) / 2.0
         turn, up = (found.ends[:, k] - self.seat[k] - middle[k] for k in (0, 2))
@@ -115,7 +117,7 @@ class CagingSet:
 
     @property
     def placing(self) -> float:
-        """Least distance |shift| + 2 R sin(|turn| / 2) in mm of a free pose from which closing does not lead home.
+        """The least |shift| + 2 R sin(|turn| / 2) in mm of a free pose from which closing does not lead home.
 
         It is no more than that of the pass.
         """

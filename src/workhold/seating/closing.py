@@ -1,7 +1,8 @@
 """Where closing the jaws leads from a configuration, and whether a part can be taken away from all pegs.
 
-Without friction the part moves so that the separation falls as fast as the contacts allow: M. A. Peshkin and A. C.
-Sanderson, "Minimization of energy in quasi-static manipulation", IEEE Transactions on Robotics and Automation 5 (1989).
+Without friction the part moves so that the separation falls as fast as the contacts allow: M. A. Peshkin and
+A. C. Sanderson, "Minimization of energy in quasi-static manipulation", IEEE Transactions on Robotics and
+Automation 5 (1989).
 """
 
 from __future__ import annotations
@@ -55,7 +56,8 @@ class Closing:
 
         Parameters
         ----------
-        first : how long the first steps are, in mm, or (N, 2) of each path: of linear programs, and along both faces.
+        first : how long the first steps are, in mm, or (N, 2) of each path: of linear programs, and along
+            both faces.
         seats : (M, 4) configurations at which closing is known to end.
         level : S in mm down to which the jaws close; the pattern's end if None.
         """
@@ -103,7 +105,7 @@ class Closing:
     def reached(
         self, configs: Array, aims: Array, far: Array, first: float, longest: float, most: float
     ) -> tuple[Array, NDArray[np.int64]]:
-        """Paths from configurations (N, 4) along aims on which no peg enters the part: ``kernels.seating.reaching``.
+        """Paths along aims on which no peg enters the part, from configurations (N, 4): see ``kernels.seating``.
 
         Parameters
         ----------
@@ -127,14 +129,14 @@ class Closing:
             room = int(begins[-1])
 
     def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Whether the part can be taken straight away from all pegs in configurations (N, 4), with the jaws as they stand.
+        """Whether the part can be taken straight away from all pegs, jaws as they stand, in configurations (N, 4).
 
         It is false of configurations that are not asked for (N,).
         """
         return ~np.isnan(self.directions_away(configs, asked))
 
     def directions_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
-        """The directions (N,) in radians, as pegs move on the part, in which it can be taken away; NaN where it cannot.
+        """The directions (N,) in radians, of pegs on the part, in which it can be taken away; NaN if there is none.
 
         It is NaN of configurations that are not asked for (N,), too.
         """

@@ -1,12 +1,13 @@
 """The frame in which seating is computed: what moves goes along x, and clamps as its separation S falls.
 
-A toolkit is turned by quarters until what moves in it opens along x. Where opening clamps, S is the travel with the other
-sign. So an opening vise is turned by half, and a clamp along a column by a quarter.
+A toolkit is turned by quarters until what moves in it opens along x. Where opening clamps, S is the travel
+with the other sign. So an opening vise is turned by half, and a clamp along a column by a quarter.
 
 Glossary
 --------
-closing frame : a task frame, which lies as the task is described most easily: M. T. Mason, "Compliance and force control
-    for computer controlled manipulators", IEEE Transactions on Systems, Man, and Cybernetics 11 (1981).
+closing frame : a task frame, which lies as the task is described most easily: M. T. Mason, "Compliance and
+    force control for computer controlled manipulators", IEEE Transactions on Systems, Man, and Cybernetics 11
+    (1981).
 """
 
 from __future__ import annotations

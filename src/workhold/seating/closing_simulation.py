@@ -1,12 +1,12 @@
 """Closing the jaws from where a part was put: the path that it takes, to be watched, and what it ends in.
 
-The path is followed without friction by ``seating.closing``, from one level of S to the next. Levels are evenly spaced, as
-a vise is closed, and there are more of them where the part moves far between two.
+The path is followed without friction by ``seating.closing``, from one level of S to the next. Levels are
+evenly spaced, as a vise is closed, and there are more of them where the part moves far between two.
 
 Glossary
 --------
-closing simulation : the motion of a part between jaws that close on it: R. C. Brost, "Automatic grasp planning in the
-    presence of uncertainty", International Journal of Robotics Research 7 (1988).
+closing simulation : the motion of a part between jaws that close on it: R. C. Brost, "Automatic grasp
+    planning in the presence of uncertainty", International Journal of Robotics Research 7 (1988).
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from workhold.seating.solver import Solver
 __all__ = ["ENDINGS", "ClosingSimulation", "simulate_closing"]
 
 Array = NDArray[np.float64]
-# The fixture's own seat; one that covers the same place; another; rest in none of them; the stop with the part loose beside
-# the pegs, or gone from them; and a path that could not be followed to its end.
+# The fixture's own seat; one that covers the same place; another; rest in none of them; the stop with the
+# part loose beside the pegs, or gone from them; and a path that could not be followed to its end.
 ENDINGS = "right", "same place", "wrong", "elsewhere", "stop", "outside", "lost"
 # A part that is put by hand may enter a peg by this part of the peg's radius: it is pushed out again.
 ENTERS = 0.5
@@ -42,8 +42,8 @@ ENTERS = 0.5
 FIRST_STEP, STEPS_DEEP = 0.05, 8.0
 # mm. Ends whose S differs by less are one.
 LEVEL = 1e-6
-# Levels of S; of the part's size how far it moves between two of them; how often a stretch is halved, and how many
-# configurations there are at most.
+# Levels of S; of the part's size how far it moves between two of them; how often a stretch is halved, and how
+# many configurations there are at most.
 LEVELS, FAR, HALVINGS, MOST = 60, 0.02, 6, 400
 
 
@@ -53,8 +53,8 @@ class ClosingSimulation:
 
     Parameters
     ----------
-    poses, travels : of the part, turned over where that was asked for, and of what moves in mm, such as the jaw separation,
-        one after the other.
+    poses, travels : of the part, turned over where that was asked for, and of what moves in mm, such as the
+        jaw separation, one after the other.
     ending : one of :data:`ENDINGS`.
     seat : what it ended in, of the seats that were given; None where it ended in none of them.
     """
@@ -86,7 +86,8 @@ def simulate_closing(
     Raises
     ------
     InputError
-        As ``Pattern.of``; for jaws that meet their stop or are opened beyond their end, and a part that a peg stands in.
+        As ``Pattern.of``; for jaws that meet their stop or are opened beyond their end, and a part that a peg
+        stands in.
     """
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, turned_over)
@@ -99,7 +100,8 @@ def simulate_closing(
     if not pattern.stop <= start[3] <= pattern.widest:
         raise InputError("pegs meet before what moves stands there: open it more, or less.")
     into = entered(solver, fixture, pattern, start, turned_over)
-    # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they stood.
+    # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they
+    # stood.
     first = max(FIRST_STEP, into / STEPS_DEEP)
     configs, how = closing.run(start[None], first, level=start[3])
     if how[0] == GAVE_UP:
@@ -114,7 +116,7 @@ def simulate_closing(
 
 @frozen
 class Center:
-    """The change between poses of a part and configurations, which have the middle of its box in a closing frame.
+    """The change between poses of a part and configurations of the middle of its box in a closing frame.
 
     Parameters
     ----------
@@ -146,7 +148,7 @@ class Center:
 
 
 def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
-    """The depth in mm of the deepest peg, or a wall, in the part in a configuration; 0 where none stands in it.
+    """The depth in mm to which a peg, or a wall, stands in the part in a configuration; 0 where none does.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Forces of the contacts of candidates, how well they balance, and how near everything else is.
 
-Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics and
-Automation 14 (1998).
+Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
+and Automation 14 (1998).
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def with_forces(candidates: Array, given: Given, size: float) -> Array:
 
 
 def verdicts(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[np.int8]:
-    """Whether all contacts of candidates (N, 24) with forces press and balance: ``kernels.seating.candidates``."""
+    """Whether all contacts of candidates (N, 24) press and balance, as ``kernels.seating.candidates`` has it."""
     out = np.empty(len(candidates), np.int8)
     tell_balance(candidates, slack, slack_in_doubt, out)
     return out
@@ -76,7 +76,7 @@ def contact_normals(boundary: ObstacleBoundary, pattern: Pattern, row: Array) ->
 
 
 def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Pattern, size: float) -> None:
-    """Writes the forces of candidates (N, 24) on a wall, how well they balance, and the clearance of what does not touch.
+    """Writes the forces of candidates (N, 24) on a wall, how well they balance, and clearances.
 
     Without a wall ``with_forces`` does that.
     """

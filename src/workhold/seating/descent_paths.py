@@ -1,14 +1,14 @@
-"""Descent paths off the passes of a few pegs by themselves, followed once for all patterns in which they stand alike.
+"""Descent paths off the passes of subsets of pegs, followed once for all patterns with such subsets.
 
-In a pattern such a path is one of its own as long as no further peg is in the part. From there on it is followed with all
-pegs.
+In a pattern such a path is one of its own as long as no further peg is in the part. From there on it is
+followed with all pegs.
 
 Glossary
 --------
-descent path : a path off a saddle along which a function falls, here the separation as the jaws close: J. Milnor,
-    *Morse Theory* (1963).
-descent cache : descent paths that are kept, as a function's values are: D. Michie, "Memo functions and machine learning",
-    Nature 218 (1968).
+descent path : a path off a saddle along which a function falls, here the separation as the jaws close: J.
+    Milnor, *Morse Theory* (1963).
+descent cache : descent paths that are kept, as a function's values are: D. Michie, "Memo functions and
+    machine learning", Nature 218 (1968).
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class DescentCache:
         return first
 
     def add(self, candidates: IntArray, nodes: Array, begins: IntArray, how: NDArray[np.int8]) -> None:
-        """Adds the paths off both sides of some candidates, path by path; ``begins`` and ``how`` are those of the paths."""
+        """Adds the paths off both sides of some candidates, with where they begin and how they end."""
         with self.lock:
             every, first, paths = self.counts
             self.nodes, self.how = with_room(self.nodes, first, len(nodes)), with_room(self.how, paths, len(how))

@@ -3,8 +3,9 @@
 Glossary
 --------
 seat : an equilibrium at which the separation has a strict minimum, so that closing ends there.
-pass : a saddle of the separation, through which a cage opens; the puncture grasp of E. Rimon and A. Blake, "Caging planar
-    bodies by one-parameter two-fingered gripping systems", International Journal of Robotics Research 18 (1999).
+pass : a saddle of the separation, through which a cage opens; the puncture grasp of E. Rimon and A. Blake,
+    "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics
+    Research 18 (1999).
 """
 
 from __future__ import annotations
@@ -51,7 +52,8 @@ Array = NDArray[np.float64]
 
 # mm. Pegs that do not touch may be in the part by this much: rounding.
 CLEAR_SLACK = 1e-7
-# mm. Pegs may be in the part by this much where bounds leave in doubt whether the place exists, which is less well known.
+# mm. Pegs may be in the part by this much where bounds leave in doubt whether the place exists, which is less
+# well known.
 CLEAR_IN_DOUBT = 1e-5
 # mm. Configurations this near are one equilibrium; those in doubt this near count as one.
 SAME, SAME_DOUBT = 1e-5, 0.1
@@ -66,9 +68,10 @@ class Equilibria:
     seats : (N, 24) candidates at which the separation has a strict minimum, ordered by it.
     passes : (N, 24) candidates with one direction in which the separation falls, to both sides.
     loose : equilibrium manifolds, each of one separation.
-    doubtful : (N, 24) candidates that bounds did not prove to exist, of near ones the one that presses hardest.
-    origins : (N, 2) for each pass the number of the subset that makes it, and of its candidate among all that are kept; -1
-        where none does.
+    doubtful : (N, 24) candidates that bounds did not prove to exist, of near ones the one that presses
+        hardest.
+    origins : (N, 2) for each pass the number of the subset that makes it, and of its candidate among all that
+        are kept; -1 where none does.
     subsets : the subsets of pegs, with their descent paths.
     """
 

@@ -1,4 +1,4 @@
-"""A check of equilibria by another way than they are found: contacts touch, and forces of which none pulls balance.
+"""A check of equilibria, independent of how they are found: contacts touch, and press, and balance.
 
 Every pass is checked before a capture opening follows from it, with nothing but its pose and contacts.
 """
@@ -21,7 +21,8 @@ from workhold.seating.contact_forces import contact_normals
 __all__ = ["is_equilibrium"]
 
 Array = NDArray[np.float64]
-# No unit, and mm: forces, per unit of the jaw's and with moments over the part's size, balance to this, and contacts touch.
+# No unit, and mm: forces, per unit of the jaw's and with moments over the part's size, balance to this, and
+# contacts touch.
 SETTLED = 1e-9
 # No unit. A force above minus this does not pull.
 PULLS = 1e-9
@@ -43,10 +44,11 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
 
 
 def balance(wrenches: Sequence[Sequence[float]]) -> bool:
-    """Whether three wrenches (4,) of force, moment and force on the jaw, or two, balance 1 on the jaw while none pulls."""
+    """Whether two or three wrenches (4,) of force, moment and force on the jaw balance it while none pulls."""
     across, along, moments, on_jaw = zip(*wrenches, strict=True)
     equations = across, along, moments
-    # Two forces that balance differ in their sense alone; three are square to the equations, of which two suffice.
+    # Two forces that balance differ in their sense alone; three are square to the equations, of which two
+    # suffice.
     forces: tuple[float, ...] = (1.0, 1.0)
     if len(wrenches) == 3:
         forces = max((cross(*two) for two in combinations(equations, 2)), key=largest)

@@ -2,8 +2,8 @@
 
 Glossary
 --------
-equilibrium manifold : equilibria that are not isolated, with one separation: a nondegenerate critical manifold of R. Bott,
-    "Nondegenerate critical manifolds", Annals of Mathematics 60 (1954).
+equilibrium manifold : equilibria that are not isolated, with one separation: a nondegenerate critical
+    manifold of R. Bott, "Nondegenerate critical manifolds", Annals of Mathematics 60 (1954).
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """The extremes of a cage: how far a part can be turned and shifted, jaws opened, and still come home.
 
-In an extreme place something holds the part back: what touches balances a pull that way, perhaps with S at its largest.
-Paths lead to such places (``kernels.seating.reaching``), and closing the jaws leads home from them, so that no extreme lies
-outside the cage. That none is missed is not proven but sampled: ``model.seating.CAGE_SHORT``.
+In an extreme place something holds the part back: what touches balances a pull that way, perhaps with S at
+its largest. Paths lead to such places (``kernels.seating.reaching``), and closing the jaws leads home from
+them, so that no extreme lies outside the cage. That none is missed is not proven but sampled:
+``model.seating.CAGE_SHORT``.
 """
 
 from __future__ import annotations

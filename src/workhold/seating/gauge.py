@@ -1,4 +1,4 @@
-"""The reading off what moves when the part rests in a seat: an opening, a clamp's stroke, or where its tip is."""
+"""The reading on what moves when the part rests in a seat: an opening, a stroke, or where the tip is."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
 """The join tree of the separation: which cages join at which pass, and from where a part gets out.
 
-From a pass both descent paths are followed to what they end in. While the jaws are opened, cages grow, and join where the
-lowest pass between them is reached. So passes are taken in the order of their separation.
+From a pass both descent paths are followed to what they end in. While the jaws are opened, cages grow, and
+join where the lowest pass between them is reached. So passes are taken in the order of their separation.
 
 Glossary
 --------
-join tree : which components of sublevel sets of a function join at which saddle: H. Carr, J. Snoeyink and U. Axen,
-    "Computing contour trees in all dimensions", Computational Geometry 24 (2003).
+join tree : which components of sublevel sets of a function join at which saddle: H. Carr, J. Snoeyink and U.
+    Axen, "Computing contour trees in all dimensions", Computational Geometry 24 (2003).
 place : what a descent path ends in: a seat, a loose set, something not settled, the outside or the stop.
 loose set : an equilibrium manifold, along which nothing locates the part.
 join : a pass, with the places that both of its descent paths end in.
@@ -62,9 +62,11 @@ class JoinTree:
     ----------
     seats : (N, 24) rows of strict seats.
     loose : (L, 24) rows of loose sets off which no path leads down: their places follow those of the seats.
-    slack : (K, 24) rows of loose sets of three contacts or more off which paths lead down: no rest there is certain.
+    slack : (K, 24) rows of loose sets of three contacts or more off which paths lead down: no rest there is
+        certain.
     doubtful : (M, 4) configurations of what is not settled, whose places follow.
-    passes, joined : (J, 24) rows in the order of their separations, and what their descent paths end in: (J, 2).
+    passes, joined : (J, 24) rows in the order of their separations, and what their descent paths end in: (J,
+        2).
     own : (N + L,) each place; for a seat that lies on a loose set it is the place of the set.
     """
 
@@ -80,7 +82,8 @@ class JoinTree:
     def of(cls, found: Equilibria, closing: Closing) -> JoinTree:
         """Follows the descent paths off all passes and off the ends of all loose sets."""
         loose, size, configs = found.loose, closing.size, np.ascontiguousarray(found.seats[:, CONFIG])
-        # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing leads on.
+        # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing
+        # leads on.
         strict = np.flatnonzero(sets_at(configs, loose, np.arange(len(loose.rows)), size) < 0)
         strict = strict[np.argsort(configs[strict, 3], kind="stable")]
         seats, off = configs[strict], ManifoldDescents.of(loose, closing, configs[strict])
@@ -102,7 +105,7 @@ class JoinTree:
 
     @cached_property
     def first_joins(self) -> IntArray:
-        """The number (P + 2,) of the first pass at which the cage of each place joins another, -1 where it never does.
+        """The number (P + 2,) of the first pass at which each place's cage joins another, -1 where it never does.
 
         The outside and the stop come last.
         """
@@ -123,11 +126,11 @@ class JoinTree:
 
     @property
     def tops(self) -> Array:
-        """(N + L,) the separations of the first passes of seats, then of loose sets; infinite where there is none."""
+        """The separations (N + L,) of the first passes of seats and loose sets; infinite where there is none."""
         return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
     def way_out(self, place: int) -> float | None:
-        """The separation from which on a part can get from a place to the outside; None where it never can."""
+        """The separation at which a part can get from a place to the outside; None where it never can."""
         number = leads_out(self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64))
         return None if number < 0 else float(self.passes[number, SEPARATION])
 
@@ -183,7 +186,7 @@ NOTHING = ManifoldDescents(NUMBERS, NUMBERS, NUMBERS, NUMBERS, PATHS, PATHS)
 
 
 def sets_at(configs: Array, loose: Families, asked: IntArray, size: float) -> IntArray:
-    """The first of some loose sets, by its place among the asked, in which each configuration (N, 4) lies, or -1."""
+    """The place among the asked of the first loose set in which each configuration (N, 4) lies, or -1."""
     out = np.empty(len(configs), np.int64)
     first_sets(configs, loose, asked, size, FALLS, out)
     return out

@@ -1,6 +1,7 @@
-"""A fixture that was not found among the seats of its own pegs, as a candidate: four contacts in balance, so a seat.
+"""A fixture that was not found among the seats of its own pegs, as a candidate of four contacts.
 
-That fixtures are seats is proven. So one that is missing shows that what looks for seats missed it, and perhaps others.
+That fixtures are seats is proven. So one that is missing shows that what looks for seats missed it, and
+perhaps others.
 """
 
 from __future__ import annotations

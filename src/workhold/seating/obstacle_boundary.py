@@ -1,10 +1,11 @@
-"""The whole boundary of (part + disc of the peg radius), rolled corners included, and where it has inner corners.
+"""The boundary on which a peg's centre lies while it touches a part, and where it has inner corners.
 
 Glossary
 --------
-obstacle boundary : the boundary of the C-obstacle that a part is to the centre of a peg: T. Lozano-Perez, "Spatial
-    planning: a configuration space approach", IEEE Transactions on Computers C-32 (1983).
-piece : a straight or circular part of the boundary; a peg's centre on it touches one face, or one corner of the part.
+obstacle boundary : the boundary of the C-obstacle that a part is to the centre of a peg: T. Lozano-Perez,
+    "Spatial planning: a configuration space approach", IEEE Transactions on Computers C-32 (1983).
+piece : a straight or circular part of the boundary; a peg's centre on it touches one face, or one corner of
+    the part.
 pocket : a corner of the boundary in which a peg touches two pieces at once.
 """
 
@@ -44,12 +45,14 @@ PAST_POCKET = 0.05
 class ObstacleBoundary:
     """The boundary on which the centres of pegs lie while they touch a part.
 
-    Where pegs that move have another radius than those that stand still, it is both boundaries, one after the other.
+    Where pegs that move have another radius than those that stand still, it is both boundaries, one after the
+    other.
 
     Parameters
     ----------
     rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
-    parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that move.
+    parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that
+        move.
     touches : what a peg on each piece touches.
     pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
     pocket_pieces : (V, 2) their numbers.
@@ -103,7 +106,7 @@ class ObstacleBoundary:
 
     @cached_property
     def pieces(self) -> Array:
-        """The rows, copied so that they may be written to: numba compiles kernels once more for read-only arrays."""
+        """The rows as a writable copy: numba compiles kernels once more for read-only arrays."""
         return np.array(self.rows)
 
     @cached_property
@@ -133,7 +136,8 @@ class ObstacleBoundary:
     def spans(self) -> Array:
         """Lowest and highest parameter of the pieces, a little past pockets, and the cosines of both: (N, 4).
 
-        Past a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end it is.
+        Past a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end
+        it is.
         """
         rows = self.rows
         hair = np.where(rows[:, IS_ARC] != 0.0, END_SLACK / np.maximum(rows[:, RADIUS], END_SLACK), END_SLACK)
@@ -210,7 +214,7 @@ class ObstacleBoundary:
 
     @cached_property
     def centers(self) -> dict[int, NDArray[np.int64]]:
-        """The centre (N,) of each piece that pegs of a jaw can touch, by the first piece: ``contact.curves``."""
+        """The centres (N,) of pieces, numbered as in ``contact.curves``, by the first piece of each jaw."""
         return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
     @cached_property

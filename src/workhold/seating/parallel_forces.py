@@ -1,7 +1,8 @@
-"""Three parallel forces: two pegs of one jaw on a line and an arc, with parallel normals, and a third on a parallel line.
+"""Three parallel forces: two pegs of one jaw on a line and an arc, and a third on a parallel line.
 
-There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation alone,
-because two of the three lie on parallel lines. The orientation has an extremum along the chord's curve: so S has one too.
+There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation
+alone, because two of the three lie on parallel lines. The orientation has an extremum along the chord's
+curve: so S has one too.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Given) -> list[Array]:
-    """Candidates (N, 24) of all pairs of pegs of a jaw on lines and arcs, with a third peg on a line parallel to the first.
+    """Candidates (N, 24) of pegs of a jaw on a line and an arc, with a third peg on a parallel line.
 
     The third line may be the first line itself.
     """

@@ -43,8 +43,8 @@ class Pattern:
     stop, widest : the smallest and the largest separation in mm, infinite where nothing stops what moves.
     frame : leads to the toolkit's frame and back.
     numbers : their places (4,) in the fixture's pegs.
-    half_plane : what a wall leaves free, with two pegs: the unit vector into it, along x or y, and how far in mm along it
-        the wall is. None without a wall.
+    half_plane : what a wall leaves free, with two pegs: the unit vector into it, along x or y, and how far in
+        mm along it the wall is. None without a wall.
     gap : least distance in mm along x that pegs of both jaws keep, None where none is asked for.
     """
 
@@ -105,7 +105,7 @@ class Pattern:
         return -inf, float(left.min() - right.max() - gap)
 
     def free_of_locators(self, separation: float) -> tuple[float, float]:
-        """The separations at which a clamp's tip meets a locator before it and behind it, seen from one between."""
+        """The separations, about a given one, at which a clamp's tip meets a locator before or behind it."""
         stop, widest = -inf, inf
         for tip in self.pegs[self.right == 1]:
             for locator in self.pegs[self.right == 0]:

@@ -1,12 +1,13 @@
 """Subsets of a pattern's pegs, which stand to each other in the same way in many patterns of one lattice.
 
-With S free, the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other, and on how much
-higher one jaw's pegs are. The pegs that are left only decide whether a place is free.
+With S free, the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other, and
+on how much higher one jaw's pegs are. The pegs that are left only decide whether a place is free.
 
 Glossary
 --------
-subset of contacts : two or three contacts of a grasp that balance without the others: E. Rimon and A. Blake, "Caging
-    planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics Research 18 (1999).
+subset of contacts : two or three contacts of a grasp that balance without the others: E. Rimon and A. Blake,
+    "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics
+    Research 18 (1999).
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ SLACK = 1e-6
 
 @frozen(eq=False, slots=False)
 class PegSubset:
-    """Pegs of a pattern, in a frame of their own: the first at the origin, as is the x of the first that moves.
+    """Pegs of a pattern in an own frame: the first at the origin, and the first that moves at x = 0.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ class PegSubset:
 
     @cached_property
     def pattern(self) -> Pattern:
-        """The pegs alone, with no other stop than the gap between them, which patterns of more pegs keep too."""
+        """The pegs alone, with no other stop than the gap, which patterns of more pegs keep too."""
         whole, alone = self.whole, (np.array(self.places), np.array(self.sides, dtype=np.int64))
         made = Pattern(*alone, whole.radii, -inf, inf, whole.frame, self.numbers, None, whole.gap)
         if whole.gap is None or self.is_of_a_jaw:
@@ -102,7 +103,7 @@ class PegSubset:
 
 @lru_cache(maxsize=SIDES)
 def places_of(pattern: Pattern) -> tuple[list[list[float]], list[int], list[list[tuple[float, float]]]]:
-    """The pegs of a pattern, whether each moves, and how far to the right and higher than each other each is, in mm.
+    """The pegs of a pattern, whether each moves, and how far right of and above each other they are, in mm.
 
     Of the two indices the first is that of the peg from which the other is seen.
     """
@@ -121,7 +122,7 @@ def rounded(x: float) -> float:
 
 @lru_cache(maxsize=SIDES)
 def subsets_of(pattern: Pattern) -> tuple[PegSubset, ...]:
-    """All subsets of three pegs, the pairs of pegs of both jaws, and the pairs of a jaw that has no third peg.
+    """All subsets of three pegs, pairs of pegs of both jaws, and pairs of a jaw that has no third peg.
 
     They are kept for the other side of the part.
     """
@@ -132,6 +133,6 @@ def subsets_of(pattern: Pattern) -> tuple[PegSubset, ...]:
 
 @lru_cache(maxsize=SIDES)
 def jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
-    """The pegs that move, and those that do not, by whether they do; kept like the subsets of ``subsets_of``."""
+    """The pegs of each jaw, by whether it moves (1) or not (0); kept like those of ``subsets_of``."""
     sides = dict.fromkeys(pattern.right.tolist())
     return {side: PegSubset.of(pattern, np.flatnonzero(pattern.right == side).tolist()) for side in sides}

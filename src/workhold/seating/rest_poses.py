@@ -1,9 +1,10 @@
-"""Where a part can rest on pegs, as drawn and turned over: rows from which the seats of all fixtures on them are made.
+"""Where a part can rest on pegs, as drawn and turned over: rows for the seats of all fixtures on them.
 
 Glossary
 --------
-rest pose : a pose in which a part comes to rest by itself: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle and
-    J. Canny, "Part pose statistics: estimators and experiments", IEEE Transactions on Robotics and Automation 15 (1999).
+rest pose : a pose in which a part comes to rest by itself: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B.
+    Carlisle and J. Canny, "Part pose statistics: estimators and experiments", IEEE Transactions on Robotics
+    and Automation 15 (1999).
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ SHALLOW = 1e-3
 # The kinds of seats, and their numbers.
 KINDS = "curved", "corner", "pocket", "fixture", "loose", "unsettled"
 CURVED, CORNER, POCKET, FIXTURE, LOOSE, UNSETTLED = range(len(KINDS))
-# Kinds from here on are listed whatever their depth: they are fixtures of a complete list, or their depth is not known.
+# Kinds from here on are listed whatever their depth: they are fixtures of a complete list, or their depth is
+# not known.
 ALWAYS = FIXTURE
 
 
@@ -38,8 +40,8 @@ class RestPoses:
     ----------
     rows : (N, 24) candidates; of what is not settled only the configuration is known.
     kinds : (N,) numbers of the kinds in ``KINDS``.
-    depths : (N,) how far in mm the jaws open before the part can get elsewhere; infinite where it never can, or where
-        that is not known.
+    depths : (N,) how far in mm the jaws open before the part can get elsewhere; infinite where it never can,
+        or where that is not known.
     turned_over : (N,) whether the part is.
     """
 
@@ -68,7 +70,7 @@ class RestPoses:
 
 
 def kinds_of(rows: Array, boundary: ObstacleBoundary, pegs: int) -> NDArray[np.int64]:
-    """The kinds of strict seats (N, 24): with four contacts that of a fixture, or one named after what they touch."""
+    """The kinds (N,) of strict seats (N, 24), by the number of contacts and by what they touch."""
     who, where = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
     ordered = np.sort(who, axis=1)
     twice = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)

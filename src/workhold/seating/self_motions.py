@@ -1,10 +1,10 @@
-"""Self-motions of a part between some pegs: it slides on parallel faces, or turns about the centre of concentric arcs.
+"""Self-motions of a part between pegs: it slides on parallel faces, or turns on concentric arcs.
 
 Glossary
---------
-self-motion : a motion of a mechanism that leaves its output as it is, here of the part while the separation stays: J. W.
-    Burdick, "On the inverse kinematics of redundant manipulators: characterization of the self-motion manifolds", IEEE
-    International Conference on Robotics and Automation (1989).
+-------- self-motion : a motion of a mechanism that leaves its output as it is, here of the part while the
+separation stays: J. W.
+    Burdick, "On the inverse kinematics of redundant manipulators: characterization of the self-motion
+    manifolds", IEEE International Conference on Robotics and Automation (1989).
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def sliding(
     s: float,
     contacts: list[PegOnPiece],
 ) -> list[SelfMotion]:
-    """The motion of a part that slides along a line, of which the parameter runs from low to high at a peg at ``start``."""
+    """The motion of a part that slides on a peg at ``start`` along a line, from one parameter to another."""
     if high - low < SHORTEST or not pattern.reaches(s, SAME):
         return []
     t = EVEN * ((high - low) / EVEN[-1]) + low
@@ -130,7 +130,7 @@ def sliding(
 def turning(
     pattern: Pattern, row: Array, center: Point, s: float, contacts: list[PegOnPiece], across: Point | None
 ) -> list[SelfMotion]:
-    """The motion of a part that turns about the centre of an arc, which stands at a place in the closing frame."""
+    """The motion of a part that turns about an arc's centre, which is at a place in the closing frame."""
     if not pattern.reaches(s, SAME):
         return []
     theta = np.arange(TURN_STEPS) * tau / TURN_STEPS
@@ -217,7 +217,7 @@ def on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMoti
 
 
 def balance(normals: list[Point], moves: list[int]) -> bool:
-    """Whether forces of three pegs along lines through one centre balance the jaw's; moves is 1 for pegs that move."""
+    """Whether forces of three pegs through one centre balance the jaw's; ``moves`` is 1 for pegs that move."""
     (ax, ay), (bx, by), (cx, cy) = normals
     # As much of each as the other two span, which leaves nothing over, per unit of what presses along x.
     forces = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx

@@ -49,7 +49,7 @@ class Silhouette:
         return float(np.hypot(*self.points.T).max())
 
     def cover_same(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether a part covers in configurations (N, 4) the place that it covers in one; it may be turned over (N,)."""
+        """Whether a part, perhaps turned over (N,), covers in configurations (N, 4) the place that it covers in one."""
         out = np.empty(len(others), np.int8)
         cover_same(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
         return out.astype(np.bool_)

@@ -1,4 +1,4 @@
-"""The seating of a fixture: from how wide open the part is caught, where else it can rest, and how one would notice."""
+"""The seating of a fixture: from how wide open it catches the part, and where else the part can rest."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ NO_PASS = "The pass at which its cage opens could not be settled: from where on 
 
 @define(eq=False)
 class Solver:
-    """Solves patterns of pegs on a part, each once: for one fixture with :meth:`of`, for many with :meth:`of_all`.
+    """Solves patterns of pegs on a part, each once, for one fixture (:meth:`of`) or many (:meth:`of_all`).
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Solver:
         return Closing(boundary.turned_over if turned_over else boundary, pattern, self.outline.arm)
 
     def trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
-        """The join trees of the part as drawn and turned over, with further seats (24,) of the part as drawn."""
+        """The join trees of the part as drawn, with further seats (24,), and of the part turned over."""
         out = list[JoinTree]()
         for closing in (self.closing(pattern, turned_over) for turned_over in (False, True)):
             found = equilibria(closing.boundary, pattern, closing.size)
@@ -359,7 +359,7 @@ def unsettled_words(count: int) -> tuple[str, ...]:
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
-    """The seatings of fixtures of a result: from how wide open each catches the part, and where else it can rest.
+    """The seatings of fixtures: from how wide open each catches the part, and where else it can rest.
 
     Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
     ``seating.by_hand.ByHand``, which says how.

@@ -2,9 +2,9 @@
 
 Glossary
 --------
-equilibrium : a pose and separation in which contacts with forces that press balance; without friction it is a critical
-    point of the separation. See E. Rimon and A. Blake, "Caging planar bodies by one-parameter two-fingered gripping
-    systems", International Journal of Robotics Research 18 (1999).
+equilibrium : a pose and separation in which contacts with forces that press balance; without friction it is a
+    critical point of the separation. See E. Rimon and A. Blake, "Caging planar bodies by one-parameter
+    two-fingered gripping systems", International Journal of Robotics Research 18 (1999).
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ from workhold.seating.two_contact_curves import TwoContactCurves
 __all__ = ["SubsetCache", "SubsetEquilibria", "equilibria_of_subset"]
 
 Array = NDArray[np.float64]
-# Subsets of which something is kept, and nodes of their descent paths, of 80 bytes; with more, all are forgotten.
+# Subsets of which something is kept, and nodes of their descent paths, of 80 bytes; with more, all are
+# forgotten.
 MOST_KEPT, MOST_NODES = 1024, 600_000
 NONE = np.zeros((0, CANDIDATE_LENGTH))
 # Candidates of a subset and its self-motions, see ``SubsetEquilibria``.
@@ -56,8 +57,8 @@ class SubsetEquilibria:
 
     Parameters
     ----------
-    first, end : where the subset's candidates stand among all that are kept. In them two or three contacts balance; of pegs
-        of one jaw three contacts fix the part, whose place is that at separation 0.
+    first, end : where the subset's candidates stand among all that are kept. In them two or three contacts
+        balance; of pegs of one jaw three contacts fix the part, whose place is that at separation 0.
     motions : self-motions of the part between the pegs.
     descents : paths off the candidates, as far as they were followed.
     """
@@ -97,7 +98,7 @@ class SubsetCache:
 
     @classmethod
     def on(cls, boundary: ObstacleBoundary) -> SubsetCache:
-        """The cache of a part, or an empty one where that is full. Whoever has the full one goes on with it."""
+        """The cache of a part, or an empty one if that is full, which whoever has it goes on with."""
         kept = boundary.once(cls.empty)
         is_full = len(kept.found) >= MOST_KEPT or kept.descents.counts[1] > MOST_NODES
         return boundary.once(cls.empty, anew=True) if is_full else kept
@@ -111,7 +112,7 @@ class SubsetCache:
 def equilibria_of_subset(
     kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
 ) -> SubsetEquilibria:
-    """The equilibria of a subset, found now or before; ``size`` in mm is that of ``equilibria.equilibria``."""
+    """The equilibria of a subset, found now or before; ``size`` is the part's in mm."""
     key = size, subset.key
     found = kept.found.get(key)
     if found is None:
@@ -127,7 +128,7 @@ def equilibria_of_subset(
 
 
 def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Equilibria of a peg of each jaw: antipodal contacts, and self-motions on parallel faces or arcs of one centre."""
+    """Equilibria of a peg of each jaw: antipodal contacts, and self-motions along one line."""
     pattern, given = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset).given
     candidates = antipodal_candidates(boundary, pattern)
     return in_balance(candidates, given, size), ManifoldFinder(boundary, pattern).free(on_one_line(boundary, pattern))

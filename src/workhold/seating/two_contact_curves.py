@@ -1,10 +1,11 @@
-"""Curves of poses in which pegs of one jaw touch the part in two places: chord curves of pairs of pegs, and pockets.
+"""Poses in which pegs of one jaw touch the part in two places: chord curves of pairs, and pockets.
 
 Glossary
---------
-two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row of ``HOLDING_LENGTH``
-    numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen, J. W. Burdick and E. Rimon,
-    "Two-finger caging of polygonal objects using contact space search", IEEE Transactions on Robotics 31 (2015).
+-------- two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row
+of ``HOLDING_LENGTH``
+    numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen, J. W. Burdick and
+    E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE Transactions on
+    Robotics 31 (2015).
 slide : two contacts on parallel faces, which hold one orientation and so are no curve over it.
 """
 
@@ -57,7 +58,8 @@ from workhold.seating.peg_subsets import PegSubset, jaw_subsets
 __all__ = ["TwoContactCurves", "JawCurves"]
 
 Array = NDArray[np.float64]
-# Cells of the curves that are kept, of about 360 bytes with all that belongs to them; with more, all are forgotten.
+# Cells of the curves that are kept, of about 360 bytes with all that belongs to them; with more, all are
+# forgotten.
 MOST_KEPT = 250_000
 NO_CURVES = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
 NO_SLIDES = np.zeros((0, SLIDE_LENGTH))
@@ -69,8 +71,10 @@ class JawCurves:
 
     Parameters
     ----------
-    rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted from 0.
-    cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see ``kernels.seating.middles``.
+    rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted
+        from 0.
+    cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
+        ``kernels.seating.middles``.
     slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
     """
 
@@ -94,7 +98,8 @@ class JawCurves:
             whole = np.array(table.curves.integers)
             whole[:, [FIRST_STRETCH, END_STRETCH]] += stretches_before
             for first, second, angle in ((one, two, atan2(dy, dx)), (two, one, atan2(dy, dx) + pi)):
-                # A chord from a piece to itself has all directions already, so its ends need no change of places.
+                # A chord from a piece to itself has all directions already, so its ends need no change of
+                # places.
                 kept = np.flatnonzero((first == one) | (whole[:, TAIL] != whole[:, HEAD]))
                 rows = np.zeros((len(kept), HOLDING_LENGTH))
                 rows[:, SOURCE], rows[:, FIRST_PEG], rows[:, SECOND_PEG] = kept + curves_before, first, second
@@ -145,7 +150,7 @@ class JawCurves:
 
     @cached_property
     def ordered(self) -> Array:
-        """The cells ordered by their lowest orientation; cells that reach past a whole turn come a second time."""
+        """The cells by their lowest orientation; those that reach past a whole turn come a second time."""
         again = np.array(self.cells[self.cells[:, HIGH] > tau])
         again[:, [LOW, HIGH]] -= tau
         every = np.concatenate([self.cells, again])
@@ -178,8 +183,8 @@ class TwoContactCurves:
     given : what kernels are given, with pieces as they are.
     sought : what roots are sought with: curves run past their ends by a hair, and so do the pieces here.
     slides : (S, 7) what is no curve over the orientation.
-    jaws : for each jaw, by whether it moves, its curves, how many rows stand before them, and the height of their first
-        peg in mm.
+    jaws : for each jaw, by whether it moves, its curves, how many rows stand before them, and the height of
+        their first peg in mm.
     """
 
     given: Given
@@ -206,7 +211,7 @@ class TwoContactCurves:
 
     @classmethod
     def of_jaw_alone(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
-        """The curves of a subset whose other jaw has one peg or none; where each jaw has one there are none."""
+        """The curves of a subset that has two pegs or more on one jaw alone, and of others none."""
         if len(subset.sides) == 2 and not subset.is_of_a_jaw:
             return cls(*given_of(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
         side = int(2 * sum(subset.sides) > len(subset.sides))

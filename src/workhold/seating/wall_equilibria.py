@@ -1,13 +1,14 @@
 """Equilibria between a straight wall, a locator and a clamp's tip.
 
-The wall is along x or y. Where a piece of the part's hull lies on it, one coordinate of the part's place follows from the
-orientation. The other follows from the locator on a piece, and the separation from the tip on a piece. So a part that
-stands on one piece of its hull and touches all three has one freedom. It balances where the normals of locator, tip and
-wall go through one point, which is where S is stationary over the orientation. All such poses are isolated
-(``kernels.seating.standing``). Four contacts are in closed form, or roots of polynomials (``kernels.seating.pocketed``).
+The wall is along x or y. Where a piece of the part's hull lies on it, one coordinate of the part's place
+follows from the orientation. The other follows from the locator on a piece, and the separation from the tip
+on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
+where the normals of locator, tip and wall go through one point, which is where S is stationary over the
+orientation. All such poses are isolated (``kernels.seating.standing``). Four contacts are in closed form, or
+roots of polynomials (``kernels.seating.pocketed``).
 
-Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics and
-Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
+Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
+and Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ class WallEquilibria:
         return atan2(-self.half_plane[1], -self.half_plane[0])
 
     def resting(self, piece: int, theta: float) -> float:
-        """The coordinate of the part's place square to the wall, in mm, while it stands on a piece of its hull."""
+        """The coordinate in mm of the part's place square to the wall, on which a piece of its hull stands."""
         ux, uy, off = self.half_plane
         x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
         c, s = cos(theta), sin(theta)
@@ -101,8 +102,8 @@ class WallEquilibria:
     def runs(self) -> list[tuple[int, float, float]]:
         """Pieces of the hull, and first and last orientation in which the part stands on each.
 
-        At the ends of arcs runs overlap, so that no orientation lies between two. At hull edges they leave out orientations
-        so near that the edge's other end, too, touches the wall, with next to no force.
+        At the ends of arcs runs overlap, so that no orientation lies between two. At hull edges they leave
+        out orientations so near that the edge's other end, too, touches the wall, with next to no force.
         """
         edges = np.array([side.angle for side in self.sides])
         angles = np.sort(np.concatenate([edges, self.boundary.hull.limits]))
@@ -155,7 +156,7 @@ class WallEquilibria:
         return filled(CANDIDATE_LENGTH, 64, fourths, fixed, 0, self.given(self.stood.pegs))
 
     def with_locator(self, fixed: Array) -> Array:
-        """Candidates (N, 24) of a part that can only slide along the wall, with each piece that the locator meets.
+        """Candidates (N, 24) of a part that may slide along the wall, with each piece that the locator meets.
 
         The locator comes first among the contacts, and the separation grows with the place.
         """
@@ -186,14 +187,14 @@ class WallEquilibria:
         return np.concatenate([self.with_tip(self.with_locator(rows_of(fixed))), rows_of(out)])
 
     def pocketed(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
-        """The tip's pockets, seen from the place of a part in an orientation, and the tip's contacts in each."""
+        """The tip's pockets, from the place of a part in an orientation, and the tip's contacts in each."""
         c, s, out = cos(theta), sin(theta), []
         for (x, y), pieces in zip(*self.pockets(1), strict=True):
             out.append((c * x - s * y, s * x + c * y, [(TIP, piece) for piece in pieces.tolist()]))
         return out
 
     def pockets(self, jaw: int) -> tuple[Array, NDArray[np.int64]]:
-        """The places (V, 2) on the part of the pockets of the locator (0) or the tip (1), and their pieces (V, 2)."""
+        """The pockets of the locator (0) or the tip (1): places (V, 2) on the part, and pieces (V, 2)."""
         first, end = self.boundary.parts[jaw]
         own = (self.boundary.pocket_pieces[:, 0] >= first) & (self.boundary.pocket_pieces[:, 0] < end)
         return np.ascontiguousarray(self.boundary.pockets[own, :2]), self.boundary.pocket_pieces[own]
@@ -247,12 +248,12 @@ class WallEquilibria:
         return np.concatenate([found, rows_of(out)])
 
     def three_contacts(self) -> Array:
-        """Candidates (N, 24) of a piece of the hull on the wall, and locator and tip, their normals through one point."""
+        """Candidates (N, 24) of three contacts, with wall, locator and tip, whose normals go through one point."""
         work = np.empty((len(self.boundary.rows), SHAPE_LENGTH)), np.empty((DEPTH, 2))
         return filled(CANDIDATE_LENGTH, 64, stationary, self.stood, *work)
 
     def against_wall(self) -> Array:
-        """The tip alone against the wall: a hull edge and an arc, or a piece of the hull and a piece, on one normal."""
+        """Candidates (N, 24) of the tip alone against the wall, on one normal of a hull edge or a hull piece."""
         if self.half_plane[0] <= 0.0:
             return rows_of([])
         out = []
@@ -295,11 +296,11 @@ class WallEquilibria:
 
 
 def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
-    """The least second derivative of S over the part's turn and the tip's rise, and the direction that has it.
+    """The least second derivative of S over the part's turn and the tip's rise, and its direction.
 
-    The rise is the tip's above the piece on the wall; the derivative is NaN where both principal ones are below 0. The tip
-    is ahead of the piece's centre by d, on an arc of signed radius r, or a line. At a turn f and a rise e it is ahead by
-    (d - r) cos f + sqrt(r^2 - (e - (d - r) sin f)^2), or (d - e sin f) / cos f.
+    The rise is the tip's above the piece on the wall; the derivative is NaN where both principal ones are
+    below 0. The tip is ahead of the piece's centre by d, on an arc of signed radius r, or a line. At a turn f
+    and a rise e it is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r) sin f)^2), or (d - e sin f) / cos f.
     """
     if signed is None:
         matrix = np.array([[ahead, -1.0], [-1.0, 0.0]])
@@ -321,7 +322,7 @@ def rows_of(candidates: list[Array]) -> Array:
 
 
 def wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Candidates (N, 24) of all equilibria on a wall, where the locator is the first peg and the tip the second."""
+    """Candidates (N, 24) of all equilibria on a wall; the first peg is the locator, the second the tip."""
     wall = WallEquilibria(boundary, pattern)
     pockets = wall.locator_in_pocket(), wall.tip_in_pocket()
     return np.concatenate([wall.flush(), *pockets, wall.three_contacts(), wall.against_wall()])

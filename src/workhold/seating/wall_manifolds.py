@@ -1,4 +1,4 @@
-"""Equilibrium manifolds on a wall: a part that slides along it under the tip, or a round one that turns on it."""
+"""Equilibrium manifolds on a wall: a part that slides along it, or a round one that turns on it."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def with_both_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
 
 
 def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Families]:
-    """Arcs of one centre on the wall and on the tip, and on the locator where the tip is not square to the wall."""
+    """Arcs of one centre on the wall and the tip, and on the locator if the tip is not square to the wall."""
     out, (ux, uy, off) = list[Families](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.boundary.hull.rows
