@@ -14,7 +14,7 @@ import workhold
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
 from workhold.model.fixture import WALL
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
 from workhold.verification.claims import claim_of
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
