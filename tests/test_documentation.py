@@ -69,6 +69,17 @@ def test_every_benchmark_has_a_place_on_the_page() -> None:
     assert sorted(places) == sorted(sections | {"machine", "plot", "targets"})
 
 
+def test_each_term_with_a_source_has_one() -> None:
+    """The terms of the glossary's sources are named once each, with a year or the paper."""
+    text = (
+        (ROOT / "docs" / "glossary.md").read_text().partition("## Where the terms come from")[2].partition("\n## ")[0]
+    )
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", text, flags=re.M)[2:]
+    terms = [term for names, _ in rows for term in names.split(", ")]
+    assert len(terms) == len(set(terms)) > 20
+    assert all(re.search(r"\b(?:18|19|20)\d\d\b", source) or source == "the paper" for _, source in rows)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_make_that_a_page_names_is_there(page: Path) -> None:
     """``make wheel-test`` in a page is a target of the Makefile."""
