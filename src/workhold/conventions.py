@@ -65,7 +65,7 @@ LEAST_HULL_EDGE = 1e-6
 # than a drawing can mean.
 READING = 1e-6
 # No unit. A bulge below this in size is a line: it departs from its chord by a millionth of it, less than a drawing can
-# mean; the radius is above 125,000 chords, and figures in mm about its centre would lose their last digits.
+# mean; the radius is above 125,000 chords, and figures told in mm about its centre would lose their last digits.
 STRAIGHT = 2e-6
 
 # == Reading and joining: what an outline is ==
@@ -90,7 +90,7 @@ TOUCHING = 1e-7
 # A share of the extent. Tangent neighbours meet again so near to their joint; that is no crossing.
 MEETS_AGAIN = 1e-5
 # No unit and mm. Neighbours whose directions agree so (sum of the components' differences), and whose lines, centres and
-# radii do, continue the same line or circle: as PARALLEL and TOUCHING, since a face is what a peg cannot distinguish.
+# radii do, continue the same line or circle: as PARALLEL and TOUCHING, since a face is what a peg cannot tell apart.
 SAME_DIRECTION = 1e-9
 SAME_CARRIER = 1e-7
 # Radians. Arcs of one face that lack less than this of half a turn of half sweep are a whole circle: rounding of bulges.
@@ -119,7 +119,7 @@ SAME_SIZE = 1e-6
 # mm. Ends of features are moved out by this much for the search, far more than rounding: what is found past an end is
 # discarded when the contacts are examined, by END_SLACK.
 LOOSE = 1e-6
-# A share. Forces under one of two clamps that doubles may have off by more are found in balls: half of what verification
+# A share. Forces under one of two clamps that doubles may have off by more are told in balls: half of what verification
 # allows.
 FORCES_OFF = 5e-8
 # Degrees. The end of a range of angles counts, to within this: the rounding of an angle written with ten decimals, and more.
@@ -188,7 +188,7 @@ REFINED = 1e-12
 
 # == Files ==
 
-# A share. A chord of an SVG arc this near the diameter is a half circle: its sweep does not follow from the chord.
+# A share. A chord of an SVG arc this near the diameter is a half circle: its sweep cannot be told from the chord.
 HALF_CIRCLE = 1e-14
 # mm. Departures of a solid from its outline below this are rounding of the CAD program.
 DEPARTS = 1e-4
@@ -239,5 +239,5 @@ GENTLE_PEG = 1.5
 POINTS_PER_DECADE = 20
 TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 9, 4, 2
 # No unit. Figures are rounded to so many decimals before they are compared with these numbers, and with each other: rounding
-# must not separate fixtures that are equal.
+# must not tell fixtures apart that are equal.
 FIGURE_DECIMALS = 9
