@@ -79,7 +79,8 @@ class Identity:
             anchor, ahead = (
                 np.where(turned[:, None], two, one)[chosen] for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
             )
-            seen = rotated(*(anchor - table.position[chosen]).T, -table.theta[chosen])
+            away = anchor - table.position[chosen]
+            seen = rotated(away[:, 0], away[:, 1], -table.theta[chosen])
             place = rotated(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
             image = np.column_stack([(theta % period)[chosen] - SAME_POSE, *place, ahead])
             if not words:
