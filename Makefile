@@ -40,6 +40,7 @@ check: $(INSTALLED_DEV)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python building/house.py check
 	$(MAKE) test
 
 # The wheel in an environment without numba against kernels compiled on first use: the same files, byte for byte.

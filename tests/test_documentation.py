@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from contextlib import redirect_stdout
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -75,15 +76,45 @@ def test_every_make_that_a_page_names_is_there(page: Path) -> None:
     assert set(re.findall(r"(?:`|^ {4})make ([a-z-]+)", page.read_text(), flags=re.M)) <= set(targets)
 
 
-def test_the_layers_told_are_those_that_are_checked() -> None:
-    """The table for contributors has each layer in its place of the import-linter's order."""
+def layers_checked() -> list[set[str]]:
+    """The layers of the import-linter from the highest to the lowest, each with its rooms."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
-    layers = [{name.strip().removeprefix("workhold.") for name in row.split("|")} for row in contracts[0]["layers"]]
+    return [{name.strip().removeprefix("workhold.") for name in row.split("|")} for row in contracts[0]["layers"]]
+
+
+def test_the_layers_listed_are_those_that_are_checked() -> None:
+    """The table for contributors has each layer in its place of the import-linter's order."""
+    layers = layers_checked()
     rows = re.findall(r"^\| ((?:`[a-z]+`(?:, )?)+) \|", (ROOT / "CONTRIBUTING.md").read_text(), flags=re.M)
-    told = [name for row in rows for name in re.findall(r"`([a-z]+)`", row)]
-    heights = [next(height for height, names in enumerate(reversed(layers)) if name in names) for name in told]
-    assert len(told) > 15
+    listed = [name for row in rows for name in re.findall(r"`([a-z]+)`", row)]
+    heights = [next(height for height, names in enumerate(reversed(layers)) if name in names) for name in listed]
+    assert len(listed) > 15
     assert heights == sorted(heights)
+
+
+def test_every_room_is_in_the_architecture() -> None:
+    """Each layer has its paragraph once and its place in the picture, where higher ones stand higher."""
+    rooms = set().union(*layers_checked())
+    described = re.findall(r"\*\*`([a-z]+)`\*\*", (ROOT / "docs" / "architecture.md").read_text())
+    assert sorted(described) == sorted(rooms)
+    picture = (ROOT / "docs" / "images" / "rooms.svg").read_text()
+    places = {
+        name: int(y) for y, name in re.findall(r'y="(\d+)" font-size="14" font-weight="bold"[^>]*>(\w+)<', picture)
+    }
+    below = re.search(r'y="(\d+)"[^>]*>and, below these: (.*?)<', picture)
+    places |= dict.fromkeys(below[2].split(" · "), int(below[1]))
+    assert places.keys() == rooms
+    heights = [[places[name] for name in names] for names in layers_checked()]
+    for higher, lower in pairwise(heights):
+        assert max(higher) <= min(lower)
+
+
+def test_the_stations_of_the_walk_are_in_the_picture() -> None:
+    """The table of the walk and the picture number the same stations."""
+    stations = re.findall(r"^\| (\d+) \|", (ROOT / "docs" / "architecture.md").read_text(), flags=re.M)
+    picture = (ROOT / "docs" / "images" / "rooms.svg").read_text()
+    assert stations == [str(number) for number in range(1, len(stations) + 1)]
+    assert sorted(re.findall(r'text-anchor="middle">(\d+)<', picture), key=int) == stations
 
 
 def test_what_is_to_be_cited_is_this_version() -> None:

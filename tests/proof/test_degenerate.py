@@ -30,7 +30,7 @@ from workhold.listing import finish
 from workhold.model.query import Query
 from workhold.model.toolkit import Toolkit
 from workhold.proof import deciding
-from workhold.proof.degenerate import Touched, hold_nothing, sliding, squeezed, turning
+from workhold.proof.degenerate import TouchedFeatures, antipodal, hold_nothing, sliding, turning
 
 Array = NDArray[np.float64]
 LENGTH = 60.0
@@ -39,14 +39,16 @@ PSI_OF_ALL = 0.3
 OFF, ROUNDED = 1e-6, 1e-14
 
 
-def arc(center: complex, radius: float, place: complex) -> Touched:
+def arc(center: complex, radius: float, place: complex) -> TouchedFeatures:
     """A peg on an arc."""
-    return Touched(*(np.array([value]) for value in (True, center + 0j, 1.0 + 0j, radius, place + 0j)))
+    return TouchedFeatures(*(np.array([value]) for value in (True, center + 0j, 1.0 + 0j, radius, place + 0j)))
 
 
-def line(point: complex, axis: complex, place: complex) -> Touched:
+def line(point: complex, axis: complex, place: complex) -> TouchedFeatures:
     """A peg on a line."""
-    return Touched(*(np.array([value]) for value in (False, point + 0j, axis / abs(axis) + 0j, 0.0, place + 0j)))
+    return TouchedFeatures(
+        *(np.array([value]) for value in (False, point + 0j, axis / abs(axis) + 0j, 0.0, place + 0j))
+    )
 
 
 def near(tail: complex, psi: float = PSI_OF_ALL) -> Array:
@@ -59,7 +61,7 @@ def near(tail: complex, psi: float = PSI_OF_ALL) -> Array:
 @pytest.mark.parametrize("apart", [0.0, 7.0, 50.0])
 @pytest.mark.parametrize(("one", "two"), [(20.0, 20.0), (12.0, 5.0), (5.0, 30.0)])
 @pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
-def test_a_pair_as_far_apart_or_as_near_as_two_arcs_allow_is_squeezed(
+def test_a_pair_as_far_apart_or_as_near_as_two_arcs_allow_is_antipodal(
     apart: float, one: float, two: float, off: float
 ) -> None:
     """The ends of the range are those that trying shows."""
@@ -68,12 +70,12 @@ def test_a_pair_as_far_apart_or_as_near_as_two_arcs_allow_is_squeezed(
     for length in (ends.min(), ends.max()):
         # A least of 0 is taken at no angle tried, and by no two pegs.
         if length > 0.5:
-            found = squeezed(arc(0, one, 3), arc(1j * apart, two, 3 + (length + off) * 1j))
+            found = antipodal(arc(0, one, 3), arc(1j * apart, two, 3 + (length + off) * 1j))
             assert bool(found[0]) == (abs(off) <= ROUNDED)
 
 
 @pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
-def test_a_pair_as_near_as_a_line_and_an_arc_allow_is_squeezed(off: float) -> None:
+def test_a_pair_as_near_as_a_line_and_an_arc_allow_is_antipodal(off: float) -> None:
     """So is one across parallel lines; a pair on one line or on lines at an angle is not."""
     exact = abs(off) <= ROUNDED
     for pair in (
@@ -83,12 +85,12 @@ def test_a_pair_as_near_as_a_line_and_an_arc_allow_is_squeezed(off: float) -> No
             line(2 + 7 * (1j - 1), 1 + 1j, 7 * sqrt(2) + off),
         ),
     ):
-        assert bool(squeezed(*pair)[0]) == bool(squeezed(*pair[::-1])[0]) == exact
-    assert not squeezed(line(0, 1, 0), line(20, 1, 20))[0]
-    assert not squeezed(line(0, 1, 0), line(20, 1 + 1j, 20))[0]
+        assert bool(antipodal(*pair)[0]) == bool(antipodal(*pair[::-1])[0]) == exact
+    assert not antipodal(line(0, 1, 0), line(20, 1, 20))[0]
+    assert not antipodal(line(0, 1, 0), line(20, 1 + 1j, 20))[0]
 
 
-def turned(third: Touched) -> bool:
+def turned(third: TouchedFeatures) -> bool:
     """Whether a third peg, at (20, 0), goes past what it touches: the others are at (0, 0), 5 mm from a centre that is 3 mm
     to their right and 4 mm up, and at (3, 24), 20 mm from it. Parts' frames are turned by psi."""
     seen = complex(cos(PSI_OF_ALL), sin(PSI_OF_ALL)) * (3 + 4j)

@@ -9,16 +9,16 @@ import ladders
 from exact_chords import exactly
 from workhold.kernels.base.given import Limits
 from workhold.proof import interval_newton as settling
-from workhold.proof.interval_newton import Box, Outcome, solutions_in
+from workhold.proof.interval_newton import BoxOutcome, CandidateBox, solutions_in
 
 # The ladders' moving pegs stand among the standing ones: any gap will do here.
 LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
 
 
-def box(height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES) -> Box:
+def box(height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES) -> CandidateBox:
     """The ladders with psi within ``reach`` of 45 degrees and a turn."""
     middle = ladders.near(np.pi / 4 + turn, height)
-    return Box(features, ladders.offsets(height), 2, middle, (reach, 10 * reach, 10 * reach, 20 * reach))
+    return CandidateBox(features, ladders.offsets(height), 2, middle, (reach, 10 * reach, 10 * reach, 20 * reach))
 
 
 def solutions(height: float) -> list[float]:
@@ -65,22 +65,22 @@ def test_a_box_with_one_solution(rest: float) -> None:
 @pytest.mark.parametrize(("rest", "turn"), [(-1e-3, 0.0), (-1e-9, 0.0), (1e-4, 0.2), (1e-4, -0.2)])
 def test_a_box_without_solutions_is_discarded(rest: float, turn: float) -> None:
     """Below the fold, or away from the solutions, nothing touches."""
-    assert solutions_in(box(-2.5 + rest, turn, 1e-3), LIMITS) == Outcome((), "")
+    assert solutions_in(box(-2.5 + rest, turn, 1e-3), LIMITS) == BoxOutcome((), "")
 
 
 @pytest.mark.parametrize("reach", [1e-8, 1e-6, 1e-4])
 def test_an_exact_double_root_is_discarded(reach: float) -> None:
     """Its clamping force is 0: it is no fixture, and nothing is left undecided."""
-    assert solutions_in(box(-2.5, 0.0, reach), LIMITS) == Outcome((), "")
+    assert solutions_in(box(-2.5, 0.0, reach), LIMITS) == BoxOutcome((), "")
 
 
-def large(half: float) -> Box:
+def large(half: float) -> CandidateBox:
     """Ladders of 25 and 50 mm, 12 mm apart in height: sin psi = 3/5 or 4/5 exactly, and the first peg 15 or 20 mm down the
     wall, which reaches ``half`` mm down and asks for no hair."""
     wall = [*ladders.LEFT_WALL[:5], half, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
     floors = [[*row[:5], 90.0, *row[6:]] for row in ladders.FEATURES[1:]]
     places = [(0.0, 0.0), (25.0, 0.0), (0.0, -12.0), (50.0, -12.0)]
-    return Box([wall, *floors], places, 2, (np.pi / 4, 0.0, -17.5, -12.0), (0.2, 5.0, 5.0, 9.0))
+    return CandidateBox([wall, *floors], places, 2, (np.pi / 4, 0.0, -17.5, -12.0), (0.2, 5.0, 5.0, 9.0))
 
 
 def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
@@ -89,8 +89,8 @@ def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
     tail = round(-fixture[2])
     assert tail in (15, 20)
     assert abs(fixture[2] + tail) < 1e-13
-    assert solutions_in(large(float(tail)), LIMITS) == Outcome((), "a rule is met exactly at its edge")
-    assert solutions_in(large(tail - 1e-14), LIMITS) == Outcome((), "")
+    assert solutions_in(large(float(tail)), LIMITS) == BoxOutcome((), "a rule is met exactly at its edge")
+    assert solutions_in(large(tail - 1e-14), LIMITS) == BoxOutcome((), "")
     assert len(solutions_in(large(tail + 1e-14), LIMITS).fixtures) == 1
 
 

@@ -21,7 +21,7 @@ from workhold.listing.collector import ResultCollector
 from workhold.listing.listed import MEASURED
 from workhold.model.notes import cut_note, kept_note
 from workhold.search.design import SEARCH
-from workhold.seating.first import SEARCHED
+from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
 from workhold.web import jobs
 from workhold.web.tasks import Found

@@ -1,4 +1,4 @@
-"""From simultaneous contacts to fixtures: ends of features, the gap rule, force closure, clamping (paper, section 3, test).
+"""The test of simultaneous contacts: ends of features, the gap rule, force closure, clamping (paper, section 3).
 
 The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that the closing steps
 would not exclude. What passes is written as records, in the layout of the compiled kernels, for those steps, which both
@@ -31,7 +31,7 @@ from workhold.kernels.base.feature import (
 from workhold.kernels.contact import closure, record
 from workhold.statics.wrenches import outward_normals
 
-__all__ = ["Held", "fourth_pegs", "joined", "records_of", "row_points"]
+__all__ = ["SimultaneousContacts", "fourth_pegs", "joined", "records_of", "row_points"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -42,7 +42,7 @@ STEEPEST = 1e6
 
 
 @define(frozen=True, eq=False)
-class Held:
+class SimultaneousContacts:
     """N parts touched by four pegs, lengths in mm.
 
     Parameters
@@ -62,9 +62,9 @@ class Held:
     reach: Array
     center: Complex
 
-    def take(self, which: BoolArray | IntArray) -> Held:
+    def take(self, which: BoolArray | IntArray) -> SimultaneousContacts:
         """The parts of an index array or mask."""
-        return Held(self.standing, *(getattr(self, name)[which] for name in HELD_FIELDS))
+        return SimultaneousContacts(self.standing, *(getattr(self, name)[which] for name in HELD_FIELDS))
 
 
 HELD_FIELDS = ("feature", "column", "row", "psi", "reach", "center")
@@ -89,7 +89,7 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
     return np.asarray(whole | (inside >= margin - slack - 2.0 * radius))
 
 
-def records_of(held: Held, rows: Array, frame: Frame, margin: float, length: float) -> Array:
+def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float) -> Array:
     """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
     Parameters
@@ -121,10 +121,12 @@ def records_of(held: Held, rows: Array, frame: Frame, margin: float, length: flo
     return np.asarray(out[good])
 
 
-def may_close(held: Held, held_rows: Array, normals: Array, points: Array, length: float, clamping: int) -> BoolArray:
+def may_close(
+    held: SimultaneousContacts, held_rows: Array, normals: Array, points: Array, length: float, clamping: int
+) -> BoolArray:
     """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
-    Normals on arcs of radius R are off by at most radius / R, and every minor as ``closure.minor_band`` tells.
+    Normals on arcs of radius R are off by at most radius / R, and every minor by ``closure.minor_band``.
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(
@@ -199,7 +201,9 @@ def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex
     return np.concatenate([index, index]), np.concatenate(both), np.concatenate([slope, slope])
 
 
-def fourth_pegs(triples: Held, rows: Array, frame: Frame, margin: float, length: float) -> Held:
+def fourth_pegs(
+    triples: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float
+) -> SimultaneousContacts:
     """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
 
     Parameters
@@ -225,7 +229,7 @@ def fourth_pegs(triples: Held, rows: Array, frame: Frame, margin: float, length:
         index, point, slope = row_points(row, triples.psi[owner], base[owner] + line * frame.lattice.pitch_y)
         chosen, line = triples.take(owner[index]), line[index]
         found.append(
-            Held(
+            SimultaneousContacts(
                 3,
                 np.column_stack([chosen.feature, np.full(len(index), e)]),
                 np.column_stack([chosen.column, np.zeros(len(index), np.int64)]),
@@ -238,6 +242,8 @@ def fourth_pegs(triples: Held, rows: Array, frame: Frame, margin: float, length:
     return joined(found)
 
 
-def joined(parts: list[Held]) -> Held:
+def joined(parts: list[SimultaneousContacts]) -> SimultaneousContacts:
     """Several sets, at least one, as one."""
-    return Held(parts[0].standing, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS))
+    return SimultaneousContacts(
+        parts[0].standing, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS)
+    )

@@ -13,9 +13,9 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.algebra.conditions import Held, fourth_pegs, records_of
+from workhold.algebra.conditions import SimultaneousContacts, fourth_pegs, records_of
 from workhold.algebra.conditions import joined as together
-from workhold.algebra.constraints import Contacts
+from workhold.algebra.constraints import ContactSystems
 from workhold.algebra.poses import peg_centers, poses_at
 from workhold.algebra.quartets import Systems, are_parallel, type_one_systems, type_two_systems
 from workhold.algebra.roots import orientations
@@ -37,7 +37,6 @@ from workhold.listing.listed import Work, listed_result
 from workhold.listing.ways import joined_ways
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.seating.first import seated_answer
 
 __all__ = ["answer_by_algebra"]
 
@@ -48,14 +47,16 @@ Case = tuple[int, int]
 # Systems are solved this many at a time.
 BATCH = 4096
 # The systems and the sliding pairs of each arrangement of pegs.
-GENERATORS: dict[tuple[int, ...], tuple[Callable[..., Iterator[Systems]], Callable[..., list[Held]]]] = {
+GENERATORS: dict[
+    tuple[int, ...], tuple[Callable[..., Iterator[Systems]], Callable[..., list[SimultaneousContacts]]]
+] = {
     (2, 2): (type_one_systems, two_and_two_sliding_pairs),
     (3, 1): (type_two_systems, three_and_one_sliding_pairs),
 }
 
 
 @define(eq=False)
-class Solver:
+class ResultantSolver:
     """Solves systems of one workpiece in one toolkit.
 
     Parameters
@@ -92,9 +93,9 @@ class Solver:
         scaled[scaled[:, 0] == 0.0, 5] /= self.diameter
         return scaled
 
-    def solve(self, systems: Systems, case: Case) -> Held:
+    def solve(self, systems: Systems, case: Case) -> SimultaneousContacts:
         """Simultaneous contacts of systems of one case (section 4): three or four pegs."""
-        contacts = Contacts(self.scaled[systems.feature], self.offsets(systems) / self.diameter)
+        contacts = ContactSystems(self.scaled[systems.feature], self.offsets(systems) / self.diameter)
         owner, psi = self.orientations(contacts, case, systems)
         poses = poses_at(contacts, case, owner, psi)
         self.counts["systems"] += len(systems)
@@ -103,9 +104,9 @@ class Solver:
         # Systems of three pegs are those of the standing pegs alone.
         standing = 2 if systems.feature.shape[1] == 4 else 3
         center = peg_centers(contacts, poses) * self.diameter
-        return Held(standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
+        return SimultaneousContacts(standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
 
-    def orientations(self, contacts: Contacts, case: Case, systems: Systems) -> tuple[IntArray, Array]:
+    def orientations(self, contacts: ContactSystems, case: Case, systems: Systems) -> tuple[IntArray, Array]:
         """Indices of systems and their orientations in radians."""
         special = alike(contacts) if contacts.rows.shape[1] == 4 else np.zeros(len(systems), np.bool_)
         plain, other = np.flatnonzero(~special), np.flatnonzero(special)
@@ -114,7 +115,7 @@ class Solver:
         self.undecided.append(systems.take(plain[undecided]))
         return np.concatenate([plain[owner], other[mirrored]]), np.concatenate([psi, level])
 
-    def fixtures(self, held: Held) -> Array:
+    def fixtures(self, held: SimultaneousContacts) -> Array:
         """Records of the fixtures among simultaneous contacts; three pegs are completed by a fourth first."""
         if held.feature.shape[1] == 3:
             held = fourth_pegs(held, self.rows, self.frame, self.margin, self.diameter / 2)
@@ -174,7 +175,7 @@ def joined(parts: list[Systems]) -> Systems:
 
 
 def refuse_unlike(frame: Frame) -> None:
-    """Refuse a toolkit of which the paper does not treat.
+    """Refuses a toolkit of which the paper does not treat.
 
     Raises
     ------
@@ -188,7 +189,7 @@ def refuse_unlike(frame: Frame) -> None:
         )
 
 
-def stages(solver: Solver, arrangements: Sequence[str]) -> Iterator[Array]:
+def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
     rows, frame = solver.rows, solver.frame
     pairs = peg_pairs(rows[:, :SEGMENT_LENGTH], frame, solver.diameter)
@@ -203,11 +204,11 @@ def stages(solver: Solver, arrangements: Sequence[str]) -> Iterator[Array]:
 
 
 def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel: Event | None = None) -> Result:
-    """Find every fixture that a query asks for as the paper does, by resultants.
+    """Finds every fixture that a query asks for as the paper does, by resultants.
 
     Parameters
     ----------
-    query : what is asked; all fixtures are found also where only the best are.
+    query : what is asked but its seating, see ``search.seated``; all fixtures are found also where only the best are.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
 
@@ -223,19 +224,13 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
     InputError
         As ``workhold.answer``, and for a toolkit whose carriers are not alike.
     """
-    if query.seating is not None:
-
-        def search(asked: Query, share: Progress | None) -> Result:
-            return answer_by_algebra(asked, progress=share, cancel=cancel)
-
-        return seated_answer(query, search, progress=progress, cancel=cancel)
     ways = query.toolkit.ways
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]
         return joined_ways([answer_by_algebra(one, progress=progress, cancel=cancel) for one in alone], query)
     problem = Problem.of(query)
     refuse_unlike(problem.frame)
-    solver = Solver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
+    solver = ResultantSolver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
     records: list[Array] = []
     complete = True
     for found in stages(solver, query.arrangements):

@@ -1,8 +1,8 @@
-"""Resultants as polynomials over complex balls, for systems whose roots double precision cannot tell apart.
+"""Resultants as polynomials over complex balls, for systems whose roots double precision cannot separate.
 
 Nearly sliding pairs (equal arcs almost as far apart as their pegs) crowd up to eight roots together. The formulas are those
-of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are balls of python-flint; doubles are
-exact rationals, so the resultant is that of the very same system, at any precision, and its roots are isolated.
+of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are balls of python-flint. Doubles
+are exact rationals, so the resultant belongs to the very same system at any precision, and its roots are isolated.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from attrs import frozen
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import Contacts
+from workhold.algebra.constraints import ContactSystems
 from workhold.conventions import REFINED
 
 __all__ = ["Laurent", "exact_resultant", "exact_roots"]
@@ -57,8 +57,8 @@ class Laurent:
         return out
 
 
-# up w + middle + down / w, with Laurent polynomials in z.
-Ring = tuple[Laurent, Laurent, Laurent]
+# Coefficients of up w + middle + down / w, Laurent polynomials in z: a trigonometric polynomial in phi.
+LaurentTriple = tuple[Laurent, Laurent, Laurent]
 
 
 def ball(value: complex) -> acb:
@@ -88,7 +88,7 @@ class System:
     sliding: frozenset[tuple[int, int]]
 
     @classmethod
-    def of(cls, contacts: Contacts) -> System:
+    def of(cls, contacts: ContactSystems) -> System:
         """The only system of a set of one."""
         count = contacts.rows.shape[1]
         pairs = [(0, 1), (2, 3)] if count == 4 else [(0, 1), (0, 2)]
@@ -116,7 +116,7 @@ class System:
         zero = -between / step
         return constant(step), Laurent(acb_poly([ball(-step.conjugate() * zero.conjugate())]), -1)
 
-    def line(self, k: int) -> tuple[Laurent, Ring]:
+    def line(self, k: int) -> tuple[Laurent, LaurentTriple]:
         """h or h_sigma: factor of the separation and the rest."""
         n, half = self.normal[k], constant(0.5)
         e, e_bar = self.start(k)
@@ -125,7 +125,7 @@ class System:
         factor = half * binomial(n, -1, n.conjugate(), 1)
         return factor, (constant(n.conjugate() * first), middle, constant(n * first))
 
-    def circle(self, k: int) -> tuple[Ring, Ring]:
+    def circle(self, k: int) -> tuple[LaurentTriple, LaurentTriple]:
         """g or g_sigma: factor of the separation and the rest."""
         e, e_bar = self.start(k)
         radius, other = constant(self.radius[0]), constant(self.radius[k])
@@ -133,7 +133,7 @@ class System:
         square = e * e_bar + radius * radius - other * other
         return (radius * inverse, inverse * e + z * e_bar, radius * z), (radius * e_bar, square, radius * e)
 
-    def pair(self, k: int) -> Ring:
+    def pair(self, k: int) -> LaurentTriple:
         """h or g of peg k on the first peg's jaw."""
         if self.straight[k]:
             return self.line(k)[1]
@@ -143,7 +143,7 @@ class System:
         e, e_bar = self.apart(0, k)
         return radius * e_bar, self.start(k)[0] * e_bar, radius * e
 
-    def difference(self, k: int, m: int) -> tuple[Laurent, Ring]:
+    def difference(self, k: int, m: int) -> tuple[Laurent, LaurentTriple]:
         """g_sigma of m less that of k: factor of the separation and the rest."""
         e, e_bar = self.apart(k, m)
         (one, one_bar), (two, two_bar) = self.start(k), self.start(m)
@@ -156,20 +156,22 @@ class System:
         return inverse * e + z * e_bar, (radius * e_bar, middle, radius * e)
 
 
-def of_rings(one: Ring, two: Ring) -> Laurent:
-    """Resultant in w of two rings."""
+def of_rings(one: LaurentTriple, two: LaurentTriple) -> Laurent:
+    """Resultant in w of two trigonometric polynomials."""
     (a, b, c), (d, e, f) = one, two
     across = a * f - c * d
     return across * across - (a * e - b * d) * (b * f - c * e)
 
 
-def product(one: Ring, two: Ring) -> list[Laurent]:
-    """Product of two rings: coefficients of w^2 ... w^-2."""
+def product(one: LaurentTriple, two: LaurentTriple) -> list[Laurent]:
+    """Product of two trigonometric polynomials: coefficients of w^2 ... w^-2."""
     (a, b, c), (d, e, f) = one, two
     return [a * d, a * e + b * d, a * f + b * e + c * d, b * f + c * e, c * f]
 
 
-def without_separation(factor: Laurent, rest: Ring, linear: Ring, last: Ring) -> list[Laurent]:
+def without_separation(
+    factor: Laurent, rest: LaurentTriple, linear: LaurentTriple, last: LaurentTriple
+) -> list[Laurent]:
     """rest^2 - factor rest linear + factor^2 last: coefficients of w^2 ... w^-2."""
     squares, mixed = product(rest, rest), product(rest, linear)
     out = [square - factor * other for square, other in zip(squares, mixed, strict=True)]
@@ -178,8 +180,8 @@ def without_separation(factor: Laurent, rest: Ring, linear: Ring, last: Ring) ->
     return out
 
 
-def with_square(ring: Ring, double: list[Laurent]) -> Laurent:
-    """Resultant in w of a ring and a polynomial with coefficients of w^2 ... w^-2 (see ``resultants``)."""
+def with_square(ring: LaurentTriple, double: list[Laurent]) -> Laurent:
+    """Resultant in w of a trigonometric polynomial and one with coefficients of w^2 ... w^-2 (see ``resultants``)."""
     a, b, low = ring
     both, square = a * low, b * b
     powers = [
@@ -197,7 +199,7 @@ def with_square(ring: Ring, double: list[Laurent]) -> Laurent:
     return total
 
 
-def exact_resultant(contacts: Contacts, case: tuple[int, int], free_of_separation: bool = False) -> acb_poly:
+def exact_resultant(contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False) -> acb_poly:
     """The resultant of one system that has an arc, times a power of z, at the precision of ``flint.ctx``."""
     system = System.of(contacts)
     second = system.pair(1)
@@ -233,7 +235,7 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
 
 
 def exact_roots(
-    contacts: Contacts, case: tuple[int, int], free_of_separation: bool = False
+    contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False
 ) -> NDArray[np.complex128] | None:
     """Roots z of the resultant of one system that has an arc, None if it vanishes identically."""
     before = ctx.prec

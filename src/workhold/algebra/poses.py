@@ -1,8 +1,8 @@
 """Simultaneous contact poses: from orientations back to phi, the separation and the place (paper, section 4).
 
-For each orientation the constraint of the second peg, a ring, gives up to two phi, and a right peg's constraint up to two
-separations. Every combination that nearly meets all constraints is refined by Newton's method on the contact equations
-themselves, and stays if it meets them to the last digits.
+For each orientation the second peg's constraint, a trigonometric polynomial, gives up to two phi, and a right peg's
+constraint up to two separations. Every combination that nearly meets all constraints is refined by Newton's method on the
+contact equations themselves, and stays if it meets them to the last digits.
 """
 
 from __future__ import annotations
@@ -11,7 +11,14 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import Complex, Contacts, Ring, circle_constraint, line_constraint, pair_constraint
+from workhold.algebra.constraints import (
+    Complex,
+    ContactSystems,
+    TrigPolynomial,
+    circle_constraint,
+    line_constraint,
+    pair_constraint,
+)
 from workhold.conventions import DOUBLE, MET, NEARLY_MET, POSE_REACH, SINGULAR
 
 __all__ = ["Poses", "poses_at", "refined", "residuals"]
@@ -49,14 +56,14 @@ class Poses:
         return Poses(self.owner[which], self.psi[which], self.place[which], self.separation[which], self.reach[which])
 
 
-def peg_centers(contacts: Contacts, poses: Poses) -> Complex:
+def peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
     """Peg centres (N, K) in the workpiece's frame."""
     moving = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
     reach = contacts.point[poses.owner] + poses.separation[:, None] * moving
     return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
 
 
-def distances(contacts: Contacts, poses: Poses) -> tuple[Array, Complex, Complex]:
+def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, Complex]:
     """Signed distances (N, K) of the pegs from their lines or circles, the directions across, and the peg centres."""
     center = peg_centers(contacts, poses)
     off = center - contacts.middle[poses.owner]
@@ -67,12 +74,12 @@ def distances(contacts: Contacts, poses: Poses) -> tuple[Array, Complex, Complex
     return along, across, center
 
 
-def residuals(contacts: Contacts, poses: Poses) -> Array:
+def residuals(contacts: ContactSystems, poses: Poses) -> Array:
     """Largest distance in mm of a peg's centre from its line or circle, (N,)."""
     return np.asarray(np.abs(distances(contacts, poses)[0]).max(axis=1, initial=0.0))
 
 
-def refined(contacts: Contacts, poses: Poses) -> Poses:
+def refined(contacts: ContactSystems, poses: Poses) -> Poses:
     """Newton's method on the contact equations; poses that do not converge, and double solutions, are dropped.
 
     Lengths are in parts of the part's size.
@@ -92,7 +99,7 @@ def refined(contacts: Contacts, poses: Poses) -> Poses:
     return poses.take((np.abs(off).max(axis=1, initial=0.0) <= MET) & (np.abs(np.linalg.det(matrix)) > DOUBLE))
 
 
-def linearized(contacts: Contacts, poses: Poses) -> tuple[Array, Array]:
+def linearized(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
     """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, place and separation."""
     pegs = contacts.rows.shape[1]
     off, across, center = distances(contacts, poses)
@@ -102,8 +109,8 @@ def linearized(contacts: Contacts, poses: Poses) -> tuple[Array, Array]:
     return off, np.stack(columns, axis=-1)
 
 
-def angles_of(ring: Ring) -> tuple[Complex, Complex]:
-    """The two points w of the unit circle where rings vanish or come nearest to it."""
+def angles_of(ring: TrigPolynomial) -> tuple[Complex, Complex]:
+    """The two points w of the unit circle where trigonometric polynomials vanish or come nearest to it."""
     size = 2.0 * np.abs(ring.first)
     cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))
@@ -111,7 +118,7 @@ def angles_of(ring: Ring) -> tuple[Complex, Complex]:
     return np.exp(1j * (turn + spread)), np.exp(1j * (turn - spread))
 
 
-def separations(contacts: Contacts, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
+def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
     """The values that the separation may have at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
     if case[1] == -1:
         return [np.zeros(w.shape)]
@@ -125,7 +132,7 @@ def separations(contacts: Contacts, case: tuple[int, int], psi: Array, w: Comple
     return [-linear / 2.0 + root, -linear / 2.0 - root]
 
 
-def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
+def straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Poses:
     """Poses on lines alone: at an orientation the place and the separation solve linear equations (straight-line form)."""
     pegs = contacts.rows.shape[1]
     normal = contacts.normal[owner]
@@ -140,7 +147,7 @@ def straight_poses(contacts: Contacts, owner: IntArray, psi: Array) -> Poses:
     return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], separation, np.zeros(len(owner)))
 
 
-def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
+def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
     """All poses of systems at, or very near to, orientations.
 
     Parameters
@@ -158,11 +165,6 @@ def poses_at(contacts: Contacts, case: tuple[int, int], owner: IntArray, psi: Ar
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
         for separation in separations(chosen, case, column, w):
             found.append(Poses(owner, psi, place[:, 0], separation[:, 0], np.zeros(len(owner))))
-    everything = Poses(
-        np.concatenate([p.owner for p in found]),
-        np.concatenate([p.psi for p in found]),
-        np.concatenate([p.place for p in found]),
-        np.concatenate([p.separation for p in found]),
-        np.concatenate([p.reach for p in found]),
-    )
+    names = ("owner", "psi", "place", "separation", "reach")
+    everything = Poses(*(np.concatenate([getattr(one, name) for one in found]) for name in names))
     return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY_MET))

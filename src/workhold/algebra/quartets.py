@@ -55,8 +55,8 @@ class Facings:
     Parameters
     ----------
     left, right : (F, SECTORS) whether a feature can be pushed so as to clamp by a left peg, or by a right peg, at an
-        orientation: the two parts of the valid orientations (section 3.2).
-    resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction: four features can close
+        orientation. These are the two parts of the valid orientations (section 3.2).
+    resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction. Four features can close
         only if every direction is resisted by one of them (section 3).
     """
 
@@ -81,8 +81,8 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
 def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
     """A rank (N,) of each peg pair that is the same for the pair with its features exchanged, higher with more arcs.
 
-    Turning the toolkit half way round exchanges the jaws and each pair's features, so it is enough to look at quartets
-    whose left pair ranks at least as high as the right one.
+    Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to look at quartets whose left
+    pair ranks at least as high as the right one.
     """
     arcs = (rows[pairs.tail, 0] != 0.0).astype(np.int64) + (rows[pairs.head, 0] != 0.0)
     first, second = np.minimum(pairs.tail, pairs.head), np.maximum(pairs.tail, pairs.head)

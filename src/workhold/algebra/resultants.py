@@ -1,14 +1,15 @@
 r"""Eliminating the separation and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
 
 A resultant is never written out as a polynomial of symbols. It is evaluated at as many orientations as it has
-coefficients, from closed formulas for the small resultants in w, and its coefficients follow by a discrete Fourier
-transform: a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
+coefficients, from closed formulas for the small resultants in w. Its coefficients follow by a discrete Fourier transform.
+They make a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
 
 Ranges of the exponents of z, from the constraints' formulas, bound d (Newton polygons; D. Bernstein 1975). They give
 the numbers of complex solutions of general systems, below the degrees of the paper's Table 2:
 
-    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16;
-    three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
+    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16.
+
+    Three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from numpy.typing import NDArray
 
 from workhold.algebra.constraints import (
     Complex,
-    Contacts,
-    Ring,
+    ContactSystems,
+    TrigPolynomial,
     circle_constraint,
     circle_difference,
     line_constraint,
@@ -57,8 +58,8 @@ def degree_bound(case: tuple[int, int]) -> int:
     return TRUE_DEGREES[case] // 2
 
 
-def resultant_of_rings(one: Ring, two: Ring) -> tuple[Array, Array]:
-    """Resultant in w of two rings, and the sum of the sizes of its terms.
+def resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
+    """Resultant in w of two trigonometric polynomials, and the sum of the sizes of its terms.
 
     For a w + b + a* / w and c w + d + c* / w it is \\|a d - c b\\|^2 - 4 Im(a c*)^2.
     """
@@ -68,8 +69,8 @@ def resultant_of_rings(one: Ring, two: Ring) -> tuple[Array, Array]:
     return value, (np.abs(left) + np.abs(right)) ** 2 + 4.0 * np.abs(across) ** 2
 
 
-def product(one: Ring, two: Ring) -> tuple[Array, Complex, Complex]:
-    """Product of two rings: c0 + 2 Re(c1 w + c2 w^2)."""
+def product(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Complex, Complex]:
+    """Product of two trigonometric polynomials: c0 + 2 Re(c1 w + c2 w^2)."""
     return (
         one.middle * two.middle + 2.0 * (one.first * np.conj(two.first)).real,
         one.middle * two.first + two.middle * one.first,
@@ -77,7 +78,9 @@ def product(one: Ring, two: Ring) -> tuple[Array, Complex, Complex]:
     )
 
 
-def without_separation(factor: Array, rest: Ring, linear: Ring, constant: Ring) -> tuple[Array, Complex, Complex]:
+def without_separation(
+    factor: Array, rest: TrigPolynomial, linear: TrigPolynomial, constant: TrigPolynomial
+) -> tuple[Array, Complex, Complex]:
     """Resultant in the separation s of factor s + rest and s^2 + linear s + constant, of degree two in w.
 
     It is rest^2 - factor rest linear + factor^2 constant.
@@ -91,11 +94,11 @@ def without_separation(factor: Array, rest: Ring, linear: Ring, constant: Ring) 
     )
 
 
-def resultant_with_square(ring: Ring, double: tuple[Array, Complex, Complex]) -> tuple[Array, Array]:
-    """Resultant in w of a ring and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
+def resultant_with_square(ring: TrigPolynomial, double: tuple[Array, Complex, Complex]) -> tuple[Array, Array]:
+    """Resultant in w of a trigonometric polynomial and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
 
-    \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, written without division:
-    the roots' product is a* / a and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
+    It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without division. The
+    roots' product is a* / a, and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
     """
     a, b = ring.first, ring.middle
     low = np.conj(a)
@@ -122,7 +125,7 @@ def resultant_with_square(ring: Ring, double: tuple[Array, Complex, Complex]) ->
     return value.real, size
 
 
-def straight_line_form(contacts: Contacts, psi: Array) -> tuple[Array, Array]:
+def straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Array]:
     """The determinant of the contacts' equations, linear in the place and the separation.
 
     Rows (normal, factor of the separation on the right jaw, rest); three rows without it for Type II.
@@ -138,7 +141,7 @@ def straight_line_form(contacts: Contacts, psi: Array) -> tuple[Array, Array]:
     return np.linalg.det(matrix), np.abs(rest).max(axis=-1)
 
 
-def resultant(contacts: Contacts, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
+def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
     """The resultant of N systems of one case at (N, M) orientations, and the size of its terms.
 
     Parameters
@@ -163,7 +166,7 @@ def resultant(contacts: Contacts, case: tuple[int, int], psi: Array) -> tuple[Ar
     return np.where(free, plain_value, value), np.where(free, plain_size, size)
 
 
-def triple_resultant(contacts: Contacts, second: Ring, psi: Array) -> tuple[Array, Array]:
+def triple_resultant(contacts: ContactSystems, second: TrigPolynomial, psi: Array) -> tuple[Array, Array]:
     """Resultant of three left pegs; where the second and third arc slide, that factor is divided out."""
     value, size = resultant_of_rings(second, pair_constraint(contacts, 2, psi))
     sliding_pairs = contacts.sliding_pairs(1, 2)[:, None]
@@ -171,19 +174,19 @@ def triple_resultant(contacts: Contacts, second: Ring, psi: Array) -> tuple[Arra
     return value / length**2, size / length**2
 
 
-def lines_without_separation(contacts: Contacts, psi: Array) -> Ring:
+def lines_without_separation(contacts: ContactSystems, psi: Array) -> TrigPolynomial:
     """h_sigma of pegs 3 and 4 with the separation eliminated."""
     (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
-    return Ring(one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first)
+    return TrigPolynomial(one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first)
 
 
-def have_no_separation(contacts: Contacts) -> NDArray[np.bool_]:
+def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
     """Which systems have concentric arcs under right pegs that stand one above the other, (N,)."""
     concentric = np.abs(contacts.middle[:, 2] - contacts.middle[:, 3]) <= COINCIDENT
     return np.asarray(concentric & (np.abs((contacts.point[:, 2] - contacts.point[:, 3]).real) <= COINCIDENT))
 
 
-def coefficients(contacts: Contacts, case: tuple[int, int], bound: int | None = None) -> tuple[Complex, Array]:
+def coefficients(contacts: ContactSystems, case: tuple[int, int], bound: int | None = None) -> tuple[Complex, Array]:
     """Coefficients of the resultants: (N, 2 d + 1) of z^-d ... z^d, and (N,) the size of the terms they come from."""
     bound = degree_bound(case) if bound is None else bound
     count = 2 * bound + 1

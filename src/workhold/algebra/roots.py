@@ -1,9 +1,9 @@
 """All orientations at which a real trigonometric polynomial vanishes.
 
 The polynomials come as coefficients of z^-d ... z^d, z = exp(i psi); real roots psi are the roots z on the unit circle.
-Well-conditioned ones are solved as eigenvalues of companion matrices, many at a time; those whose outermost coefficients
-nearly vanish, or whose roots are crowded, go to ball arithmetic (python-flint), which isolates every root at a precision
-raised until it can.
+Well-conditioned ones are solved as eigenvalues of companion matrices, many at a time. Others, whose outermost coefficients
+nearly vanish or whose roots are crowded, go to ball arithmetic (python-flint). It isolates every root at a precision raised
+until it can.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import Contacts
+from workhold.algebra.constraints import ContactSystems
 from workhold.algebra.exact import exact_roots
 from workhold.algebra.resultants import coefficients, have_no_separation
 from workhold.algebra.wedges import CENTERS, HALF_SECTOR, sector_of
@@ -84,7 +84,7 @@ def ball_roots(values: Complex) -> Complex:
                 continue
     finally:
         ctx.prec = before
-    # Roots that no precision tells apart are equal; their derivative's root is as good.
+    # Roots that no precision separates are equal; their derivative's root is as good.
     return np.asarray(np.roots(values[::-1]), np.complex128)
 
 
@@ -109,7 +109,7 @@ def near_circle(roots: Complex) -> BoolArray:
     return np.asarray(np.abs(np.abs(roots) - 1.0) <= NEAR_CIRCLE)
 
 
-def hard_roots(contacts: Contacts, case: tuple[int, int], values: Complex) -> Complex | None:
+def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
     """Roots of the resultant of one system (a set of one) in ball arithmetic, None if they cannot be isolated."""
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
@@ -117,7 +117,7 @@ def hard_roots(contacts: Contacts, case: tuple[int, int], values: Complex) -> Co
     return exact_roots(contacts, case, case[1] == 2 and bool(have_no_separation(contacts)[0]))
 
 
-def nearly_sliding(contacts: Contacts) -> BoolArray:
+def nearly_sliding(contacts: ContactSystems) -> BoolArray:
     """Which systems have pairs of arcs on one jaw that nearly slide, but do not, so that roots are crowded."""
     product = np.ones(len(contacts.rows))
     for k, m in ((0, 1), (2, 3)) if contacts.rows.shape[1] == 4 else ((0, 1), (0, 2), (1, 2)):
@@ -126,7 +126,9 @@ def nearly_sliding(contacts: Contacts) -> BoolArray:
     return np.asarray(product <= NEARLY_SLIDING)
 
 
-def orientations(contacts: Contacts, case: tuple[int, int], sectors: BoolArray) -> tuple[IntArray, Array, IntArray]:
+def orientations(
+    contacts: ContactSystems, case: tuple[int, int], sectors: BoolArray
+) -> tuple[IntArray, Array, IntArray]:
     """Candidates for the orientations of N systems of one case.
 
     Parameters

@@ -1,15 +1,15 @@
 r"""Peg pairs at which the resultant says nothing: the orientation is fixed and the part slides.
 
 Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs, fix the
-orientation by themselves; along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
+orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
 resultant such a pair is a factor that carries no information about the others, and is divided out. So the orientation is
 taken from the pair, and the rest of the pose from the other contacts at that orientation: two circles or lines met at a
-time. What is divided out and what is listed here is told by one measure, ``Contacts.misfit``.
+time. One measure, ``ContactSystems.misfit``, decides what is divided out and what is listed here.
 
 Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
 
 The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same step, level with
-each other: pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
+each other. Pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
 the two different places that an orientation allows, which are level at a few orientations only.
 """
 
@@ -21,8 +21,8 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.conditions import STEEPEST, Held, row_points
-from workhold.algebra.constraints import Complex, Contacts
+from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, row_points
+from workhold.algebra.constraints import Complex, ContactSystems
 from workhold.algebra.quartets import are_parallel
 from workhold.algebra.wedges import PegPairs, sector_of
 from workhold.contact.frame import Frame
@@ -85,7 +85,7 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: flo
     diameter : that size in mm.
     """
     step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter
-    contacts = Contacts(scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1))
+    contacts = ContactSystems(scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1))
     between, rows = contacts.middle[:, 1] - contacts.middle[:, 0], contacts.rows
     misfit = contacts.misfit(0, 1)
     arcs = np.flatnonzero(misfit <= SPARE * COINCIDENT)
@@ -161,7 +161,7 @@ def line_meets_circle(point: complex, tangent: complex, center: complex, radius:
 
 def two_and_two_sliding_pairs(
     pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
-) -> list[Held]:
+) -> list[SimultaneousContacts]:
     """Left pairs that slide, stopped by a right pair (sliding right pairs are these after a half turn)."""
     found = []
     sectors = pairs.sectors
@@ -181,7 +181,7 @@ def two_and_two_sliding_pairs(
                 zero = np.zeros(len(line), np.int64)
                 center = np.stack([tail, tail + own, zero + point, zero + point + step], axis=1)
                 found.append(
-                    Held(
+                    SimultaneousContacts(
                         2,
                         np.stack([zero + a, zero + b, zero + c, zero + d], axis=1),
                         np.stack([zero, zero + pairs.column[i], zero, zero + pairs.column[j]], axis=1),
@@ -195,10 +195,10 @@ def two_and_two_sliding_pairs(
 
 
 def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArray, Complex, Array]:
-    """Rows of the first right peg, counted from the first left peg, places of the latter on its feature, and how much these
-    move when the height or the orientation does.
+    """Rows of the first right peg, places of the first left peg on its feature, and how much these places move.
 
-    ``height`` is that of the first right peg along the frame's y axis in mm.
+    Rows are counted from the first left peg. Places move when the height or the orientation does. ``height`` is the place of
+    the first right peg along the frame's y axis in mm.
     """
     middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
     tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
@@ -213,7 +213,7 @@ def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArr
 
 def three_and_one_sliding_pairs(
     pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
-) -> list[Held]:
+) -> list[SimultaneousContacts]:
     """Left pairs that slide, stopped by a third left peg; the third peg may be anywhere in the order of pegs."""
     found = []
     most = frame.standing.column_count - 1
@@ -228,7 +228,7 @@ def three_and_one_sliding_pairs(
             for point, slope in meets(rows[a], rows[c], third):
                 places = np.array([[point, point + own, point + third]])
                 found.append(
-                    Held(
+                    SimultaneousContacts(
                         3,
                         np.array([[a, b, c]]),
                         np.array([[0, pairs.column[i], column]]),
@@ -256,7 +256,7 @@ def third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
     return after + before
 
 
-def alike(contacts: Contacts) -> NDArray[np.bool_]:
+def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
     """Which systems of four pegs have the same lines or circles and the same step on both jaws, at one level, (N,)."""
     rows, point = contacts.rows, contacts.point
     same = np.abs(point[:, 2]) + np.abs(point[:, 3] - point[:, 1]) <= COINCIDENT
@@ -272,12 +272,12 @@ def alike(contacts: Contacts) -> NDArray[np.bool_]:
     return np.asarray(same)
 
 
-def alike_orientations(contacts: Contacts) -> tuple[IntArray, Array]:
+def alike_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
     """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
 
     The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs brought
-    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0, with x the
-    step and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
+    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0. There x is
+    the step, and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

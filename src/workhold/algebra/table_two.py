@@ -13,7 +13,7 @@ from math import tau
 import numpy as np
 from attrs import frozen
 
-from workhold.algebra.constraints import Contacts
+from workhold.algebra.constraints import ContactSystems
 from workhold.algebra.poses import Poses, poses_at
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
 from workhold.algebra.roots import hard_roots
@@ -59,7 +59,7 @@ class Row:
     poses: int
 
 
-def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
+def random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
     """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, with a real pose each."""
     random = np.random.default_rng(seed)
     left, right = case
@@ -80,7 +80,7 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> Contacts:
     # A circle passes through its peg at the drawn angle; a line through it in the drawn direction.
     middle = touch - rows[..., RADIUS] * np.exp(1j * angle)
     rows[..., X], rows[..., Y] = middle.real, middle.imag
-    return Contacts(rows, point)
+    return ContactSystems(rows, point)
 
 
 def distinct_poses(poses: Poses) -> int:

@@ -1,7 +1,7 @@
-"""Naming, for a user, the systems of contacts that their resultants leave undecided.
+"""Names, for a user, of the systems of contacts that their resultants leave undecided.
 
-A system is undecided when its resultant vanishes at every orientation although none of the reasons known for that applies
-(``sliding_pairs``), or when its roots cannot be told apart at 1,024 bits. Only fixtures with these pegs on these faces
+A system is undecided when its resultant vanishes at every orientation although no known reason applies
+(``sliding_pairs``), or when its roots cannot be separated at 1,024 bits. Only fixtures with these pegs on these faces
 may then be missing.
 """
 

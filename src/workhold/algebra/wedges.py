@@ -2,8 +2,8 @@
 
 Glossary
 --------
-orientation : psi in radians, by which the pegs turn in the workpiece's frame (section 4 maps the points onto the features
-    and inverts the map; the workpiece's own orientation is -psi).
+orientation : psi in radians, by which the pegs turn in the workpiece's frame. Section 4 maps the points onto the features
+    and inverts the map; the workpiece's own orientation is -psi.
 sector : one of 360 equal parts of the circle of orientations. Sets of orientations are sets of sectors, always too large
     rather than too small.
 piece : a short stretch of a feature inside a disc. The vectors between points of two pieces lie in a disc, hence in an
@@ -27,7 +27,7 @@ from workhold.errors import InputError
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.limits import MOST_PEG_PAIRS
 
-__all__ = ["SECTORS", "PegPairs", "Pieces", "facing", "lattice_steps", "peg_pairs", "pieces_of", "sector_of"]
+__all__ = ["SECTORS", "PegPairs", "FeaturePieces", "facing", "lattice_steps", "peg_pairs", "pieces_of", "sector_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -62,7 +62,7 @@ def facing(rows: Array, spread: float) -> BoolArray:
 
 
 @define(frozen=True, eq=False)
-class Pieces:
+class FeaturePieces:
     """Pieces of one feature.
 
     Parameters
@@ -75,8 +75,8 @@ class Pieces:
     radius: Array
 
 
-def pieces_of(row: Array, size: float) -> Pieces:
-    """Cut a feature into pieces of about ``size`` mm."""
+def pieces_of(row: Array, size: float) -> FeaturePieces:
+    """Cuts a feature into pieces of about ``size`` mm."""
     straight = row[IS_ARC] == 0.0
     length = 2.0 * row[HALF_EXTENT] * (1.0 if straight else row[RADIUS])
     count = max(2 if straight else 4, ceil(length / size))
@@ -84,9 +84,9 @@ def pieces_of(row: Array, size: float) -> Pieces:
     half = row[HALF_EXTENT] / count
     if straight:
         middle = row[X] + 1j * row[Y] + parameter * (row[AXIS_X] + 1j * row[AXIS_Y])
-        return Pieces(middle, np.full(count, half))
+        return FeaturePieces(middle, np.full(count, half))
     middle = row[X] + 1j * row[Y] + row[RADIUS] * (row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(1j * parameter)
-    return Pieces(middle, np.full(count, 2.0 * row[RADIUS] * sin(half / 2.0)))
+    return FeaturePieces(middle, np.full(count, 2.0 * row[RADIUS] * sin(half / 2.0)))
 
 
 def lattice_steps(frame: Frame, longest: float) -> list[tuple[int, int]]:
@@ -134,7 +134,7 @@ class PegPairs:
         return np.asarray(self.tails.any(axis=1))
 
 
-def wedge_sectors(one: Pieces, two: Pieces, distance: float, direction: float) -> BoolArray | None:
+def wedge_sectors(one: FeaturePieces, two: FeaturePieces, distance: float, direction: float) -> BoolArray | None:
     """Orientations at which a peg pair fits each piece of the first feature (sections 3.3 and 3.4).
 
     Parameters
@@ -162,7 +162,7 @@ def wedge_sectors(one: Pieces, two: Pieces, distance: float, direction: float) -
     return out
 
 
-def tail_bounds(one: Pieces, tails: BoolArray) -> tuple[Array, Array]:
+def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
     """Bounds (SECTORS, 2) on the first peg along x and y at each orientation, inf and -inf where there is none."""
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
     slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]

@@ -185,7 +185,7 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
     shown = fixture_data(fixture, result.toolkit, asked.rank)
-    if asked.seating and fixture.pair is not None:
+    if asked.seating and not result.toolkit.closes_at_once:
         from workhold.seating.by_hand import by_hand
 
         shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()

@@ -124,7 +124,7 @@ def design(
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
         if first_run and engine == "curves":
             compile_kernels(cancel, second)
-        if query.seating is not None and not query.toolkit.needs_pairs:
+        if query.seating is not None and query.toolkit.closes_at_once:
             from workhold.cli.warming import compile_seating
 
             compile_seating(cancel)
@@ -176,8 +176,9 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     """The answer of an engine, which is imported only now, written on the way where a file is named for that."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
+        from workhold.search.seated import seated_answer
 
-        return answer_by_algebra(query, **watching)
+        return seated_answer(query, answer_by_algebra, **watching)
     if streamed is not None:
         from workhold.files.result.columns import answer_to_file
 

@@ -83,7 +83,7 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
-    each = f"on {'the' if toolkit.moving.on is not None else 'each'} {first.noun}"
+    each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
     table = Table(("figure", "value"))
     table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
     for words, count in (("columns", first.columns), ("rows", first.rows)):

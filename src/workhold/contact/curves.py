@@ -89,7 +89,7 @@ def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def center_numbers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
-    """For (F, 10) rows the index of the first feature with the same centre, -1 for lines."""
+    """Index of the first feature with the same centre for each of (F, 10) rows, -1 for lines."""
     numbers = np.full(len(rows), -1, dtype=np.int64)
     arcs = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     for position, k in enumerate(arcs):

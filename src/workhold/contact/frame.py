@@ -105,7 +105,7 @@ class Frame:
         return cosine * column - sine * row, sine * column + cosine * row
 
     def holes(self, standing: NDArray[np.bool_], column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
-        """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` tells of which carrier.
+        """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` says of which carrier.
 
         Where the carriers have no end across the travel, the lowest is 0.
         """

@@ -40,8 +40,8 @@ class Problem:
     rows : (F, 12) contact features, with the slack of their ends beside the contact margin
         (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
-    standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the same for both
-        where their pegs are alike, else those of the standing carrier come first.
+    standing, moving : first and past-the-last number of the features that pegs of each carrier touch. Both are equal where
+        their pegs are alike; else features of the standing carrier come first.
     outline : (S, 10) the part's faces.
     diameter : largest distance between two peg centres that touch the part.
     pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
@@ -63,13 +63,13 @@ class Problem:
 
     @classmethod
     def of(cls, query: Query, pairing: bool = False) -> Problem:
-        """Make a query ready.
+        """Makes a query ready.
 
         Raises
         ------
         InputError
-            When the peg fits nowhere along the part, a face to avoid does not exist, nothing is left to touch, or two pegs
-            can stand in too many ways (``limits``).
+            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
+            Also when two pegs can stand in too many ways (``limits``).
         """
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)

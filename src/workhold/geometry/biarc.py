@@ -21,14 +21,14 @@ from workhold.geometry.curve_bounds import departure
 from workhold.geometry.rational import Pieces, cut, direction_at, end_directions, point_at
 from workhold.geometry.segment import Point, segment_from_bulge
 
-__all__ = ["Run", "biarcs", "corners_of"]
+__all__ = ["FittedRun", "biarcs", "corners_of"]
 
 # A biarc is as long as it can be but for this share, and so many lengths are tried.
 STEP, MOST_STEPS = 0.02, 60
 
 
 @frozen
-class Run:
+class FittedRun:
     """A line or arc in place of a part of a curve, its ends as points, and a bound of the distance in mm."""
 
     points: tuple[Point, ...]
@@ -36,19 +36,19 @@ class Run:
     departure: float
 
 
-def biarcs(pieces: Pieces, tolerance: float) -> list[Run]:
+def biarcs(pieces: Pieces, tolerance: float) -> list[FittedRun]:
     """Biarcs in place of a curve, each as long as the tolerance allows, tangent to the curve where they meet.
 
     Corners of the curve stay corners.
     """
     corners = [0, *corners_of(pieces)]
-    found: list[Run] = []
+    found: list[FittedRun] = []
     for first, last in zip(corners, [*corners[1:], len(pieces)], strict=True):
         found += smooth_biarcs(pieces[first:last], tolerance)
     return found
 
 
-def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[Run]:
+def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedRun]:
     """Biarcs in place of a curve without corners."""
     total = float(len(pieces))
     place, step = 0.0, total
@@ -58,7 +58,7 @@ def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[Run]:
         step, place = 1.2 * (reach - place), reach
 
 
-def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[Run, float]:
+def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[FittedRun, float]:
     """The biarc that reaches farthest from a place of a curve, to within a share of ``STEP``, and where it ends.
 
     ``step`` is the first length tried. What is smaller than the tolerance may be a line instead.
@@ -82,19 +82,19 @@ def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -
     return line, reach
 
 
-def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> Run | None:
+def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
     """The line in place of a stretch of a curve, such as a cusp, that is smaller than the tolerance; None for others."""
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
     size = float(np.hypot(*np.ptp(places, axis=0)))
     ends = point_at(pieces, first), point_at(pieces, last)
-    return Run(ends, (0.0,), size) if size <= tolerance else None
+    return FittedRun(ends, (0.0,), size) if size <= tolerance else None
 
 
-def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Run | None:
+def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
     """The biarc in place of a stretch of a smooth curve; None where it departs by more than the tolerance.
 
-    Each arc is held against the part of the curve between its ends: both centres lie on the normal at the joint, so the
+    Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the joint, so the
     curve changes from one arc to the other where it crosses that.
     """
     start, end = point_at(pieces, first), point_at(pieces, last)
@@ -115,7 +115,7 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Run | 
         away = max(away, departure(cut(pieces, low, high), segment_from_bulge(p, q, bulge), tolerance))
         if away > tolerance:
             return None
-    return Run((start, joint, end), bulges, away)
+    return FittedRun((start, joint, end), bulges, away)
 
 
 def less(p: Point, q: Point) -> Point:

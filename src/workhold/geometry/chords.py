@@ -101,7 +101,7 @@ def all_merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
 
 
 def from_a_corner(pieces: list[Piece]) -> list[Piece]:
-    """The same loop, begun where it has a corner, or else where its longest segment begins, so that no run goes across."""
+    """The pieces of a loop, begun at a corner, or else where the longest begins, so that no run goes across."""
     turns, lengths = np.abs(turns_of(pieces)), steps_of(pieces)
     sharpest = int(np.argmax(turns))
     first = sharpest if turns[sharpest] > CORNER_OF_CHORDS else int(np.argmax(lengths))

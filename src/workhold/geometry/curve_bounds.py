@@ -1,8 +1,8 @@
 """How far a curve may be from a line or an arc: bounds by control points, no sampling.
 
-A rational function whose numerator and denominator have Bernstein coefficients a and b > 0 lies between the smallest and the
-largest a / b, since it is a mean of them with positive weights. Distances from a line are such a function, and so are
-squares of distances from a point; halving the pieces brings the bound down to the distance, four times as near each time.
+Let a rational function have Bernstein coefficients a in its numerator and b > 0 in its denominator. It lies between the
+smallest and the largest a / b, since it is a mean of them with positive weights. Distances from a line are such a function,
+and so are squares of distances from a point. Halving the pieces brings the bound four times as near to the distance.
 
 Glossary
 --------
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 # Halvings, after which a bound is within some thousandth of the curve's own size of what it bounds, squared.
 MOST_HALVINGS = 7
-# A bound this near to a distance that is reached is good enough to be told.
+# A bound this near to a distance that is reached is good enough.
 NEAR_ENOUGH = 1.03
 # A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for rounding.
 ROUNDING = 1e-11
@@ -94,7 +94,7 @@ def measured(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
         ratio = off / product(w, w)
         away = np.abs(ratio) / (radius + np.sqrt(np.maximum(radius * radius + ratio, 0.0)))
         around = segment.sign * (product(x, np.diff(y)) - product(y, np.diff(x)))
-        # Pieces that cover half a turn or more are told apart from their complements when they are halved.
+        # Pieces that cover half a turn or more are distinguished from their complements when they are halved.
         (ax, bx), (ay, by) = (one[:, [0, -1]].T for one in (x, y))
         covered = segment.sign * np.arctan2(ax * by - ay * bx, ax * bx + ay * by).sum()
         forward = (around >= -ROUNDING * radius * radius).all() and abs(covered - 2 * segment.half_sweep) < 1e-3

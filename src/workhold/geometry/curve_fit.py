@@ -16,7 +16,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import AS_ARC, CURVATURE_JUMP, DISGUISE, SHORTEST
-from workhold.geometry.biarc import Run, biarcs, corners_of
+from workhold.geometry.biarc import FittedRun, biarcs, corners_of
 from workhold.geometry.curve_bounds import departure
 from workhold.geometry.rational import (
     Pieces,
@@ -70,13 +70,13 @@ def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     whole = whole_circle(pieces, tolerance)
     if whole is not None:
         return put_together([whole], False)
-    fitted: list[Run] = []
+    fitted: list[FittedRun] = []
     for first, last, run in runs:
         fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance)
     return put_together(fitted, False)
 
 
-def put_together(runs: list[Run], is_disguise: bool) -> FittedCurve:
+def put_together(runs: list[FittedRun], is_disguise: bool) -> FittedCurve:
     """One curve of runs that follow each other."""
     points = [runs[0].points[0]]
     for run in runs:
@@ -94,12 +94,12 @@ def breaks_of(pieces: Pieces) -> list[int]:
     return [k for k in range(1, len(pieces)) if k in corners or not smooth[k - 1]]
 
 
-def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, Run | None]]:
+def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedRun | None]]:
     """Longest rows of stretches between places that are one line or arc, as (first piece, last piece + 1, run).
 
     Stretches that are none come alone, with None.
     """
-    found: list[tuple[int, int, Run | None]] = []
+    found: list[tuple[int, int, FittedRun | None]] = []
     k = 0
     while k < len(places) - 1:
         run, taken, step = one_segment(pieces[places[k] : places[k + 1]], DISGUISE), k + 1, 1
@@ -119,7 +119,7 @@ def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, Run | N
     return found
 
 
-def one_segment(pieces: Pieces, tolerance: float) -> Run | None:
+def one_segment(pieces: Pieces, tolerance: float) -> FittedRun | None:
     """The line or arc, through both ends, that a curve is to within a tolerance; None where there is none."""
     start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     chord = dist(start, end)
@@ -128,7 +128,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> Run | None:
     line = Line(start, end)
     away = departure(pieces, line, tolerance)
     if isfinite(away):
-        return Run((start, end), (0.0,), away)
+        return FittedRun((start, end), (0.0,), away)
     circle = circle_near(pieces)
     if circle is None:
         return None
@@ -147,7 +147,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> Run | None:
     away = departure(pieces, arc, max(tolerance, as_arcs_are_written(pieces, arc)))
     if not isfinite(away):
         return None
-    return Run(*halves((start, end), sweep, (cx, cy)), away)
+    return FittedRun(*halves((start, end), sweep, (cx, cy)), away)
 
 
 def halves(ends: tuple[Point, Point], sweep: float, center: Point) -> tuple[tuple[Point, ...], tuple[float, ...]]:
@@ -160,7 +160,7 @@ def halves(ends: tuple[Point, Point], sweep: float, center: Point) -> tuple[tupl
     return (ends[0], middle, ends[1]), (tan(sweep / 8),) * 2
 
 
-def whole_circle(pieces: Pieces, tolerance: float) -> Run | None:
+def whole_circle(pieces: Pieces, tolerance: float) -> FittedRun | None:
     """The circle that a closed curve is to within a tolerance; None where it is none."""
     start = point_at(pieces, 0.0)
     if dist(start, point_at(pieces, float(len(pieces)))) > SHORTEST:
@@ -179,7 +179,7 @@ def whole_circle(pieces: Pieces, tolerance: float) -> Run | None:
     if not isfinite(away):
         return None
     first, second = ((cx + radius * cos(t), cy + radius * sin(t)) for t in (angle, angle + pi))
-    return Run((first, second, first), (sign, sign), away)
+    return FittedRun((first, second, first), (sign, sign), away)
 
 
 def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:

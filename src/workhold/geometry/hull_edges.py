@@ -1,7 +1,7 @@
 """Hull edges: the straight pieces of the boundary of an outline's convex hull, on which the outline can lie flush.
 
-Each is a common tangent of two corners, of a corner and a convex arc, or of two convex arcs, that has everything on its
-left; all pairs are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a
+Each is a common tangent of two corners, of a corner and a convex arc, or of two convex arcs, and has everything on its
+left. All pairs are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a
 drawing, are one edge: it may run over several faces and the gaps between them.
 
 Glossary
@@ -60,7 +60,7 @@ class HullEdge:
 
     @property
     def length(self) -> float:
-        """In mm."""
+        """Length in mm."""
         (ax, ay), (bx, by) = self.start.point, self.end.point
         return hypot(bx - ax, by - ay)
 
@@ -77,9 +77,16 @@ class HullEdge:
 
 
 @frozen(eq=False)
-class Pieces:
-    """N pieces: (N, 2) centres, (N,) radii, unit vectors (N, 2) to the middles of arcs and cosines (N,) of half their sweeps
-    (-2 for a joint, which supports in every direction), and the faces they are of."""
+class HullPieces:
+    """N pieces of an outline that may lie on its hull.
+
+    Parameters
+    ----------
+    center, radius : (N, 2) and (N,), in mm.
+    middle : unit vectors (N, 2) to the middles of arcs.
+    cosine : (N,) of half their sweeps; -2 for a joint, which supports in every direction.
+    faces : those that each piece is of.
+    """
 
     center: Array
     radius: Array
@@ -88,7 +95,7 @@ class Pieces:
     faces: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> Pieces:
+    def of(cls, segments: Sequence[Segment]) -> HullPieces:
         """The pieces of a closed chain of segments that may lie on its hull."""
         joints: dict[Point, tuple[int, ...]] = {}
         rows: list[tuple[float, ...]] = []
@@ -113,7 +120,7 @@ class Pieces:
         return np.asarray(along >= self.cosine[chosen])
 
 
-def tangents(pieces: Pieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
+def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
     """Common tangents of all pairs with both pieces on their left: indices (M,) at start and end, outward normals (M, 2).
 
     With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D runs forward.
@@ -135,7 +142,7 @@ def tangents(pieces: Pieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int
         yield one[start[good]], end[good], normal[good]
 
 
-def farthest(pieces: Pieces, normal: Array) -> Array:
+def farthest(pieces: HullPieces, normal: Array) -> Array:
     """Supports (M,) in mm of all pieces together in directions (M, 2)."""
     out = np.empty(len(normal))
     for first in range(0, len(normal), BLOCK):
@@ -161,7 +168,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
     [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
-    pieces = Pieces.of(segments)
+    pieces = HullPieces.of(segments)
     found: list[HullEdge] = []
     for start, end, normal in tangents(pieces):
         level = (pieces.center[start] * normal).sum(axis=1) + pieces.radius[start]
@@ -179,7 +186,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     return tuple(sorted(with_faces, key=lambda edge: (edge.start.faces[-1], edge.end.faces)))
 
 
-def end_of(pieces: Pieces, number: int, normal: Array) -> HullEnd:
+def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
     """The end of a hull edge on a piece."""
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()
@@ -198,7 +205,7 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
 
 
 def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
-    """A hull edge of which an end at a corner is told by the face that lies along the edge there, if one does."""
+    """A hull edge of which an end at a corner belongs to the face that lies along the edge there, if one does."""
     ends = []
     # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end the one before.
     for end, index in ((edge.start, -1), (edge.end, 0)):

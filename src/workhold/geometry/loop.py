@@ -4,7 +4,7 @@ Glossary
 --------
 vertices : (N, 3) rows x, y, bulge; segment k runs from vertex k to vertex k + 1, the last one back to vertex 0.
 joint : the common end of two neighbouring segments of a loop.
-place : words that tell a user where something is, such as ``loop 0, segment 3 (LINE 2F)``.
+place : words that say where something is, such as ``loop 0, segment 3 (LINE 2F)``.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray
 
 
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
-    """Refuse arcs of (N, 3) vertices with chords (N,) that reach too far, or whose radius is too large to reckon with.
+    """Refuses arcs of (N, 3) vertices with chords (N,) that reach too far, or whose radius is too large to reckon with.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def circular_segment(sweep: float) -> float:
 
 
 def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The same loop run the other way round, from the same first vertex."""
+    """The vertices of a loop run the other way round, from the same first vertex."""
     out = np.empty_like(vertices)
     order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
     out[:, :2] = vertices[order, :2]
@@ -186,7 +186,7 @@ def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def refuse_no_area(shape: LoopShape, loop: str) -> None:
-    """Refuse a loop that runs back along itself.
+    """Refuses a loop that runs back along itself.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> It
 
 
 def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
-    """Refuse a loop that crosses or touches itself anywhere but at its joints.
+    """Refuses a loop that crosses or touches itself anywhere but at its joints.
 
     Raises
     ------
@@ -239,7 +239,7 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
 
 
 def refuse_meeting_loops(a: LoopShape, b: LoopShape, place_a: Place, place_b: Place) -> None:
-    """Refuse two loops that cross or touch.
+    """Refuses two loops that cross or touch.
 
     Raises
     ------

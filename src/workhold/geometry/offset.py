@@ -1,7 +1,7 @@
 """Trimmed offset of an outline: the straight and circular pieces of the boundary of (part + disc).
 
 No general arrangement is needed. Every raw offset piece is cut where it meets another raw offset piece or a circle of the
-offset radius around a joint; a cut piece belongs to the boundary exactly when its middle is no nearer than the radius to
+offset radius around a joint. A cut piece belongs to the boundary exactly when its middle is no nearer than the radius to
 the outline, because nearness can only change at such a cut. Quadratic in the number of segments, exact up to rounding.
 
 Glossary
@@ -111,7 +111,7 @@ def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[
 def kept_parts(
     piece: Segment, points: Sequence[Point], is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 ) -> list[Segment]:
-    """The parts of a raw piece, cut at some points, that stay clear; ``is_clear`` tells it of (M, 2) points."""
+    """The parts of a raw piece, cut at some points, that stay clear; ``is_clear`` answers for (M, 2) points."""
     half = piece.half_extent
     inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]

@@ -1,7 +1,7 @@
 """Arcs that lie on one circle but for less than a drawing can mean, made one.
 
 Programs that write tool paths cut a circle into arcs whose sweeps are rounded each by itself, so that each has a centre and
-a radius of its own. To a peg they are one face, and the search would have to tell hundreds of nearly equal contacts apart.
+a radius of its own. To a peg they are one face, and the search would have to separate hundreds of nearly equal contacts.
 
 Glossary
 --------
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 def on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
-    """Put each chain of arcs that lies within ``READING`` of a circle onto it.
+    """Puts each chain of arcs that lies within ``READING`` of a circle onto it.
 
     The ends of a chain stay where they are, unless the whole loop is one. Done twice it changes nothing more.
 
@@ -121,7 +121,7 @@ def is_near(arc: Arc, center: Point, radius: float) -> bool:
 
 
 def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], count: int) -> None:
-    """Put the inner vertices of a chain on its circle, and write the bulges of the arcs between its vertices."""
+    """Puts the inner vertices of a chain on its circle, and writes the bulges of the arcs between its vertices."""
     (cx, cy), radius = circle
     places = [k % count for k in chain] + [(chain[-1] + 1) % count]
     angles = [atan2(out[k, 1] - cy, out[k, 0] - cx) for k in places]

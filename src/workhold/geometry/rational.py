@@ -5,7 +5,7 @@ Glossary
 piece : a rational Bézier curve of degree n, given by n + 1 rows (x w, y w, w) with weights w > 0; parameter 0 to 1.
 pieces : (P, n + 1, 3) array of pieces of one degree, each beginning where the one before ends: a curve.
 parameter : of a curve of P pieces, from 0 to P; its whole part is the number of the piece.
-blossom : the symmetric function of n arguments that a polynomial of degree n is the diagonal of; the control points of
+blossom : the symmetric function of n arguments that a polynomial of degree n is the diagonal of. The control points of
     any stretch are its values (Ramshaw, "Blossoms are polar forms", Computer Aided Geometric Design 6 (1989) 323-358).
 """
 
@@ -138,7 +138,7 @@ def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
 
 
 def raised(pieces: Pieces, degree: int) -> Pieces:
-    """The same curves with so high a degree (Farin, Curves and Surfaces for CAGD, section 6.1)."""
+    """Pieces of a higher degree that are the same curves (Farin, Curves and Surfaces for CAGD, section 6.1)."""
     while pieces.shape[1] <= degree:
         n = pieces.shape[1]
         share = (np.arange(n + 1) / n)[:, None]

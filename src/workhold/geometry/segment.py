@@ -96,8 +96,8 @@ class Arc:
     mid_angle : direction from the centre to the arc's middle, in radians.
     half_sweep : half the angle covered, in radians, in (0, pi]; pi is a full circle.
     sign : +1 for a convex arc (run counter-clockwise), -1 for a concave one (run clockwise).
-    rest : what rounding has left of the centre, (x, y) in mm; it counts where the arc is shallow, see
-        ``kernels.base.shallow``: its centre is so far away that the arc itself would be rounded.
+    rest : what rounding has left of the centre, (x, y) in mm. It counts where the arc is shallow
+        (``kernels.base.shallow``): its centre is so far away that the arc itself would be rounded.
     """
 
     center: Point
@@ -191,7 +191,7 @@ def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
 
 
 def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
-    """Build the segment from ``start`` to ``end`` with a DXF bulge (tan of a quarter of the sweep, 0 for a line).
+    """Builds the segment from ``start`` to ``end`` with a DXF bulge (tan of a quarter of the sweep, 0 for a line).
 
     The points differ; a bulge that is nearly 0 is a line. Formula: chord c, sweep 4 atan(bulge), radius
     c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).

@@ -55,13 +55,13 @@ def middle_of(segment: Segment) -> Point:
 
 
 @define(frozen=True, eq=False)
-class Outline:
+class CenteredOutline:
     """N segments about a point that every rotation onto itself keeps.
 
     Parameters
     ----------
-    points : (N, 4, 2) anchor (the middle, or the centre of a whole circle), start, end and centre (of a line its middle); of
-        a whole circle all are its centre.
+    points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole circle, of which
+        all four are the centre. The centre of a line is its middle.
     kinds : (N, 2) signed radius (0 for a line), and 1 for a whole circle.
     """
 
@@ -69,7 +69,7 @@ class Outline:
     kinds: Array
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> Outline:
+    def of(cls, segments: Sequence[Segment]) -> CenteredOutline:
         """The outline of some segments."""
         points, kinds = [], []
         for s in segments:
@@ -94,21 +94,21 @@ class Outline:
         off_center = np.flatnonzero(np.hypot(*self.points[:, 0].T) > SAME_AFTER_TURN)
         return int(off_center[0]) if len(off_center) else None
 
-    def angles(self, other: Outline) -> Array:
-        """By what angles (M,) in [0, 2 pi) the anchor of the first segment may be carried to those of another outline."""
+    def angles(self, other: CenteredOutline) -> Array:
+        """Angles (M,) in [0, 2 pi) that may carry the anchor of the first segment to anchors of another outline."""
         assert self.first is not None
         x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
         return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
 
-    def image(self, other: Outline, angle: float) -> NDArray[np.int64] | None:
+    def image(self, other: CenteredOutline, angle: float) -> NDArray[np.int64] | None:
         """The segment of another outline that a rotation carries each to, or None when one has no image."""
         assert self.first is not None
-        # One segment tells of most angles that they cannot be.
+        # One segment rules most angles out.
         one = self.images(other, angle, slice(self.first, self.first + 1))
         found = one if (one < 0).any() else self.images(other, angle, slice(None))
         return None if (found < 0).any() else found
 
-    def images(self, other: Outline, angle: float, chosen: slice) -> NDArray[np.int64]:
+    def images(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
         """The segment of another outline that a rotation carries each of some to, -1 for those without an image."""
         points, kinds = self.points[chosen], self.kinds[chosen]
         turned = np.stack(rotated(points[..., 0], points[..., 1], angle), axis=-1)
@@ -133,7 +133,7 @@ def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
 
     An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for it.
     """
-    outline = Outline.of(segments)
+    outline = CenteredOutline.of(segments)
     rotations = [Rotation(0.0, np.arange(len(segments), dtype=np.int64))]
     if outline.first is None:
         return rotations
@@ -154,20 +154,20 @@ def symmetries(segments: Sequence[Segment]) -> list[NDArray[np.int64]]:
     The identity comes first. Of concentric circles alone, which every motion about their centre carries, it is the only one.
     """
     images = [rotation.image for rotation in rotations_onto_itself(segments)]
-    outline = Outline.of(segments)
+    outline = CenteredOutline.of(segments)
     mirror = None if outline.first is None else mirrored_onto(outline, segments)
     return images if mirror is None else [*images, *(image[mirror] for image in images)]
 
 
 def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
     """Whether an outline turned over looks as before, once it is turned round as well."""
-    outline = Outline.of(segments)
+    outline = CenteredOutline.of(segments)
     return outline.first is None or mirrored_onto(outline, segments) is not None
 
 
-def mirrored_onto(outline: Outline, segments: Sequence[Segment]) -> NDArray[np.int64] | None:
+def mirrored_onto(outline: CenteredOutline, segments: Sequence[Segment]) -> NDArray[np.int64] | None:
     """The segment of an outline that a mirror image carries each to, or None where none carries it onto itself."""
-    mirrored = Outline.of([mirror_image(segment) for segment in segments])
+    mirrored = CenteredOutline.of([mirror_image(segment) for segment in segments])
     found = (mirrored.image(outline, angle) for angle in mirrored.angles(outline).tolist())
     return next((image for image in found if image is not None), None)
 

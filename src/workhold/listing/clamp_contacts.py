@@ -29,7 +29,7 @@ from workhold.proof.deciding import BALLS
 from workhold.statics.wrenches import outward_normals, wrenches
 
 if TYPE_CHECKING:
-    from workhold.proof.interval_newton import Box
+    from workhold.proof.interval_newton import CandidateBox
 
 __all__ = ["ClampContacts", "box_beside", "contacts_of_candidates", "contacts_on_wall"]
 
@@ -197,7 +197,7 @@ def sharpened(
     return taken, push, doubt
 
 
-def box_of(c: Candidates, number: int, problem: Problem) -> Box:
+def box_of(c: Candidates, number: int, problem: Problem) -> CandidateBox:
     """A contact of three locators and a clamp in the frame of the search."""
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
     x, y = (column[LOCATORS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
@@ -212,19 +212,19 @@ def box_beside(
     offsets: Sequence[tuple[float, float]],
     middle: tuple[float, float, float, float],
     problem: Problem,
-) -> Box:
+) -> CandidateBox:
     """A box about a proven contact of three locators and a clamp, as drawn, see
-    ``proof.interval_newton.Box``."""
+    ``proof.interval_newton.CandidateBox``."""
     from flint import ctx
 
     from workhold.proof.exact_rows import exact_rows
-    from workhold.proof.interval_newton import PRECISIONS, Box
+    from workhold.proof.interval_newton import PRECISIONS, CandidateBox
 
     frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)
     radii = [frame.standing.peg_radius] * TIP + [frame.moving.peg_radius]
     with ctx.workprec(PRECISIONS[-1]):
         rows = exact_rows(features, radii, problem)
-    return Box(rows, offsets, TIP, middle, reach)
+    return CandidateBox(rows, offsets, TIP, middle, reach)
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:

@@ -44,7 +44,7 @@ from workhold.model.toolkit import Toolkit
 from workhold.proof.deciding import BALLS, Account
 
 if TYPE_CHECKING:
-    from workhold.proof.interval_newton import Box
+    from workhold.proof.interval_newton import CandidateBox
 
 __all__ = ["ClampedSeats", "undecided_pairs"]
 
@@ -121,7 +121,7 @@ class ClampedSeats:
                     reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
 
-    def box(self, seats: Seats, seat: int, clamp: int) -> Box:
+    def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
         """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along
         x."""
         pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]

@@ -15,6 +15,7 @@ from workhold.fixels.fields import TABLES, Table
 from workhold.model.fixture import WALL
 from workhold.model.making import made_from_table
 from workhold.model.plate import Plate
+from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.model.units import Unit
 
@@ -68,6 +69,17 @@ class Fence(Plate):
             "and locator.",
         ),
     )
+    setup_words: ClassVar[SetupWords] = SetupWords(
+        standing="Fence and locator",
+        located_by="Fence and locator",
+        put=(
+            "Fix the fence along the rows, its edge {edge} from the centres of row 1, and put the {peg} in {holes} of the "
+            "{plate}."
+        ),
+        against="flush on the fence and against the {peg}",
+        touching="flush",
+        resting="flush on the fence",
+    )
 
     wall_offset: float
 
@@ -103,6 +115,22 @@ class Fence(Plate):
             Arrangement("edge2", (1, 2, *(pair.count(name) for name in names)), " ".join(pair))
             for pair in self.directions
         )
+
+    @property
+    def law(self) -> str:
+        """That of a fence, with however many clamps."""
+        return "fence"
+
+    @property
+    def datum(self) -> Datum:
+        """Where column A meets the fence."""
+        plate, wall, *_ = self.carriers
+        return Datum.at_wall(wall, plate)
+
+    @property
+    def half_turned(self) -> None:
+        """The fence stays at its side."""
+        return None
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp in all directions, and half the pitch."""

@@ -19,6 +19,7 @@ from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import TABLES, Table
 from workhold.model.flat import Flat
 from workhold.model.making import made_from_table, settle
+from workhold.model.setup_words import SetupWords
 from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
@@ -77,6 +78,13 @@ class Plate(Toolkit):
         rules="closes and is pressed together by the clamp",
         backwards="the clamp pulls, not when it pushes",
         holes="holes that the plate does not have",
+    )
+    setup_words: ClassVar[SetupWords] = SetupWords(
+        standing="Locators",
+        located_by="Three locators",
+        put="Put {peg}s in {holes} of the {plate}.",
+        against="against all {count} {peg}s",
+        touching="four pegs",
     )
 
     pitch: tuple[float, float]
@@ -176,6 +184,18 @@ class Plate(Toolkit):
     def ways(self) -> tuple[Plate, ...]:
         """The plate with one clamp in one direction each time."""
         return tuple(self.changed({"clamps": 1, "directions": (name,)}) for name in self.distinct_directions)
+
+    @property
+    def law(self) -> str:
+        """That of one clamp, or of two."""
+        return "plate" if self.clamps == 1 else "two clamps"
+
+    @property
+    def half_turned(self) -> tuple[int, ...] | None:
+        """The plate takes its own place, and each clamp that of the one that pushes the other way."""
+        names = [carrier.name for carrier in self.carriers]
+        ahead = [f"clamp {turned_half(carrier.direction)}" for carrier in self.carriers[1:]]
+        return (0, *(names.index(name) if name in names else -1 for name in ahead))
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""

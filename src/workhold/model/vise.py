@@ -11,7 +11,8 @@ from workhold.fixels.fields import TABLES, Table
 from workhold.model.flat import Flat
 from workhold.model.holes import Holes
 from workhold.model.making import made_from_table, settle
-from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.model.setup_words import SetupWords
+from workhold.model.toolkit import NAMED, Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
@@ -27,6 +28,13 @@ WORDING = Wording(
     rules="keeps the smallest gap, closes and clamps",
     backwards="the jaws are pressed apart, not when they close",
     holes="holes that the jaws do not have, or too near for the bodies",
+)
+SETUP = SetupWords(
+    standing="Pegs",
+    located_by="Pegs of the {plate}s",
+    put="Put {peg}s in {holes}.",
+    against="",
+    touching="four pegs",
 )
 
 
@@ -64,12 +72,14 @@ class Vise(Toolkit):
 
     kind: ClassVar[str] = "vise"
     table: ClassVar[Table] = TABLES["vise"]
+    file_key: ClassVar[str] = "vise"
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
     clamping: ClassVar[int] = 1
     symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
     wording: ClassVar[Wording] = WORDING
+    setup_words: ClassVar[SetupWords] = SETUP
 
     pitch: tuple[float, float]
     columns: int
@@ -109,6 +119,11 @@ class Vise(Toolkit):
         return left, right
 
     @property
+    def law(self) -> str:
+        """That of two jaws."""
+        return "vise"
+
+    @property
     def gap(self) -> float:
         """The smallest gap in mm."""
         return self.min_gap
@@ -138,5 +153,6 @@ class OpeningVise(Vise):
     """
 
     kind: ClassVar[str] = "opening-vise"
+    file_key: ClassVar[str] = NAMED
     clamping: ClassVar[int] = -1
     wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")

@@ -1,4 +1,4 @@
-"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, where doubles do not tell it well enough.
+"""What locators take up of a clamp's force, to the last digit: in ball arithmetic, where doubles are not enough.
 
 Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through the point in
 which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far below what decides. And a
@@ -14,7 +14,7 @@ from attrs import frozen
 from flint import arb, ctx
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.interval_newton import PRECISIONS, Box, Frame, Places, places, refined
+from workhold.proof.interval_newton import PRECISIONS, BoxContacts, CandidateBox, SingularFrame, places, refined
 
 __all__ = ["SharpReactions", "rounded", "sharp_reactions"]
 
@@ -27,18 +27,20 @@ ROUNDING = 2.3e-16
 
 @frozen
 class SharpReactions:
-    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and its push: the share of
-    the clamp's own force that such a unit is."""
+    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and the clamp's push.
+
+    The push is the share of the clamp's own force that such a unit is.
+    """
 
     taken: tuple[float, float, float]
     doubt: float
     push: float
 
 
-def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
+def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
     """The reactions at the one solution of a box of three locators and a clamp; None where it cannot be made out."""
     with ctx.workprec(PRECISIONS[-1]):
-        frame = Frame.of(box, limits)
+        frame = SingularFrame.of(box, limits)
         place: list[arb] | None = frame.start()
         for _ in range(MOST_STEPS):
             assert place is not None
@@ -52,7 +54,7 @@ def sharp_reactions(box: Box, limits: Limits) -> SharpReactions | None:
     return None
 
 
-def reactions(here: Places) -> list[arb]:
+def reactions(here: BoxContacts) -> list[arb]:
     """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w by Cramer's rule, w the clamp's wrench about the first peg."""
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
     whole = determinant(wrenches[:LOCATORS])

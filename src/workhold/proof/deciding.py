@@ -1,6 +1,6 @@
 """Deciding which records are fixtures: in double precision where that is enough, else in ball arithmetic.
 
-A record tells where four contacts are and how far the exact ones may be from there. It goes through up to four stages, and
+A record holds where four contacts are and how far the exact ones may be from there. It goes through up to four stages, and
 leaves with the first that decides it:
 
 1. a certificate of its solution (``kernels.proof.newton_kantorovich``), with all rules decided by enclosures;
@@ -32,7 +32,7 @@ from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
 from workhold.proof.degenerate import hold_nothing
 
 if TYPE_CHECKING:
-    from workhold.proof.interval_newton import Outcome
+    from workhold.proof.interval_newton import BoxOutcome
 
 __all__ = ["Account", "Course", "decided", "is_standing", "merged", "peg_integers"]
 
@@ -54,7 +54,7 @@ class Course:
     Parameters
     ----------
     total : records to decide.
-    progress : told the fraction done and how many records still may be fixtures.
+    progress : called with the fraction done and how many records still may be fixtures.
     cancel : when set, what takes long is left out, and all that is not decided soon after.
     """
 
@@ -99,8 +99,11 @@ class Course:
 
 @define(frozen=True)
 class Account:
-    """What became of records: how many there were, proven fixtures, how many the first certificate left open, how many were
-    pairs of chords that the engine had given up, the undecided, and how many were left when the work was stopped."""
+    """What became of records: how many there were, and how many are proven fixtures.
+
+    Escalated are records that the first certificate left open, and left are those not decided when the work was stopped.
+    Given up are pairs of chords that the engine did not follow to their crossings.
+    """
 
     records: int
     verified: int
@@ -146,12 +149,12 @@ def box_reach(records: Array, length: float) -> Array:
 
 
 def decided(records: Array, problem: Problem, course: Course | None = None) -> tuple[Array, Account]:
-    """Decide records.
+    """Decides records.
 
     Parameters
     ----------
     records : (N, 19) from an engine, laid out as ``kernels.contact.record`` says.
-    course : told how far the work has come, and asked whether to stop.
+    course : notes how far the work has come, and is asked whether to stop.
 
     Returns
     -------
@@ -188,7 +191,7 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
 
 
 def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
-    """Decide open records by the later stages: the fixtures among them, what stays undecided, and how many were left when
+    """Decides open records by the later stages: the fixtures among them, what stays undecided, and how many were left when
     the work was stopped."""
     if len(records) == 0:
         return records, [], 0
@@ -278,16 +281,16 @@ def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[
     return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons, left
 
 
-def record_in_balls(row: Array, problem: Problem, course: Course) -> Outcome | None:
+def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome | None:
     """One record decided in ball arithmetic; None when the work was stopped before."""
-    from workhold.proof.interval_newton import Box, Outcome, solutions_in
+    from workhold.proof.interval_newton import BoxOutcome, CandidateBox, solutions_in
 
     length = problem.wrench_length
     turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])
     if not np.isfinite(row).all():
-        return Outcome((), UNBOUNDED)
+        return BoxOutcome((), UNBOUNDED)
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
-    box = Box(
+    box = CandidateBox(
         features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
         offsets=peg_places(row, problem.frame.lattice),
         standing=int(row[record.STANDING]),

@@ -1,25 +1,29 @@
-r"""Contacts that hold nothing wherever they are, told from what they touch and from the holes that their pegs stand in.
+r"""Contacts that hold nothing wherever they are, recognized by what they touch and by the holes that their pegs stand in.
 
-Four wrenches close only if every three of them are independent (``kernels.contact.closure``), and with two clamps those of
-the three standing pegs must be. Where lengths of a part and of a lattice agree exactly, some three are dependent in the
-only place where they can touch. Such a place is a double root of the contact equations or one of a continuum of solutions:
-what the rounding of a drawing makes of it takes long to decide, and means nothing. Each family is a theorem:
+Four wrenches close only if every three of them are independent (``kernels.contact.closure``). With two clamps the wrenches
+of the three standing pegs must be independent. Where lengths of a part and of a lattice agree exactly, some three are
+dependent in the only place where they can touch. Such a place is a double root of the contact equations or one of a
+continuum of solutions. What the rounding of a drawing makes of it takes long to decide, and means nothing. Each family is a
+theorem:
 
 parallels : on three parallel lines all normals are parallel.
 centre : on three arcs about one centre all normals pass through it.
-squeezed : two pegs of one carrier as far apart, or as near, as two features allow touch them on a common normal, so that
-    both wrenches lie on one line. For arcs of radii r and s whose centres are D apart the most is D + r + s, the least
-    2 max(D, r, s) - (D + r + s); for a line h from an arc's centre the least is h - r, for parallel lines their distance.
+antipodal : two pegs of one carrier as far apart, or as near, as two features allow touch them on a common normal, so that
+    both wrenches lie on one line. For arcs of radii r and s whose centres are D apart the most is D + r + s. The least is
+    2 max(D, r, s) - (D + r + s); for a line h from an arc's centre it is h - r, for parallel lines their distance.
 turning : two of three pegs of one carrier, on arcs about one centre, fix where it is on the carrier; a turn about it is
-    left. The third peg goes around it at a distance D. It meets a line h from the centre where D cos phi = h, and an arc
-    of radius r about a point e from the centre where it is r from that, which is between \|D - e\| and D + e. With D = h,
-    or r at an end of its range, it is there at phi = 0 alone, and its normal passes through the centre as the others do.
-sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. When
-    the third peg's way is just the radius from an arc's centre, it touches that arc where its normal is square to the way,
-    as the others are.
+    left. The third peg goes around it at a distance D. It meets a line h from the centre where D cos phi = h. It meets an
+    arc of radius r about a point e from the centre where it is r from that, which is between \|D - e\| and D + e. With
+    D = h, or r at an end of its range, it is there at phi = 0 alone. Its normal then passes through the centre as well.
+sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. The
+    third peg's way may be just the radius from an arc's centre. Then it touches that arc where its normal is square to the
+    way, as the other two normals are.
+
+Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly shaped objects",
+IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
 
 Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the exact one by m,
-normals are off by sqrt(2 m / r), with r the smallest length that bends; in ``turning`` the third passes the centre at
+normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the third passes the centre at
 sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most ``DEPENDENT``, or this part of L.
 """
 
@@ -46,7 +50,7 @@ Bools = NDArray[np.bool_]
 Points = NDArray[np.complex128]
 
 
-class Touched(NamedTuple):
+class TouchedFeatures(NamedTuple):
     """What one peg touches in each of N records; points and directions of the plane are complex numbers.
 
     Parameters
@@ -62,10 +66,10 @@ class Touched(NamedTuple):
     radius: Array
     place: Points
 
-    def take(self, numbers: NDArray[np.int64]) -> Touched:
-        """The same of some records."""
+    def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
+        """What the peg touches in some of the records."""
         is_arc, middle, axis, radius, place = self
-        return Touched(is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers])
+        return TouchedFeatures(is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers])
 
 
 def hold_nothing(records: Array, problem: Problem) -> Bools:
@@ -78,7 +82,7 @@ def hold_nothing(records: Array, problem: Problem) -> Bools:
     out = np.zeros(len(records), np.bool_)
     for one, other in combinations(asked, 2):
         together = (one >= standing) == (other >= standing)
-        out |= together & squeezed(pegs[one], pegs[other])
+        out |= together & antipodal(pegs[one], pegs[other])
     for triple in combinations(asked, 3):
         a, b, c = (pegs[n] for n in triple)
         out |= parallel(a, b) & parallel(b, c) & parallel(a, c)
@@ -93,14 +97,14 @@ def hold_nothing(records: Array, problem: Problem) -> Bools:
     return out
 
 
-def touched(records: Array, rows: Array, lattice: Lattice) -> list[Touched]:
+def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatures]:
     """What each of the four pegs of records touches, given the rows (N, 4, 12) of their features."""
     is_arc = rows[..., IS_ARC] != 0.0
     middle, axis = rows[..., X] + 1j * rows[..., Y], rows[..., AXIS_X] + 1j * rows[..., AXIS_Y]
     radius = np.where(is_arc, rows[..., RADIUS], 0.0)
     columns, lines = records[:, record.COLUMNS : record.ROWS], records[:, record.ROWS : record.PSI]
     place = columns * lattice.pitch_x + 1j * lines * lattice.pitch_y
-    return [Touched(is_arc[:, k], middle[:, k], axis[:, k], radius[:, k], place[:, k]) for k in range(4)]
+    return [TouchedFeatures(is_arc[:, k], middle[:, k], axis[:, k], radius[:, k], place[:, k]) for k in range(4)]
 
 
 def cross(a: Points, b: Points) -> Array:
@@ -113,17 +117,17 @@ def agree(one: Array, other: Array, bends: Array) -> Bools:
     return np.asarray(np.abs(one - other) <= DEPENDENT**2 / 2.0 * bends)
 
 
-def parallel(a: Touched, b: Touched) -> Bools:
+def parallel(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
     """Where both are lines, and parallel."""
     return np.asarray(~a.is_arc & ~b.is_arc & (np.abs(cross(a.axis, b.axis)) <= PARALLEL))
 
 
-def concentric(a: Touched, b: Touched) -> Bools:
+def concentric(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
     """Where both are arcs about one centre."""
     return np.asarray(a.is_arc & b.is_arc & (np.abs(a.middle - b.middle) <= SAME_CENTER))
 
 
-def squeezed(a: Touched, b: Touched) -> Bools:
+def antipodal(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
     """Where two pegs of one carrier are as far apart or as near as what they touch allows."""
     between, apart = np.abs(b.place - a.place), np.abs(b.middle - a.middle)
     whole = apart + a.radius + b.radius
@@ -144,7 +148,7 @@ def both(known: Array) -> Iterator[Array]:
     yield -root
 
 
-def turning(records: Array, a: Touched, b: Touched, c: Touched, length: float) -> Bools:
+def turning(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float) -> Bools:
     """Where the pegs of a and b turn about one centre, and that of c reaches what it touches at one place of its way."""
     chord = b.place - a.place
     apart = np.where(chord == 0.0, 1.0, np.abs(chord))
@@ -169,7 +173,7 @@ def turning(records: Array, a: Touched, b: Touched, c: Touched, length: float) -
     return np.asarray(concentric(a, b) & some & every)
 
 
-def sliding(records: Array, a: Touched, b: Touched, c: Touched) -> Bools:
+def sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures) -> Bools:
     """Where the pegs of a and b slide along parallel lines, and that of c on a way that touches an arc."""
     chord, third = b.place - a.place, c.place - a.place
     size = np.where(chord == 0.0, 1.0, np.abs(chord))

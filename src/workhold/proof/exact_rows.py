@@ -1,7 +1,7 @@
 """Rows of contact features as the drawing's vertices and bulges make them, in balls.
 
 A row in doubles is off by the last digit of a radius or a direction. Where a peg nearly grazes an arc at a share p of its
-normal, that turns the normal by so much over p, and forces per unit of the clamp's own by so much over p squared.
+normal, that error over p turns the normal. Over p squared it changes forces per unit of the clamp's own.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Whether a locator and a clamp press a part that lies flush on a wall against both, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice, as the
-exact numbers that their doubles are, to as many digits as it takes.
+Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice. Their
+doubles are taken as exact numbers, and balls have as many digits as it takes.
 """
 
 from __future__ import annotations
@@ -123,8 +123,10 @@ def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> Sh
 
 @frozen
 class SharpPlace:
-    """A contact of a peg in a row: its centre in mm along the hull edge from its start and above it, the outward normal, and
-    the distance in mm to the nearer end of its feature."""
+    """A contact of a peg in a row: its centre in mm along the hull edge from its start and above it, and the outward normal.
+
+    The slack is its distance in mm to the nearer end of its feature.
+    """
 
     point: list[float]
     normal: list[float]
@@ -134,8 +136,10 @@ class SharpPlace:
 def sharp_place(
     edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
 ) -> SharpPlace | None:
-    """The contact of a peg in a row of a plate with a feature of the part on a hull edge, to the last digit; None where they
-    do not meet."""
+    """The contact of a peg in a row of a plate with a feature, the part on a hull edge, to the last digit.
+
+    None where they do not meet.
+    """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         start, tangent, _ = line_of(problem.workpiece.hull_edges[edge], problem.workpiece.center)
         level = arb(plate.offset[1]) + arb(plate.pitch[1]) * row
@@ -162,8 +166,8 @@ Contact = tuple[Point, Point, list[arb]]
 def contacts_of(
     candidate: Candidate, problem: Problem, plate: Carrier, as_drawn: bool = False
 ) -> tuple[arb, Contact, Contact] | None:
-    """The length of the hull edge, and the contacts of locator and clamp as :func:`touched` tells them; None where one of
-    them touches nothing."""
+    """The length of the hull edge, and the contacts of locator and clamp as of :func:`touched`; None where one touches
+    nothing."""
     edge = problem.workpiece.hull_edges[candidate.edge]
     start, tangent, wall = line_of(edge, problem.workpiece.center)
     level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
@@ -185,8 +189,9 @@ def contacts_of(
 def reactions_on_fence(
     candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float], as_drawn: bool
 ) -> SharpReactions | None:
-    """Forces of the wall's two ends and the locator per unit of that on the clamp's face, and its push, to the last digit;
-    None where they cannot be made out.
+    """Forces of the wall's two ends and the locator per unit of the force on the clamp's face, and the clamp's push.
+
+    They are right to the last digit; None where they cannot be made out.
 
     Parameters
     ----------

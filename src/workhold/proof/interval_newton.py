@@ -3,8 +3,8 @@
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if there is one. At
 a nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
 directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in which some rule
-is broken everywhere, are dropped; the interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
-there is none or exactly one solution, which then is judged at rising precision; what remains is halved. What is left after
+is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
+there is none or exactly one solution, which then is judged at rising precision. What remains is halved. What is left after
 ``MOST_BOXES`` boxes stays undecided.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
@@ -39,7 +39,7 @@ from workhold.kernels.base.feature import (
 from workhold.kernels.base.given import Limits
 from workhold.model.proof import AT_AN_EDGE, NEARLY_DOUBLE
 
-__all__ = ["Box", "Outcome", "contact_value", "solutions_in"]
+__all__ = ["CandidateBox", "BoxOutcome", "contact_value", "solutions_in"]
 
 PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
@@ -50,7 +50,7 @@ SMALLER = 0.7
 
 
 @frozen
-class Box:
+class CandidateBox:
     """A candidate: features touched, pegs' places, and where its solution may be.
 
     Parameters
@@ -70,7 +70,7 @@ class Box:
 
 
 @frozen
-class Outcome:
+class BoxOutcome:
     """What became of a box: the middles of the solutions proven to be fixtures, and why it is undecided, if it is."""
 
     fixtures: tuple[tuple[float, float, float, float], ...]
@@ -78,7 +78,7 @@ class Outcome:
 
 
 @frozen(eq=False)
-class Places:
+class BoxContacts:
     """Contacts on a box of unknowns: centres, unit normals (outward), arms from the first peg to each, equations, their
     Jacobian, all as balls."""
 
@@ -104,7 +104,7 @@ def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
     return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
 
 
-def places(box: Box, unknowns: Sequence[arb]) -> Places:
+def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
     """Everything about the four contacts on a box of unknowns."""
     psi, x, y, separation = unknowns
     cosine, sine = psi.cos(), psi.sin()
@@ -129,12 +129,14 @@ def places(box: Box, unknowns: Sequence[arb]) -> Places:
         arms.append(turned)
         values.append(contact_value(row, center))
         slopes.append(slope)
-    return Places(box.features, centers, normals, arms, values, slopes, (cosine, sine))
+    return BoxContacts(box.features, centers, normals, arms, values, slopes, (cosine, sine))
 
 
-def slacks(box: Box, here: Places, minors: Sequence[arb], limits: Limits) -> list[arb]:
-    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign); of
-    one of two clamps ends, the determinant of the standing pegs' wrenches, and its push."""
+def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
+    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign).
+
+    Of one of two clamps they are ends, the determinant of the standing pegs' wrenches, and its push.
+    """
     out = [
         slack
         for row, center in zip(box.features, here.centers, strict=True)
@@ -178,7 +180,7 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
     return [(half - place) * scale - margin + row[HIGH_SLACK], (half + place) * scale - margin + row[LOW_SLACK]]
 
 
-def wrench_minors(here: Places, length: float) -> list[arb]:
+def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
     """Signed 3 x 3 minors of the wrenches (n, q x n / L); in balls, as no kernel is."""
     n = here.normals
     # The minors do not depend on the point that moments are taken about; from the first peg the others are known best.
@@ -203,7 +205,7 @@ def wrench_minors(here: Places, length: float) -> list[arb]:
 
 
 @frozen(eq=False)
-class Frame:
+class SingularFrame:
     """Directions of the Jacobian's singular vectors at the middle of a box.
 
     Parameters
@@ -214,14 +216,14 @@ class Frame:
     length : L in mm.
     """
 
-    box: Box
+    box: CandidateBox
     right: NDArray[np.float64]
     combining: arb_mat
     turning: arb_mat
     length: float
 
     @classmethod
-    def of(cls, box: Box, limits: Limits) -> Frame:
+    def of(cls, box: CandidateBox, limits: Limits) -> SingularFrame:
         """The frame of a box."""
         slopes = places(box, [arb(m) for m in box.middle]).slopes
         jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
@@ -243,26 +245,27 @@ class Frame:
             m + (s / self.length if j == 0 else s) for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
         ]
 
-    def places(self, place: Sequence[arb]) -> Places:
+    def places(self, place: Sequence[arb]) -> BoxContacts:
         """The contacts at a place in the frame."""
         return places(self.box, self.unknowns(place))
 
-    def values(self, here: Places) -> list[arb]:
+    def values(self, here: BoxContacts) -> list[arb]:
         """The combined contact equations."""
         return list((self.combining * arb_mat(4, 1, here.values)).entries())
 
-    def slopes(self, here: Places) -> list[list[arb]]:
+    def slopes(self, here: BoxContacts) -> list[list[arb]]:
         """The Jacobian of the combined contact equations by the frame's coordinates."""
         scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
         slopes = self.combining * arb_mat(scaled) * self.turning
         return [[slopes[i, j] for j in range(4)] for i in range(4)]
 
-    def step(self, place: list[arb], here: Places, regular: bool = False) -> tuple[list[arb] | None, bool]:
+    def step(self, place: list[arb], here: BoxContacts, regular: bool = False) -> tuple[list[arb] | None, bool]:
         """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
         whether it holds exactly one. ``here`` are the contacts at the place.
 
         A ``regular`` step combines the equations by the inverse of their own Jacobian at the place's middle, where it has
-        one: near a simple solution next to a double one that of the whole box's middle does not tell the directions apart.
+        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle does not separate the
+        directions.
         """
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(self.places(middle)), self.slopes(here)
@@ -295,10 +298,10 @@ def never() -> bool:
     return False
 
 
-def solutions_in(box: Box, limits: Limits, is_stopped: Callable[[], bool] = never) -> Outcome | None:
-    """Find every fixture of a box, or say why that cannot be decided; None when the work was stopped before."""
+def solutions_in(box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = never) -> BoxOutcome | None:
+    """Finds every fixture of a box, or says why that cannot be decided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
-        frame = Frame.of(box, limits)
+        frame = SingularFrame.of(box, limits)
         waiting = [frame.start()]
         roots: list[list[arb]] = []
         looked_at = 0
@@ -308,7 +311,7 @@ def solutions_in(box: Box, limits: Limits, is_stopped: Callable[[], bool] = neve
             if is_stopped():
                 return None
             if looked_at > MOST_BOXES:
-                return Outcome((), NEARLY_DOUBLE)
+                return BoxOutcome((), NEARLY_DOUBLE)
             here = frame.places(place)
             if is_empty(box, here, limits):
                 continue
@@ -332,7 +335,7 @@ def is_smaller(part: list[arb], place: list[arb]) -> bool:
     return any(one.rad() < SMALLER * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
-def is_empty(box: Box, here: Places, limits: Limits) -> bool:
+def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
     """Whether some contact equation has no zero, or some rule is broken, everywhere in a place."""
     if any(value > 0 or value < 0 for value in here.values):
         return True
@@ -355,7 +358,7 @@ def halves(place: list[arb]) -> list[list[arb]]:
     return out
 
 
-def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Outcome:
+def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
     """Judge the solutions of a box by the rules, at rising precision."""
     fixtures: list[tuple[float, float, float, float]] = []
     reason = ""
@@ -375,10 +378,10 @@ def judged(frame: Frame, roots: list[list[arb]], limits: Limits) -> Outcome:
         if verdict > 0:
             psi, x, y, separation = (float(u.mid()) for u in unknowns)
             fixtures.append((psi, x, y, separation))
-    return Outcome(tuple(fixtures), reason)
+    return BoxOutcome(tuple(fixtures), reason)
 
 
-def refined(frame: Frame, root: list[arb]) -> list[arb]:
+def refined(frame: SingularFrame, root: list[arb]) -> list[arb]:
     """A proven solution to the precision in force."""
     for _ in range(12):
         closer, _ = frame.step(root, frame.places(root))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from threading import Event
 
 from attrs import evolve
@@ -30,9 +31,9 @@ from workhold.search.cells import Block, run_blocks
 from workhold.search.contacts import contacts_of
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.preview import Preview, Previews
+from workhold.search.seated import Receiver, receive_seated, seated_answer
 from workhold.search.shares import answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
-from workhold.seating.first import Receiver, receive_seated, seated_answer
 
 __all__ = ["Receiver", "answer", "design"]
 
@@ -170,10 +171,7 @@ def answer_with_seating(
     receiver: Receiver | None,
 ) -> Result:
     """The answer with the seating of the first fixtures, see :func:`answer`."""
-
-    def search(asked: Query, share: Progress | None, receiver: Receiver | None = None) -> Result:
-        return answer(asked, threads=threads, progress=share, cancel=cancel, preview=preview, receiver=receiver)
-
+    search = partial(answer, threads=threads, preview=preview)
     if receiver is None:
         return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
     return receive_seated(query, search, receiver, threads=threads, progress=progress, cancel=cancel)

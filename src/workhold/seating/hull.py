@@ -10,10 +10,10 @@ from attrs import define, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import LEAST_HULL_EDGE, SAME_POSE, TOUCHING
-from workhold.geometry.hull_edges import Pieces
+from workhold.geometry.hull_edges import HullPieces
 from workhold.kernels.seating.walls import SUPPORTS
 from workhold.model.workpiece import Workpiece
-from workhold.seating.touch import Touch
+from workhold.seating.boundary_pieces import Touch
 
 __all__ = ["Hull", "HullSide"]
 
@@ -51,7 +51,7 @@ class Hull:
     def of(cls, workpiece: Workpiece) -> Hull:
         """The hull of a part, about the centre of its box."""
         outer = [face for face in workpiece.faces if face.number < len(workpiece.loops[0])]
-        pieces = Pieces.of([face.segment for face in outer])
+        pieces = HullPieces.of([face.segment for face in outer])
         rows = np.concatenate(
             [
                 pieces.center - np.array(workpiece.center),

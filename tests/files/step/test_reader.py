@@ -37,7 +37,7 @@ from step_shapes import (
 )
 
 from workhold.errors import InputError
-from workhold.files.outline.curves import Curves
+from workhold.files.outline.curves import CurveReader
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.step.reader import refuse_missing_volume
 from workhold.files.step.regions import edge_piece
@@ -181,7 +181,7 @@ def test_a_rounded_rib_reaches_out_by_its_radius(tmp_path: Path) -> None:
 def test_a_circle_may_look_either_way(up: int) -> None:
     """A quarter circle about an axis that points down runs clockwise seen from above."""
     circle = gp_Circ(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, up), gp_Dir(1, 0, 0)), 5)
-    piece = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge(), Curves(None), "edge")
+    piece = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge(), CurveReader(None), "edge")
     assert piece is not None
     assert piece[1] == pytest.approx([up * tan(pi / 8)])
     assert np.array(piece[0]) == pytest.approx(np.array([(5, 0), (0, 5 * up)]), abs=1e-12)

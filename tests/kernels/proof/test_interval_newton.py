@@ -13,7 +13,7 @@ from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, RECORD_LENGTH, 
 from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof import variation as variations
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, OPEN
-from workhold.proof.interval_newton import Box, solutions_in
+from workhold.proof.interval_newton import CandidateBox, solutions_in
 
 LENGTH = 20.0
 LIMITS = Limits(-100.0, 0.0, LENGTH, 9.0, 1.0, 0.0, 0.0)
@@ -48,7 +48,7 @@ def decided(row: NDArray[np.float64]) -> list[float]:
     places = list(zip(row[0, 5:9].tolist(), row[0, 9:13].tolist(), strict=True))
     middle = (float(row[0, PSI]), float(row[0, TAIL_X]), float(row[0, TAIL_Y]), float(row[0, SEPARATION]))
     widths = (reach, radius, radius, 2.0 * (radius + LENGTH * reach))
-    outcome = solutions_in(Box(ladders.FEATURES, places, 2, middle, widths), LIMITS)
+    outcome = solutions_in(CandidateBox(ladders.FEATURES, places, 2, middle, widths), LIMITS)
     assert outcome is not None and outcome.reason == ""
     return [fixture[0] for fixture in outcome.fixtures]
 

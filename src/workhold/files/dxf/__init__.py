@@ -2,6 +2,6 @@
 
 import logging
 
-# The library tells its logger of each oddity of a file, and as it is loaded of its own affairs; without a handler Python
+# The library logs each oddity of a file, and its own affairs as it is loaded; without a handler Python
 # would print that.
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())

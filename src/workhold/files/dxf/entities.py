@@ -2,9 +2,9 @@
 
 Glossary
 --------
-OCS : object coordinate system. Flat entities carry an extrusion direction; (0, 0, 1) is the drawing plane seen from
-    above, (0, 0, -1) the same plane seen from below, whose x runs the other way (DXF reference, "arbitrary axis
-    algorithm"). Any other direction is tilted and refused.
+OCS : object coordinate system. Flat entities carry an extrusion direction (DXF reference, "arbitrary axis algorithm").
+    (0, 0, 1) is the drawing plane seen from above, (0, 0, -1) the same plane seen from below, whose x runs the other way.
+    Any other direction is tilted and refused.
 raw chain : points (x, y, z) and bulges before units and block placements.
 """
 
@@ -188,9 +188,10 @@ def spline(entity: Any) -> RawChain:
 
 
 def through_fit_points(entity: Any) -> RawChain:
-    """A SPLINE of fit points alone, as CAD programs draw it: the cubic of continuous curvature through them whose parameter
-    grows as the chords are long, with the tangents given at its ends, or else without curvature there; periodic where it is
-    closed.
+    """A SPLINE of fit points alone, as CAD programs draw it.
+
+    It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its ends it has the
+    tangents given, or else no curvature; where it is closed, it is periodic.
 
     Raises
     ------

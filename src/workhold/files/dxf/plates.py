@@ -74,7 +74,7 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
 
 
 def write_plates_dxf(plates: Sequence[JawPlate], path: str | Path) -> None:
-    """Write jaw plates as a DXF drawing.
+    """Writes jaw plates as a DXF drawing.
 
     Raises
     ------

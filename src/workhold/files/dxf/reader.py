@@ -15,7 +15,7 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.files.dxf.walk import Nest, Walk
+from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing
 from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
@@ -50,7 +50,7 @@ def read_dxf(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline entities of a DXF file's model space.
+    """Reads the outline entities of a DXF file's model space.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def read_document(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
+    """Reads the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
 
     Raises
     ------
@@ -91,9 +91,9 @@ def read_document(
     """
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
-    walk = Walk(document, layers, fit)
+    walk = DxfWalk(document, layers, fit)
     try:
-        walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
+        walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
         walk.refuse_missing_layers()
     except InputError:
         if known is not None:
@@ -106,7 +106,7 @@ def read_document(
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuse what is plainly no DXF, or cut short, before ezdxf tries its best with it.
+    """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it.
 
     Raises
     ------

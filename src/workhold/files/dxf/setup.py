@@ -57,7 +57,7 @@ def write_setup_dxf(
     zero: PartZero | None = None,
     clearance: float = CLEARANCE,
 ) -> None:
-    """Write a set-up as a DXF drawing; the same set-up gives the same bytes.
+    """Writes a set-up as a DXF drawing; the same set-up gives the same bytes.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def setup_dxf(
             document.layers.add(name, color=color)
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
-        add_wall(space, seen)
+        add_walls(space, seen)
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
@@ -110,19 +110,19 @@ def layer_of(carrier: Carrier) -> str:
     >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
-    if carrier.on is not None or carrier.is_wall or carrier.name == carrier.noun:
+    if not carrier.has_lattice or carrier.name == carrier.noun:
         return carrier.noun.upper()
     return f"{carrier.noun}_{carrier.name}".upper()
 
 
 def peg_layer(carrier: Carrier) -> str:
     """The layer that a carrier's pegs are on: of a clamp that of its body."""
-    return layer_of(carrier) if carrier.on is not None else f"{carrier.peg}s".upper()
+    return f"{carrier.peg}s".upper() if carrier.has_lattice else layer_of(carrier)
 
 
 def setting_layer(mover: Carrier) -> str:
     """The layer of the length to set on what moves."""
-    return "OPENING" if mover.on is None else f"{layer_of(mover)}_SETTING"
+    return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
 
 
 def layers_of(toolkit: Toolkit) -> dict[str, int]:
@@ -135,7 +135,7 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
     moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
     return {
         **PART,
-        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if not carrier.is_wall},
+        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if carrier.contact.is_placed},
         **HOLES,
         **{setting_layer(carrier): SETTING for carrier in moving},
         **OTHERS,
@@ -145,7 +145,7 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
 
 @contextmanager
 def fixed_stamps() -> Iterator[None]:
-    """Make ezdxf write no time and no random numbers while the block runs."""
+    """Makes ezdxf write no time and no random numbers while the block runs."""
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
     try:
@@ -155,7 +155,7 @@ def fixed_stamps() -> Iterator[None]:
 
 
 def add_part(space: Modelspace, part: Workpiece) -> None:
-    """Add the loops of the part in its pose."""
+    """Adds the loops of the part in its pose."""
     number = 0
     for loop in part.loops:
         face = next(face for face in part.faces if number in face.segments)
@@ -167,7 +167,7 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
 
 
 def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Add the pegs, as points if they have no size, the names of their holes, and where the cutter is not to go."""
+    """Adds the pegs, as points if they have no size, the names of their holes, and where the cutter is not to go."""
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
@@ -182,9 +182,7 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 
 def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Add the clamps: the circle of each tip, its body from the hole to the tip, what to keep out of, and behind it an arrow
-    along its push.
-    """
+    """Adds the clamps: each tip, its body from the hole, what to keep out of, and an arrow along its push."""
     for clamp in seen.clamps:
         layer, radius, tip = {"layer": layer_of(clamp.carrier)}, clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
         if radius > 0:
@@ -202,7 +200,7 @@ def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 
 def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> None:
-    """Add a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
+    """Adds a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
     first = outline[0]
     if isinstance(first, Arc) and first.is_full:
         space.add_circle(first.center, first.radius, {"layer": layer})
@@ -213,13 +211,13 @@ def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> No
 
 
 def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
-    """Add a line of text about a point."""
+    """Adds a line of text about a point."""
     text = space.add_text(words, height=TEXT_HEIGHT * seen.pitch, dxfattribs={"layer": "TEXT"})
     text.set_placement(at, align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def add_carriers(space: Modelspace, seen: Shown) -> None:
-    """Add the plates with their holes, column letters below them and row numbers beside them."""
+    """Adds the plates with their holes, column letters below them and row numbers beside them."""
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
         corners = [(plate.x0, plate.y0), (plate.x1, plate.y0), (plate.x1, plate.y1), (plate.x0, plate.y1)]
@@ -240,16 +238,16 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
                 add_text(space, str(row + 1), (beside, y), seen)
 
 
-def add_wall(space: Modelspace, seen: Shown) -> None:
-    """Add the wall, if there is one, as a bar that the part lies on."""
-    if seen.wall is not None:
-        bar = seen.wall.bar
+def add_walls(space: Modelspace, seen: Shown) -> None:
+    """Add the walls that the part lies on as bars."""
+    for wall in seen.walls:
+        bar = wall.bar
         corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
-        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(seen.wall.carrier)})
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
 
 
 def add_travel(space: Modelspace, seen: Shown) -> None:
-    """Add the axes that each length to set is measured between, and the length itself beyond the plates, of two along the
+    """Adds the axes that each length to set is measured between, and the length itself beyond the plates, of two along the
     same way the second farther out."""
     for number, measured in enumerate(seen.measured):
         setting, layer = measured.setting, {"layer": setting_layer(measured.setting.carrier)}
@@ -269,7 +267,7 @@ def add_travel(space: Modelspace, seen: Shown) -> None:
 
 
 def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
-    """Add the part's zero point with its x axis, as long as told, and a y axis half as long."""
+    """Adds the part's zero point with its x axis, of the length given, and a y axis half as long."""
     layer, (x, y) = {"layer": "PART_ZERO"}, zero
     space.add_point(pose.apply(x, y), layer)
     for end in (pose.apply(x + length, y), pose.apply(x, y + length / 2)):

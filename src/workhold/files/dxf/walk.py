@@ -18,11 +18,11 @@ from workhold.conventions import LEVEL
 from workhold.errors import InputError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, counted, listed
-from workhold.files.outline.curves import Curves
+from workhold.files.outline.curves import CurveReader
 from workhold.files.outline.placement import Placement
 from workhold.files.questions import LAYERS
 
-__all__ = ["Nest", "Walk"]
+__all__ = ["BlockNesting", "DxfWalk"]
 
 T = TypeVar("T")
 
@@ -32,7 +32,7 @@ DEEPEST_NEST = 50
 
 
 @frozen
-class Nest:
+class BlockNesting:
     """Where the walk stands.
 
     Parameters
@@ -51,12 +51,12 @@ class Nest:
     blocks: tuple[str, ...] = ()
 
 
-class Walk:
+class DxfWalk:
     """Collects the chains of a document's entities, and what was left out."""
 
     def __init__(self, document: Any, layers: Sequence[str] | None, fit: float | None = None) -> None:
         self.document = document
-        self.curves = Curves(fit)
+        self.curves = CurveReader(fit)
         self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
@@ -74,13 +74,13 @@ class Walk:
             if layer.is_frozen() or layer.is_off() or layer.dxf.name.casefold() == "defpoints"
         }
 
-    def visit_all(self, entities: Iterable[Any], nest: Nest) -> None:
-        """Visit entities in drawing order."""
+    def visit_all(self, entities: Iterable[Any], nest: BlockNesting) -> None:
+        """Visits entities in drawing order."""
         for entity in entities:
             self.visit(entity, nest)
 
-    def visit(self, entity: Any, nest: Nest) -> None:
-        """Collect one entity, or note why it was left out.
+    def visit(self, entity: Any, nest: BlockNesting) -> None:
+        """Collects one entity, or notes why it was left out.
 
         Raises
         ------
@@ -110,12 +110,12 @@ class Walk:
         except Exception as error:  # ezdxf checks few values; a damaged one may fail in any way
             raise InputError(f"{label} is damaged ({error}): delete it or draw it again.") from error
 
-    def effective_layer(self, entity: Any, nest: Nest) -> str:
+    def effective_layer(self, entity: Any, nest: BlockNesting) -> str:
         """The layer an entity counts as being on."""
         layer = str(entity.dxf.get("layer", "0"))
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
-    def is_used(self, entity: Any, layer: str, nest: Nest) -> bool:
+    def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
         """Whether an outline entity is on a chosen layer, or visible when none were chosen."""
         key = layer.casefold()
         self.names.setdefault(key, layer)
@@ -128,7 +128,7 @@ class Walk:
         return True
 
     def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
-        """Add an entity's chain.
+        """Adds an entity's chain.
 
         Raises
         ------
@@ -154,7 +154,7 @@ class Walk:
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Refuse entities that are not level, or lie at another height than those before.
+        """Refuses entities that are not level, or lie at another height than those before.
 
         Raises
         ------
@@ -172,8 +172,8 @@ class Walk:
                     "draw the part flat, in the XY plane."
                 )
 
-    def visit_insert(self, insert: Any, nest: Nest, layer: str, label: str) -> None:
-        """Visit the entities of an inserted block, once for every place of an array.
+    def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
+        """Visits the entities of an inserted block, once for every place of an array.
 
         Raises
         ------
@@ -209,7 +209,7 @@ class Walk:
             self.visit_all(block, evolve(inner, placement=placement))
 
     def refuse_missing_layers(self) -> None:
-        """Refuse chosen layers on which there is no outline entity.
+        """Refuses chosen layers on which there is no outline entity.
 
         Raises
         ------
@@ -281,7 +281,7 @@ def block_placement(insert: Any) -> Placement:
 
 
 def place_of(entity: Any) -> tuple[float, float]:
-    """Some point of an entity, in its own coordinates; the origin when it tells none."""
+    """Some point of an entity, in its own coordinates; the origin where it has none."""
     for name in ("center", "start", "vtx0", "start_location"):
         if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
             point = entity.dxf.get(name)

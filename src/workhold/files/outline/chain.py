@@ -56,7 +56,7 @@ class Chain:
         return without_segment(self.labels[0])
 
     def reversed(self) -> Chain:
-        """The same chain run the other way."""
+        """Returns the chain run the other way."""
         return Chain(self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1])
 
 
@@ -111,8 +111,8 @@ def arc_bulges(sweep: float) -> list[float]:
 def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
     """Bulge of an arc whose ends have been moved a little, its centre staying as near its place as it can.
 
-    The new centre is the foot of the old one on the perpendicular bisector of the new chord, so that centre and radius
-    change by no more than the order of the movement (times centre distance over chord, which no choice can avoid).
+    The new centre is the foot of the old one on the perpendicular bisector of the new chord. So centre and radius change
+    by no more than the order of the movement, times centre distance over chord, which no choice can avoid.
     """
     if bulge == 0.0:
         return 0.0
@@ -172,7 +172,7 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
 
 
 def refuse_unusable(chain: Chain) -> None:
-    """Refuse numbers that are not finite or absurdly large.
+    """Refuses numbers that are not finite or absurdly large.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def refuse_unusable(chain: Chain) -> None:
 
 
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
-    """Refuse a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
+    """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
 
     Raises
     ------

@@ -23,7 +23,14 @@ from workhold.geometry.curve_fit import fitted_curve
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
 from workhold.geometry.segment import Point
 
-__all__ = ["Curves", "checked_fit", "curve_remarks", "departure_remark", "refuse_true_curves", "with_chords_merged"]
+__all__ = [
+    "CurveReader",
+    "checked_fit",
+    "curve_remarks",
+    "departure_remark",
+    "refuse_true_curves",
+    "with_chords_merged",
+]
 
 # In mm: what a refusal proposes, finest first, and the finest that is worth anything.
 PROPOSED, LEAST_FIT = (0.01, 0.1, 1.0), 1e-4
@@ -46,7 +53,7 @@ def checked_fit(fit: float | None) -> float | None:
     return fit
 
 
-class Curves:
+class CurveReader:
     """Turns the curves of one drawing into lines and arcs, and keeps how each was read, by its label."""
 
     def __init__(self, fit: float | None) -> None:
@@ -140,7 +147,7 @@ def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dic
 def refuse_true_curves(
     labels: Iterable[str], found: Mapping[str, CurveReading], fit: float | None, layered: bool
 ) -> None:
-    """Refuse an outline with curves that are no lines or arcs, unless a fit is given.
+    """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
 
     Parameters
     ----------

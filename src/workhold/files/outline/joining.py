@@ -67,7 +67,7 @@ class Joined:
 
 
 def join(chains: Sequence[Chain], tolerance: float) -> Joined:
-    """Join chains end to end.
+    """Joins chains end to end.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
 def without_repeats(
     chains: Sequence[Chain], node: NDArray[np.int64]
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
-    """Keep one of chains that were drawn twice; also the nodes of those kept, and the names of those left out."""
+    """Keeps one of chains that were drawn twice; also the nodes of those kept, and the names of those left out."""
     between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
     kept: list[int] = []
     repeated: list[str] = []
@@ -148,7 +148,7 @@ def same_course(a: Chain, b: Chain) -> bool:
 
 
 def without_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
-    """Keep one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
+    """Keeps one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
     kept: dict[object, Loop] = {}
     repeated = []
     for loop in loops:
@@ -173,7 +173,7 @@ def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float) -> list[int]:
-    """For every end the end it is joined to, or -1.
+    """The end that every end is joined to, or -1.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: flo
 
 
 def close_gaps(chains: Sequence[Chain], partner: list[int], tolerance: float) -> None:
-    """Join open ends across gaps, nearest first, writing into ``partner``.
+    """Joins open ends across gaps, nearest first, writing into ``partner``.
 
     Raises
     ------

@@ -21,11 +21,11 @@ from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loop
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.distance import is_inside
 
-__all__ = ["Part", "nest", "refuse_loops_across"]
+__all__ = ["DrawnPart", "nest", "refuse_loops_across"]
 
 
 @frozen
-class Part:
+class DrawnPart:
     """One of the parts in a file.
 
     Parameters
@@ -54,7 +54,7 @@ class Part:
 
 
 @frozen
-class Ring:
+class MeasuredLoop:
     """A loop as geometry: its segments counter-clockwise, their kernel rows, area and bounding box."""
 
     loop: Loop
@@ -64,8 +64,8 @@ class Ring:
     box: tuple[float, float, float, float]
 
 
-def ring(loop: Loop) -> Ring:
-    """Measure a loop."""
+def ring(loop: Loop) -> MeasuredLoop:
+    """Measures a loop."""
     segments = loop_segments(loop.vertices)
     area = signed_area(segments)
     if area < 0:
@@ -73,11 +73,11 @@ def ring(loop: Loop) -> Ring:
     boxes = np.array([bounding_box(segment) for segment in segments])
     low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     box = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
-    return Ring(loop, segments, segment_rows(segments), abs(area), box)
+    return MeasuredLoop(loop, segments, segment_rows(segments), abs(area), box)
 
 
-def nest(loops: Sequence[Loop]) -> tuple[Part, ...]:
-    """Sort loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
+def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
+    """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
     rings = sorted((ring(loop) for loop in loops), key=lambda r: -r.area)
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
@@ -102,13 +102,13 @@ def nest(loops: Sequence[Loop]) -> tuple[Part, ...]:
         parts.append((area, outline, inside))
     parts.sort(key=lambda part: (-part[0], part[1]))
     return tuple(
-        Part(number, tuple(rings[k].loop for k in (outline, *inside)), area, rings[outline].box)
+        DrawnPart(number, tuple(rings[k].loop for k in (outline, *inside)), area, rings[outline].box)
         for number, (area, outline, inside) in enumerate(parts, start=1)
     )
 
 
-def refuse_loops_across(part: Part, others: Sequence[Part]) -> None:
-    """Refuse a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
+def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
+    """Refuses a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
-def chosen_part(parts: Sequence[Part], number: int | None) -> Part:
+def chosen_part(parts: Sequence[DrawnPart], number: int | None) -> DrawnPart:
     """The part of a number, or the largest.
 
     Raises

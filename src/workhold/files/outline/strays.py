@@ -11,7 +11,7 @@ import numpy as np
 from workhold.errors import InputError
 from workhold.files.outline.chain import at, counted, listed
 from workhold.files.outline.joining import Stray, join
-from workhold.files.outline.nesting import Part
+from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, PART_NUMBER
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Point, segment_from_bulge
@@ -40,8 +40,8 @@ def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> No
     raise InputError(f"no outline is closed: {open_ends(strays)}")
 
 
-def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
-    """Refuse to take a hole for the part when the outline around it is nearly closed, but not quite.
+def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
+    """Refuses to take a hole for the part when the outline around it is nearly closed, but not quite.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def refuse_open_outline(part: Part, strays: Sequence[Stray]) -> None:
         )
 
 
-def gap_around(part: Part, strays: Sequence[Stray]) -> float | None:
+def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
     """The smallest gap between ends with which pieces that do not close make an outline around a part; None without one."""
     chains = [stray.chain for stray in strays]
     if not 1 < len(chains) <= MOST_JOINED:

@@ -11,7 +11,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
-from workhold.files.dxf.walk import Nest, Walk
+from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
@@ -43,14 +43,14 @@ class DrawnLayer:
     chains: tuple[Chain, ...] = ()
 
 
-class LayerWalk(Walk):
+class LayerWalk(DxfWalk):
     """Visits everything, on hidden layers too, whatever is wrong with it."""
 
     def __init__(self, document: Any) -> None:
         super().__init__(document, None)
         self.kinds: dict[str, Counter[str]] = {}
 
-    def visit(self, entity: Any, nest: Nest) -> None:
+    def visit(self, entity: Any, nest: BlockNesting) -> None:
         """Count an entity, and collect its chain where it has one."""
         kind = entity.dxftype()
         if kind != "INSERT":
@@ -60,7 +60,7 @@ class LayerWalk(Walk):
         except InputError:
             self.level = None
 
-    def is_used(self, entity: Any, layer: str, nest: Nest) -> bool:
+    def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
         """Everything is looked at."""
         return True
 
@@ -85,7 +85,7 @@ def drawn_layers(path: str | Path, unit: str | None, usual_unit: str | None) -> 
     known = scale_of(unit_code(document, content), unit, usual_unit)
     scale = 1.0 if known is None else known[0]
     walk = LayerWalk(document)
-    walk.visit_all(document.modelspace(), Nest(Placement(a=scale, d=scale, height_scale=scale)))
+    walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
     layers = []
     for name in sorted(walk.kinds, key=str.casefold):
         chains = [chain for chain in walk.chains if walk.layers.get(chain.labels[0]) == name]

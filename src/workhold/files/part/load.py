@@ -23,7 +23,7 @@ from workhold.files.outline.curves import (
 )
 from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.layers import with_layers_named
-from workhold.files.outline.nesting import Part, chosen_part, nest, refuse_loops_across
+from workhold.files.outline.nesting import DrawnPart, chosen_part, nest, refuse_loops_across
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path
 from workhold.files.part.finding import found, kind_of, read_bytes
@@ -54,7 +54,7 @@ class Loaded:
 
     workpiece: Workpiece
     remarks: tuple[str, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[DrawnPart, ...]
     number: int = 1
 
 
@@ -355,7 +355,7 @@ def refuse_large(segments: int) -> None:
         )
 
 
-def part_remarks(parts: Sequence[Part], chosen: Part, asked: int | None) -> list[str]:
+def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | None) -> list[str]:
     """What to say about several parts in one file."""
     if len(parts) == 1:
         return []

@@ -21,7 +21,7 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing, cleaned
 from workhold.files.outline.extent import size_of
 from workhold.files.outline.joining import join
-from workhold.files.outline.nesting import Part, nest
+from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.part.finding import kind_of, read_bytes
 from workhold.files.part.layers import DrawnLayer, drawn_layers
 from workhold.files.part.load import Loaded, read_workpiece
@@ -57,7 +57,7 @@ class Survey:
     asked: tuple[str, ...]
     size: tuple[float, float] | None
     chains: tuple[Chain, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[DrawnPart, ...]
     gaps: tuple[float, ...]
     layers: tuple[DrawnLayer, ...] = ()
 
@@ -128,7 +128,7 @@ def layers_of(path: Path, unit: str | None) -> tuple[DrawnLayer, ...]:
 
 def gaps_and_parts(
     chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
-) -> tuple[tuple[float, ...], tuple[Part, ...]]:
+) -> tuple[tuple[float, ...], tuple[DrawnPart, ...]]:
     """The gaps between loose ends, and the parts that there are with those up to a tolerance (mm) closed."""
     if size is None:
         return (), ()

@@ -20,7 +20,7 @@ from workhold.conventions import DEPARTS, FREE_AREA, OVERHANG, SAME_AREA, SAME_H
 from workhold.errors import InputError
 from workhold.files.outline.chain import listed
 from workhold.files.outline.joining import closed_loop
-from workhold.files.outline.nesting import Part, nest
+from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
 from workhold.files.step.regions import Borders, area_of, section
@@ -79,13 +79,13 @@ class Outline:
         return cls(area, low, high, tuple(insets), tuple(overhangs), edges.departure)
 
 
-def lengths_of(parts: Sequence[Part]) -> float:
+def lengths_of(parts: Sequence[DrawnPart]) -> float:
     """Length of all loops of some parts, in mm."""
     loops = [loop for part in parts for loop in part.loops]
     return sum(segment.length for loop in loops for segment in loop_segments(loop.vertices))
 
 
-def oriented_rows(part: Part) -> NDArray[np.float64]:
+def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
     """Kernel rows of all loops of a part, material on the left of each."""
     rows = []
     for k, loop in enumerate(part.loops):

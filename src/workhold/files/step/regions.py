@@ -15,7 +15,7 @@ from attrs import frozen
 from workhold.conventions import SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
-from workhold.files.outline.curves import Curves
+from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
 from workhold.files.step.free_form import edge_curve
 from workhold.files.step.solids import bounding_box, sub_shapes
@@ -137,7 +137,7 @@ def borders(region: Any, fit: float | None = None) -> Borders:
         For an edge that cannot be read.
     """
     chains: list[Chain] = []
-    curves = Curves(fit)
+    curves = CurveReader(fit)
     gap = 0.0
     for wire in sub_shapes(region, "WIRE"):
         pieces: list[Piece] = []
@@ -167,7 +167,7 @@ def wire_edges(wire: Any) -> list[Any]:
 Piece = tuple[list[Point], list[float], str | None]
 
 
-def edge_piece(edge: Any, curves: Curves, label: str) -> Piece | None:
+def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     """An edge in the direction its wire runs; None for an edge of zero length.
 
     Raises

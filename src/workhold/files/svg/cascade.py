@@ -25,7 +25,7 @@ __all__ = ["GEOMETRY", "Declared", "Styles"]
 Block = list[tuple[str, str]]
 
 GEOMETRY = ("x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "d")
-# Properties that tell where a shape is or whether it is seen, and that an attribute of their name may set.
+# Properties that say where a shape is or whether it is seen, and that an attribute of their name may set.
 ATTRIBUTES = {"display", "visibility", "opacity", "overflow", "color", "clip-path", "clip", "mask", "filter"}
 ATTRIBUTES |= {"fill", "fill-opacity", "stroke", "stroke-opacity", "stroke-width", "stroke-dasharray", "fill-rule"}
 ATTRIBUTES |= {"marker-start", "marker-mid", "marker-end", "stop-opacity", "transform", "transform-origin", *GEOMETRY}
@@ -102,7 +102,7 @@ def read_as_css(style: Element) -> bool:
 
 
 def refuse_media(media: str, place: str) -> None:
-    """Refuse styles for some screens or printers only.
+    """Refuses styles for some screens or printers only.
 
     Raises
     ------

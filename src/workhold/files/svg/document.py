@@ -88,8 +88,8 @@ def read_document(content: bytes) -> Document:
     Raises
     ------
     InputError
-        For files that are no SVG, XML that is broken (with line and column), nested without end or declares entities
-        (which can blow up to any size), style sheets outside the file, and animations.
+        For files that are no SVG, style sheets outside the file, and animations. Also for XML that is broken (with line and
+        column), nested without end or declares entities, which can blow up to any size.
     """
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")

@@ -12,7 +12,7 @@ from workhold.errors import InputError
 from workhold.files.svg.cascade import GEOMETRY, Declared
 from workhold.files.svg.document import short
 
-__all__ = ["ANGLES", "NUMBER", "Figure", "Viewport", "absolute", "millimetres", "numbers", "physical"]
+__all__ = ["ANGLES", "NUMBER", "ShapeElement", "Viewport", "absolute", "millimetres", "numbers", "physical"]
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 LENGTH = re.compile(rf"\s*({NUMBER})([a-zA-Z]*|%)\s*$")
@@ -64,7 +64,7 @@ def numbers(text: str, what: str) -> list[float]:
 
 
 @frozen
-class Figure:
+class ShapeElement:
     """An element as its shape sees it.
 
     Parameters

@@ -11,7 +11,7 @@ from workhold.conventions import CIRCULAR, HALF_CIRCLE
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
-from workhold.files.svg.lengths import NUMBER, Figure
+from workhold.files.svg.lengths import NUMBER, ShapeElement
 from workhold.files.svg.shape import Shape, near
 from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
 from workhold.geometry.segment import Point
@@ -26,7 +26,7 @@ FLAG = re.compile(rf"([01]){SEPARATOR}")
 CSS_PATH = re.compile(r"""path\(\s*(?:(?:nonzero|evenodd)\s*,\s*)?(?:"([^"]*)"|'([^']*)')\s*\)$""")
 
 
-def path(figure: Figure) -> Iterator[Shape]:
+def path(figure: ShapeElement) -> Iterator[Shape]:
     """A <path>; each subpath is a chain.
 
     Raises
@@ -74,7 +74,7 @@ def path(figure: Figure) -> Iterator[Shape]:
         yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
 
 
-def path_data(figure: Figure) -> str:
+def path_data(figure: ShapeElement) -> str:
     """The path data, as attribute or as CSS property; empty when there is none.
 
     Raises
@@ -173,7 +173,7 @@ def curve_of(segment: Any, kind: str, label: str) -> Pieces | None:
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
-    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which tells side and direction."""
+    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which gives side and direction."""
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
     half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)

@@ -1,8 +1,8 @@
 """SVG drawings: from bytes to chains in mm.
 
 What the author of a drawing sees is read, or refused by name; svgelements resolves path data. SVG's y axis points
-down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen, with the page's lower
-left corner as the origin (or the point x = 0, y = 0 of the user units when the page has no size).
+down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen. The origin is the page's
+lower left corner, or the point x = 0, y = 0 of the user units when the page has no size.
 
 Glossary
 --------
@@ -18,16 +18,16 @@ from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
 from workhold.files.svg.cascade import Styles
 from workhold.files.svg.document import read_document
-from workhold.files.svg.lengths import Figure, absolute, millimetres, physical
+from workhold.files.svg.lengths import ShapeElement, absolute, millimetres, physical
 from workhold.files.svg.view import ViewBox, viewbox_of
-from workhold.files.svg.walk import Nest, SvgWalk
+from workhold.files.svg.walk import ElementNesting, SvgWalk
 from workhold.model.units import unit_named
 
 __all__ = ["read_svg"]
 
 
 def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None) -> Drawing:
-    """Read the visible outlines of an SVG file.
+    """Reads the visible outlines of an SVG file.
 
     Parameters
     ----------
@@ -43,14 +43,14 @@ def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None,
     """
     document = read_document(content)
     styles = Styles(document)
-    root = Figure(document.root, document.name(document.root), styles.of(document.root), (None, None))
+    root = ShapeElement(document.root, document.name(document.root), styles.of(document.root), (None, None))
     box = viewbox_of(document.root.get("viewBox"), root.label)
     known = page(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit)
     viewport = (box[2], box[3]) if box is not None else (pixels(root, "width"), pixels(root, "height"))
     try:
-        walk.visit(document.root, Nest(placement, viewport))
+        walk.visit(document.root, ElementNesting(placement, viewport))
     except InputError:
         if known is not None:
             raise
@@ -65,7 +65,7 @@ def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None,
 
 
 def page(
-    root: Figure, box: ViewBox | None, unit: str | None, usual_unit: str | None
+    root: ShapeElement, box: ViewBox | None, unit: str | None, usual_unit: str | None
 ) -> tuple[Placement, list[str]] | None:
     """The map from user units to mm with y up, and a remark when the user's unit overrides the file's size.
 
@@ -98,13 +98,13 @@ def page(
     return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low), remarks
 
 
-def pixels(root: Figure, name: str) -> float | None:
+def pixels(root: ShapeElement, name: str) -> float | None:
     """A side of the page in CSS pixels; None when the file does not say."""
     given = root.given(name)
     return None if given is None else absolute(given.text)
 
 
-def file_scale(root: Figure, width: float | None, height: float | None, box: ViewBox | None) -> float | None:
+def file_scale(root: ShapeElement, width: float | None, height: float | None, box: ViewBox | None) -> float | None:
     """Millimetres per user unit by the file's own physical size in mm; None when it has none.
 
     Raises

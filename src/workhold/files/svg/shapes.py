@@ -9,7 +9,7 @@ import numpy as np
 
 from workhold.conventions import CIRCULAR
 from workhold.errors import InputError
-from workhold.files.svg.lengths import Figure, numbers
+from workhold.files.svg.lengths import ShapeElement, numbers
 from workhold.files.svg.path import path
 from workhold.files.svg.shape import Shape, near
 from workhold.geometry.rational import Pieces, ellipse_pieces
@@ -17,20 +17,20 @@ from workhold.geometry.rational import Pieces, ellipse_pieces
 __all__ = ["SHAPES"]
 
 
-def line(figure: Figure) -> Iterator[Shape]:
+def line(figure: ShapeElement) -> Iterator[Shape]:
     """A <line>."""
     x1, y1, x2, y2 = (figure.length(a) for a in ("x1", "y1", "x2", "y2"))
     yield Shape(((x1, y1), (x2, y2)), (0.0,), (figure.label,))
 
 
-def circle(figure: Figure) -> Iterator[Shape]:
+def circle(figure: ShapeElement) -> Iterator[Shape]:
     """A <circle>, as two halves."""
     x, y, r = (figure.length(a) for a in ("cx", "cy", "r"))
     if r > 0:
         yield Shape(((x + r, y), (x - r, y), (x + r, y)), (1.0, 1.0), (figure.label, figure.label))
 
 
-def ellipse(figure: Figure) -> Iterator[Shape]:
+def ellipse(figure: ShapeElement) -> Iterator[Shape]:
     """An <ellipse>, a circle where its radii are equal; one that is not given is the other (SVG 2, 10.4)."""
     x, y = (figure.length(a) for a in ("cx", "cy"))
     rx, ry = radii(figure)
@@ -43,13 +43,13 @@ def ellipse(figure: Figure) -> Iterator[Shape]:
     yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (figure.label, figure.label))
 
 
-def radii(figure: Figure) -> tuple[float, float]:
+def radii(figure: ShapeElement) -> tuple[float, float]:
     """``rx`` and ``ry``: one that is not given, or negative, is the other, and 0 when neither is."""
     rx, ry = (figure.length(a, default=-1.0) for a in ("rx", "ry"))
     return max(ry if rx < 0 else rx, 0.0), max(rx if ry < 0 else ry, 0.0)
 
 
-def rect(figure: Figure) -> Iterator[Shape]:
+def rect(figure: ShapeElement) -> Iterator[Shape]:
     """A <rect>, its corners sharp, round or elliptical (SVG 1.1, section 9.2)."""
     x, y, w, h = (figure.length(a) for a in ("x", "y", "width", "height"))
     if not (w > 0 and h > 0):
@@ -88,7 +88,7 @@ def rect(figure: Figure) -> Iterator[Shape]:
     yield Shape(points, tuple(bulge for _, bulge in kept), segment_labels(figure.label, len(kept)), curved)
 
 
-def polyline(figure: Figure, close: bool = False) -> Iterator[Shape]:
+def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
     """A <polyline> or <polygon>.
 
     Raises
@@ -107,7 +107,7 @@ def polyline(figure: Figure, close: bool = False) -> Iterator[Shape]:
         yield Shape(tuple(points), (0.0,) * count, segment_labels(figure.label, count))
 
 
-def polygon(figure: Figure) -> Iterator[Shape]:
+def polygon(figure: ShapeElement) -> Iterator[Shape]:
     """A <polygon>."""
     return polyline(figure, close=True)
 
@@ -117,7 +117,7 @@ def segment_labels(label: str, count: int) -> tuple[str, ...]:
     return tuple(f"{label} segment {k}" for k in range(count))
 
 
-SHAPES: dict[str, Callable[[Figure], Iterator[Shape]]] = {
+SHAPES: dict[str, Callable[[ShapeElement], Iterator[Shape]]] = {
     "line": line,
     "circle": circle,
     "ellipse": ellipse,

@@ -137,7 +137,7 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
 
 
 def refuse_effects(declarations: Declarations, label: str) -> None:
-    """Refuse masks, filters and other effects that cut, move or hide what is drawn.
+    """Refuses masks, filters and other effects that cut, move or hide what is drawn.
 
     Raises
     ------

@@ -92,7 +92,7 @@ class Window:
     label: str
 
     def shows(self, chain: Chain) -> Literal["all", "some", "nothing"]:
-        """How much of a chain is inside, as far as the window's edges, taken one by one, can tell."""
+        """How much of a chain is inside, as far as the window's edges, taken one by one, show."""
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
         whole, outside = True, False

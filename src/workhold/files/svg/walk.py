@@ -10,17 +10,17 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, counted
-from workhold.files.outline.curves import Curves
+from workhold.files.outline.curves import CurveReader
 from workhold.files.outline.placement import Placement
 from workhold.files.svg.cascade import Declared, Styles
 from workhold.files.svg.document import DEEPEST, Document, href, local_name, short
-from workhold.files.svg.lengths import Figure, Viewport
+from workhold.files.svg.lengths import ShapeElement, Viewport
 from workhold.files.svg.shapes import SHAPES
 from workhold.files.svg.style import INITIAL, Style, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
 from workhold.files.svg.view import Window, convex, fitted, viewbox_of
 
-__all__ = ["Nest", "SvgWalk"]
+__all__ = ["ElementNesting", "SvgWalk"]
 
 MOST_ELEMENTS = 1_000_000
 CONTAINERS = {"g", "a", "switch"}
@@ -32,7 +32,7 @@ MARKED = ("path", "line", "polyline", "polygon")
 
 
 @frozen
-class Nest:
+class ElementNesting:
     """Where the walk stands.
 
     Parameters
@@ -58,7 +58,7 @@ class SvgWalk:
     """Collects the chains of a document's elements, and what was left out."""
 
     def __init__(self, document: Document, styles: Styles, fit: float | None) -> None:
-        self.curves = Curves(fit)
+        self.curves = CurveReader(fit)
         self.document = document
         self.styles = styles
         self.chains: list[Chain] = []
@@ -67,8 +67,8 @@ class SvgWalk:
         self.ignored: Counter[str] = Counter()
         self.count = 0
 
-    def visit(self, element: Element, nest: Nest) -> None:
-        """Collect one element and those inside it.
+    def visit(self, element: Element, nest: ElementNesting) -> None:
+        """Collects one element and those inside it.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class SvgWalk:
             return
         refuse_effects(declarations, label)
         placement = nest.placement.after(transform_of(declarations, nest.viewport, label))
-        figure = Figure(element, label, declarations, nest.viewport, closed=not style.stroked)
+        figure = ShapeElement(element, label, declarations, nest.viewport, closed=not style.stroked)
         if tag == "use":
             placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
         inner = self.clipped(element, evolve(nest, placement=placement, style=style), declarations, label)
@@ -112,8 +112,8 @@ class SvgWalk:
         else:
             self.ignored[tag] += style.shown
 
-    def visit_children(self, parent: Element, nest: Nest) -> None:
-        """Visit the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
+    def visit_children(self, parent: Element, nest: ElementNesting) -> None:
+        """Visits the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
         for element in parent:
             if not self.document.drawn(element):
                 continue
@@ -127,8 +127,8 @@ class SvgWalk:
                 return
             self.visit(element, nest)
 
-    def visit_shape(self, figure: Figure, nest: Nest) -> None:
-        """Add the chains of a shape that is seen.
+    def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
+        """Adds the chains of a shape that is seen.
 
         Raises
         ------
@@ -160,7 +160,7 @@ class SvgWalk:
                 raise InputError(f"{label} is cut by {window.label}: cut the shape itself, or remove what cuts it.")
         self.chains += found
 
-    def placed(self, figure: Figure, placement: Placement) -> Iterator[Chain]:
+    def placed(self, figure: ShapeElement, placement: Placement) -> Iterator[Chain]:
         """The chains of a shape in mm; of a shape without stroke, what bounds its fill."""
         for shape in SHAPES[local_name(figure.element)](figure):
             if figure.closed:
@@ -171,8 +171,8 @@ class SvgWalk:
             if chain is not None:
                 yield chain
 
-    def visit_use(self, figure: Figure, nest: Nest) -> None:
-        """Visit what a <use> shows.
+    def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
+        """Visits what a <use> shows.
 
         Raises
         ------
@@ -192,8 +192,8 @@ class SvgWalk:
         else:
             self.visit(target, inner)
 
-    def visit_target(self, target: Element, use: Figure, nest: Nest) -> None:
-        """Visit a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
+    def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
+        """Visits a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
 
         Raises
         ------
@@ -207,7 +207,7 @@ class SvgWalk:
             raise InputError(f"{label} is switched off itself, which programs take differently: switch off the use.")
         refuse_effects(declarations, label)
         inner = self.clipped(target, evolve(nest, style=style), declarations, label)
-        own = Figure(target, label, declarations, nest.viewport)
+        own = ShapeElement(target, label, declarations, nest.viewport)
         sized = {name for name in ("width", "height") if use.given(name) is not None}
         if local_name(target) == "symbol":
             names = {"x", "y", "refX", "refY"} | ({"width", "height"} - sized)
@@ -217,8 +217,10 @@ class SvgWalk:
         else:
             self.visit_view(own, inner, (own.length("x"), own.length("y")), use)
 
-    def visit_view(self, figure: Figure, nest: Nest, corner: tuple[float, float], sizes: Figure) -> None:
-        """Visit the children of a nested drawing or symbol in its own viewport.
+    def visit_view(
+        self, figure: ShapeElement, nest: ElementNesting, corner: tuple[float, float], sizes: ShapeElement
+    ) -> None:
+        """Visits the children of a nested drawing or symbol in its own viewport.
 
         Raises
         ------
@@ -252,7 +254,9 @@ class SvgWalk:
             width, height = box[2], box[3]
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
-    def clipped(self, element: Element, nest: Nest, declarations: dict[str, list[Declared]], label: str) -> Nest:
+    def clipped(
+        self, element: Element, nest: ElementNesting, declarations: dict[str, list[Declared]], label: str
+    ) -> ElementNesting:
         """The nest with the window of an element's ``clip-path``.
 
         Raises
@@ -297,7 +301,9 @@ class SvgWalk:
             or not self.document.drawn(shapes[0])
         ):
             raise error
-        figure = Figure(shapes[0], self.document.name(shapes[0]), self.styles.of(shapes[0]), nest.viewport, closed=True)
+        figure = ShapeElement(
+            shapes[0], self.document.name(shapes[0]), self.styles.of(shapes[0]), nest.viewport, closed=True
+        )
         outlines = list(SHAPES[local_name(shapes[0])](figure))
         if len(outlines) != 1 or any(outlines[0].bulges) or not convex(outlines[0].closed().points):
             raise error

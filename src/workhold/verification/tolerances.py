@@ -51,7 +51,6 @@ __all__ = [
     "TILTED_POINTS",
     "UNFIT_CLOSURE",
     "UNFIT_LOCATION_ERROR",
-    "WALL",
     "WEAK_CLOSURE",
     "WHOLE",
 ]
@@ -94,8 +93,6 @@ FLAT = 1e-12
 LEAST_SPAN = 1e-7
 # mm. What is this near to a wall, or enters it by so much, lies on it; the contact with a wall is longer than the second.
 FLUSH, LEAST_FLUSH = 1e-7, 1e-6
-# What the ends of the contact with a wall stand on.
-WALL = "wall"
 # Radians and mm. Fixtures in the same holes with orientations and places nearer than this are the same.
 SAME = 1e-6
 

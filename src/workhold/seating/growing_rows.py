@@ -1,4 +1,4 @@
-"""Room for as many rows as a kernel finds."""
+"""Arrays of rows that grow until they have room."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["filled"]
+__all__ = ["filled", "with_room"]
 
 
 def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
@@ -19,3 +19,12 @@ def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -
         if count >= 0:
             return out[:count]
         room *= 4
+
+
+def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
+    """An array of which some rows are taken, with room for more: itself, or one of twice the length that begins as it."""
+    if count + more <= len(rows):
+        return rows
+    out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)
+    out[:count] = rows[:count]
+    return out

@@ -52,7 +52,7 @@ class Receiver(Protocol):
 
 
 @frozen
-class Seats:
+class SeatingWork:
     """How seating is worked out.
 
     Parameters
@@ -71,17 +71,17 @@ class Seats:
 
 def seated_answer(
     query: Query,
-    search: Callable[[Query, Progress | None], Result],
+    search: Callable[..., Result],
     *,
     threads: int = 1,
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Result:
-    """What a query with seating asks for.
+    """Answer a query, and work out the seating of the first fixtures if it asks for that.
 
     Parameters
     ----------
-    search : answers a query without seating.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``.
     threads, progress, cancel : see ``search.design.answer``.
 
     Raises
@@ -89,16 +89,18 @@ def seated_answer(
     InputError
         As :func:`refuse_unasked`, and what the search raises.
     """
+    if query.seating is None:
+        return search(query, progress=progress, cancel=cancel)
     refuse_unasked(query)
     if query.toolkit.needs_pairs:
-        return put_in_by_hand(search(query.without_seating, progress), query)
-    result = search(query.without_seating, stage(progress, 0.0, SEARCHED))
-    return seated(result, Seats(query, threads, stage(progress, SEARCHED, 1.0), cancel))
+        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel), query)
+    result = search(query.without_seating, progress=stage(progress, 0.0, SEARCHED), cancel=cancel)
+    return seated(result, SeatingWork(query, threads, stage(progress, SEARCHED, 1.0), cancel))
 
 
 def receive_seated(
     query: Query,
-    search: Callable[[Query, Progress | None, Receiver], Result],
+    search: Callable[..., Result],
     receiver: Receiver,
     *,
     threads: int,
@@ -109,7 +111,7 @@ def receive_seated(
 
     Parameters
     ----------
-    search : answers a query without seating, handing over its fixtures.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``receiver`` takes its fixtures.
 
     Raises
     ------
@@ -118,11 +120,12 @@ def receive_seated(
     """
     refuse_unasked(query)
     if query.toolkit.needs_pairs:
-        by_hand = SeatedReceiver(receiver, Seats(query, threads, None, cancel))
-        return put_in_by_hand(search(query.without_seating, progress, by_hand), query)
+        by_hand = SeatedReceiver(receiver, SeatingWork(query, threads, None, cancel))
+        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel, receiver=by_hand), query)
     told = None if progress is None else rising(progress)
-    work = Seats(query, threads, stage(told, SEARCHED, 1.0), cancel)
-    result = search(query.without_seating, stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work))
+    work = SeatingWork(query, threads, stage(told, SEARCHED, 1.0), cancel)
+    share, taker = stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work)
+    result = search(query.without_seating, progress=share, cancel=cancel, receiver=taker)
     return evolve(result, query=query)
 
 
@@ -161,7 +164,7 @@ def rising(progress: Progress) -> Progress:
     return told
 
 
-def seated(result: Result, work: Seats, listed: int | None = None) -> Result:
+def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
     """A result of a query without seating as that of the query with it.
 
     Parameters
@@ -210,7 +213,7 @@ def order_of(table: FixtureTable, told: Sequence[Seating], query: Query) -> NDAr
     return rank(quality, query.ranking, query.tolerance)
 
 
-def seatings_of(result: Result, work: Seats) -> list[Seating | None]:
+def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
     """The seating of all fixtures of a result; None of those that were left undone."""
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
@@ -236,7 +239,7 @@ class SeatedReceiver:
     """
 
     receiver: Receiver
-    work: Seats
+    work: SeatingWork
 
     @property
     def folder(self) -> Path:

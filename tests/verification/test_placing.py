@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flint import arb, arb_mat, ctx
 
-from workhold.verification.krawczyk import certified_zero
+from workhold.verification.placing import certified_zero
 
 
 def circle_and_line(z: arb_mat) -> tuple[arb_mat, arb_mat]:
