@@ -32,7 +32,8 @@ from workhold.kernels.contact.clamp_pairs import (
     pairs_of,
 )
 from workhold.listing.clamp_contacts import box_beside
-from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_upright, last_holes
+from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
+from workhold.listing.identity import half_turns
 from workhold.listing.listed import Work
 from workhold.listing.ranked_table import RankedTable
 from workhold.listing.seats import Seats
@@ -81,7 +82,7 @@ class ClampedSeats:
             one, other = (arrangement.direction or "").split()
             kinds[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = number
         clamp = self.problem.toolkit.moving
-        self.hardware = Hardware(kinds, 2 * clamp.peg_radius, *last_holes(self.toolkit.carriers[0]), clamp.has_a_hole)
+        self.hardware = Hardware(kinds, 2 * clamp.peg_radius, *last_holes(self.toolkit.carriers[0]), is_bolted(clamp))
 
     def __len__(self) -> int:
         return len(self.ranked)
@@ -89,7 +90,7 @@ class ClampedSeats:
     @property
     def turns_half(self) -> bool:
         """Whether half a turn of everything leaves the toolkit as it is."""
-        return self.toolkit.wall is None
+        return half_turns(self.toolkit)
 
     def add(self, seats: Seats) -> None:
         """Pair the clamps of further seats."""
