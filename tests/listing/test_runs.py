@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from workhold.listing import runs
-from workhold.listing.runs import Run, Runs, in_order, key_of, order_of
+from workhold.listing.runs import Runs, SortedRun, in_order, key_of, order_of
 
 
 @pytest.fixture
@@ -59,10 +59,10 @@ def test_rows_are_sorted_and_equal_keys_stay_in_order(
     numbers = random.integers(0, values, rows)
     columns = (np.arange(rows), random.random((rows, 2)), np.arange(rows).astype(np.int8))
     kept = Runs(tmp_path if on_disk else None)
-    kept.add(Run.of(key_of(numbers[:0]), tuple(column[:0] for column in columns)))
+    kept.add(SortedRun.of(key_of(numbers[:0]), tuple(column[:0] for column in columns)))
     for start in range(0, rows, 33):
         block = slice(start, start + 33)
-        kept.add(Run.of(key_of(numbers[block]), tuple(column[block] for column in columns)))
+        kept.add(SortedRun.of(key_of(numbers[block]), tuple(column[block] for column in columns)))
     assert len(kept) == rows
     assert (kept.scratch is not None) == (on_disk and rows > 150)
     parts = [part() for part in kept.parts()]
@@ -96,7 +96,7 @@ def test_a_full_disk_is_an_error(small: None, tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(runs, "TemporaryFile", lambda **_: Full())
     kept = Runs(tmp_path)
     with pytest.raises(OSError, match="No space left"):
-        kept.add(Run.of(key_of(np.arange(200)), (np.arange(200),)))
+        kept.add(SortedRun.of(key_of(np.arange(200)), (np.arange(200),)))
 
 
 @pytest.mark.parametrize("threads", [1, 3])

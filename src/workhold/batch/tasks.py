@@ -122,7 +122,7 @@ class Answering(Task):
         query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             kept = FirstFixtures(self.best, Path(folder))
-            result = answer(query, threads=1, receiver=kept)
+            result = answer(query, threads=1, sink=kept)
         table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
         text = StringIO()
         made = kept.result or result

@@ -131,16 +131,19 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     >>> arrangement_words(plate.arrangements[0], plate)
     'Three locators, two clamps push to the left and downward'
     """
-    counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
     clamps, noun = len(arrangement.directions), toolkit.moving.noun
     if clamps:
         pushing = f"the {noun} pushes" if clamps == 1 else f"{plural(clamps, noun, NUMBERS)} push"
         return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.towards}"
-    if len(counts) > 1 and len(set(counts)) == 1:
-        return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
-    words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
-    words[0] = f"{plural(counts[0], 'peg', NUMBERS)} {carriers[0].name}"
-    return f"Type {name}: {', '.join(words)}"
+    stands = zip(arrangement.pegs, toolkit.carriers, strict=True)
+    (count, first), *others = [(count, carrier) for count, carrier in stands if carrier.has_lattice]
+    pegs = plural(count, first.peg, NUMBERS)
+    if not others:
+        return f"Type {arrangement.name}: {pegs} on the {first.title}"
+    if all(other == count for other, _ in others):
+        return f"Type {arrangement.name}: {pegs} on each {first.noun}"
+    words = [f"{pegs} {first.name}", *(f"{NUMBERS[other]} {carrier.name}" for other, carrier in others)]
+    return f"Type {arrangement.name}: {', '.join(words)}"
 
 
 def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:

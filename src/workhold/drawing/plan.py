@@ -204,7 +204,8 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
     y = frame.y1 + 40
     verb = "closing" if bench.toolkit.clamping > 0 else "opening"
     captions = [
-        f"{'fixed' if shown.clamping is None else 'sliding'} {shown.carrier.noun} ({shown.carrier.letter})"
+        f"{'fixed' if shown.clamping is None else 'sliding'} {shown.carrier.noun}"
+        + (f" ({shown.carrier.letter})" if shown.carrier.letter else "")
         for shown in bench.shown.carriers
     ]
     widths = [text_width(caption, 14) for caption in captions]
@@ -219,9 +220,11 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
         box = Box(left, y - 8, left + width, y + 8)
         if shown.clamping is not None:
             tip = min(left, bounds.x1 - 66 - text_width(verb, 13))
-            block_arrow(group, (tip + 29, y + 24), shown.clamping)
-            group.text((tip + 66, y + 24), verb, 13)
-            box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 38))
+            # An arrow up or down is as high as one to the side is wide.
+            drop = 24 if shown.clamping[0] else 46
+            block_arrow(group, (tip + 29, y + drop), shown.clamping)
+            group.text((tip + 66, y + drop), verb, 13)
+            box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 2 * drop - 10))
         boxes.append(box)
     return boxes
 

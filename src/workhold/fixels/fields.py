@@ -450,7 +450,8 @@ OF_A_FLAT_JAW = Table(
             follows="peg_radius",
             figure="smallest opening",
             at_least="peg_radius",
-            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the flat jaw.",
+            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the "
+            "flat jaw; give the least distance from the flat jaw to that row, in mm.",
         ),
         MAX_OPENING,
         FLAT,

@@ -22,7 +22,7 @@ from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.clamp_placement import DIRECTION_NAMES
+from workhold.listing.clamp_placement import DIRECTION_NAMES, axis_of
 from workhold.listing.placing import LOCATORS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
@@ -114,7 +114,7 @@ def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> C
         taken=found.null[:, [2, 0, 1]],
         push=found.push,
         doubt=found.doubt,
-        holes=np.stack([hole, line] if problem.toolkit.moving.is_along_x else [line, hole], axis=1),
+        holes=np.stack([line, hole] if axis_of(problem.toolkit.moving) else [hole, line], axis=1),
         hole_of=hole_of,
     )
 

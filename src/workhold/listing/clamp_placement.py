@@ -20,7 +20,7 @@ from workhold.geometry.rotation import rotated
 from workhold.kernels.base.capsule import piece_distances
 from workhold.model.toolkit import Carrier, Travel
 
-__all__ = ["DIRECTION_NAMES", "FAR", "OPENING", "ClampPlacement", "is_upright", "last_holes"]
+__all__ = ["DIRECTION_NAMES", "FAR", "OPENING", "ClampPlacement", "axis_of", "is_bolted", "is_upright", "last_holes"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -36,6 +36,16 @@ OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values
 def is_upright(direction: IntArray) -> BoolArray:
     """Which directions, by their numbers, are along columns."""
     return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
+
+
+def axis_of(carrier: Carrier) -> int:
+    """0 for a carrier that slides along its rows, 1 for one that slides along its columns."""
+    return 0 if carrier.travel is None or carrier.travel.unit[0] != 0.0 else 1
+
+
+def is_bolted(clamp: Carrier) -> bool:
+    """Whether a clamp stands in a hole; without a longest travel it is its tip alone."""
+    return clamp.travel is not None and clamp.travel.most is not None
 
 
 def last_holes(plate: Carrier) -> tuple[float, float]:

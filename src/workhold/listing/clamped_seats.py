@@ -32,11 +32,11 @@ from workhold.kernels.contact.clamp_pairs import (
     pairs_of,
 )
 from workhold.listing.clamp_contacts import box_beside
-from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_upright, last_holes
+from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
+from workhold.listing.identity import half_turns
 from workhold.listing.listed import Work
 from workhold.listing.ranked_table import RankedTable
 from workhold.listing.seats import Seats
-from workhold.model.plate import Plate
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.quality import CLAMP_FREEDOM
 from workhold.model.query import Query
@@ -67,7 +67,7 @@ class ClampedSeats:
 
     query: Query
     problem: Problem
-    toolkit: Plate = field(init=False)
+    toolkit: Toolkit = field(init=False)
     hardware: Hardware = field(init=False)
     ranked: RankedTable = field(init=False)
     looked_at: int = field(default=0, init=False)
@@ -76,15 +76,13 @@ class ClampedSeats:
     undecided: list[Undecided] = field(factory=list, init=False)
 
     def __attrs_post_init__(self) -> None:
-        toolkit = self.query.toolkit
-        assert isinstance(toolkit, Plate)
-        self.toolkit, self.ranked = toolkit, RankedTable(self.query, self.problem)
+        self.toolkit, self.ranked = self.query.toolkit, RankedTable(self.query, self.problem)
         kinds = np.full((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), -1, np.int64)
-        for number, pair in enumerate(toolkit.distinct_pairs):
-            kinds[DIRECTION_NAMES.index(pair[0]), DIRECTION_NAMES.index(pair[1])] = number
-        last_column, last_row = last_holes(toolkit.carriers[0])
-        in_holes = self.problem.toolkit.moving.has_a_hole
-        self.hardware = Hardware(kinds, 2 * toolkit.clamp_radius, last_column, last_row, in_holes)
+        for number, arrangement in enumerate(self.toolkit.arrangements):
+            one, other = (arrangement.direction or "").split()
+            kinds[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = number
+        clamp = self.problem.toolkit.moving
+        self.hardware = Hardware(kinds, 2 * clamp.peg_radius, *last_holes(self.toolkit.carriers[0]), is_bolted(clamp))
 
     def __len__(self) -> int:
         return len(self.ranked)
@@ -92,7 +90,7 @@ class ClampedSeats:
     @property
     def turns_half(self) -> bool:
         """Whether half a turn of everything leaves the toolkit as it is."""
-        return self.toolkit.wall is None
+        return half_turns(self.toolkit)
 
     def add(self, seats: Seats) -> None:
         """Pair the clamps of further seats."""
@@ -127,7 +125,7 @@ class ClampedSeats:
     def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
         """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along
         x."""
-        pitch, integers = np.array(self.toolkit.pitch), seats.clamps.integers[clamp]
+        pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]
         carrier = self.toolkit.carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
         assert carrier.travel is not None
         cosine, sine = carrier.travel.unit

@@ -24,7 +24,7 @@ from workhold.listing.finish import Batches, listed_form
 from workhold.listing.identity import Identity
 from workhold.listing.placing import placed
 from workhold.listing.ranking import measured, ranking_keys
-from workhold.listing.runs import Run, Runs, in_order, key_of
+from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.result import FixtureTable
 from workhold.proof.deciding import Account, Course
 
@@ -64,7 +64,7 @@ class ResultCollector:
     distinct: NDArray[np.int64] = field(init=False)
     accounts: list[Account] = field(factory=list, init=False)
     batches: Batches = field(factory=Batches, init=False)
-    deciding: deque[Future[tuple[Run, Account]]] = field(factory=deque, init=False)
+    deciding: deque[Future[tuple[SortedRun, Account]]] = field(factory=deque, init=False)
     by_holes: Runs = field(init=False)
     by_turn: Runs = field(init=False)
     by_rank: Runs = field(init=False)
@@ -99,17 +99,17 @@ class ResultCollector:
         while len(self.deciding) > self.ahead:
             self.keep(*self.deciding.popleft().result())
 
-    def decided(self, block: NDArray[np.float64]) -> tuple[Run, Account]:
+    def decided(self, block: NDArray[np.float64]) -> tuple[SortedRun, Account]:
         """The fixtures of a block sorted by their holes, and what became of its records."""
         candidates, account = listed_form(block, self.problem, self.course)
         return self.by_their_holes(candidates), account
 
-    def by_their_holes(self, candidates: Candidates) -> Run:
+    def by_their_holes(self, candidates: Candidates) -> SortedRun:
         """Fixtures sorted by their holes."""
         key = key_of(*packed_holes(candidates, most_holes(self.problem)))
-        return Run.of(key, astuple(candidates, recurse=False))
+        return SortedRun.of(key, astuple(candidates, recurse=False))
 
-    def keep(self, run: Run, account: Account) -> None:
+    def keep(self, run: SortedRun, account: Account) -> None:
         """Keep decided fixtures."""
         self.by_holes.add(run)
         self.accounts.append(account)
@@ -153,7 +153,7 @@ class ResultCollector:
             self.distinct += self.found
         return done == len(parts)
 
-    def measured_part(self, numbered: tuple[int, Callable[[], Run]]) -> tuple[Run, Run | None]:
+    def measured_part(self, numbered: tuple[int, Callable[[], SortedRun]]) -> tuple[SortedRun, SortedRun | None]:
         """The fixtures of a part in the order of their ranks; and of a symmetric workpiece the smallest of the forms that
         its turns give them."""
         number, part = numbered
@@ -163,11 +163,11 @@ class ResultCollector:
         identity = np.arange(len(table)) + (number << PLACE_BITS)
         query = self.problem.query
         keys = key_of(*ranking_keys(table.quality, query.ranking, query.tolerance), identity)
-        ranked = Run.of(keys, table.columns)
+        ranked = SortedRun.of(keys, table.columns)
         if not self.identity.is_symmetric:
             return ranked, None
         words, pose = self.identity.smallest(table)
-        return ranked, Run.of(key_of(*words), (table.arrangement, pose, *words))
+        return ranked, SortedRun.of(key_of(*words), (table.arrangement, pose, *words))
 
     @property
     def listed(self) -> int:
@@ -189,6 +189,6 @@ class ResultCollector:
         self.by_rank.close()
 
 
-def taken(part: Callable[[], Run]) -> Run:
+def taken(part: Callable[[], SortedRun]) -> SortedRun:
     """A part of some runs, read and merged."""
     return part()

@@ -18,11 +18,12 @@ from workhold.conventions import SAME_IMAGE, SAME_POSE
 from workhold.geometry.rotation import rotated
 from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
 from workhold.listing.canonical_form import changes, clusters, packed
+from workhold.listing.clamp_placement import axis_of
 from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Arrangement, Toolkit
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Identity", "SetCount", "identity_order"]
+__all__ = ["Identity", "SetCount", "half_turns", "identity_order"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -79,8 +80,8 @@ class Identity:
             anchor, ahead = (
                 np.where(turned[:, None], two, one)[chosen] for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
             )
-            (u, v), back = (anchor - table.position[chosen]).T, -table.theta[chosen]
-            seen = rotated(u, v, back)
+            away = anchor - table.position[chosen]
+            seen = rotated(away[:, 0], away[:, 1], -table.theta[chosen])
             place = rotated(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
             image = np.column_stack([(theta % period)[chosen] - SAME_POSE, *place, ahead])
             if not words:
@@ -116,8 +117,7 @@ class Identity:
             (column[:, own] - np.take_along_axis(first, on[:, own], axis=1), MOST_HOLES),
             (row[:, own] - lowest, MOST_HOLES),
         ]
-        along_y = np.array([carrier.travel is not None and not carrier.is_along_x for carrier in carriers])
-        upright = along_y[on[:, movers]]
+        upright = np.array([axis_of(carrier) == 1 for carrier in carriers])[on[:, movers]]
         if self.every:
             # A clamp is named by its line; jaws have holes of their own.
             line = np.where(upright, column[:, movers] - first[:, :1], row[:, movers] - lowest)
@@ -135,6 +135,11 @@ class Identity:
         return np.bincount(arrangement[order[fresh]], minlength=len(self.toolkit.arrangements))
 
 
+def half_turns(toolkit: Toolkit) -> bool:
+    """Whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
+    return toolkit.wall is None
+
+
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
     """Whether half a turn of everything makes an arrangement the same again: with as many pegs on either jaw, or with two
     clamps in opposite directions, unless a wall stays where it is."""
@@ -145,7 +150,7 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
         swaps = any(one.half_turns % 2 and one.carriers == (1, 0) for one in toolkit.symmetries)
         return swaps and arrangement.pegs == arrangement.pegs[::-1]
     units = np.array([way.unit for way in ways if way is not None])
-    return toolkit.wall is None and len(units) == 2 and not units.sum(axis=0).any()
+    return half_turns(toolkit) and len(units) == 2 and not units.sum(axis=0).any()
 
 
 def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array) -> BoolArray:

@@ -20,7 +20,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_SLACK, GAP_SLACK
 from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.clamp_placement import ClampPlacement, last_holes
+from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.model.result import FixtureTable, unknown_quality
 from workhold.proof.deciding import is_standing
 from workhold.rowwise import largest, smallest
@@ -279,12 +279,12 @@ def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
     )
     travelled = placement.place - hole * frame.lattice.pitch_x
     clamp = frame.toolkit.moving
-    if not clamp.has_a_hole:
+    if not is_bolted(clamp):
         # The tip is counted from the first column, or row, of the plate.
         across, along = frame.toolkit.moving_axis
         x, y = clamp.place(column[:, TIP], row[:, TIP])
         travelled += x * across + y * along
-        (column if clamp.is_along_x else row)[:, TIP] = 0
+        (row if axis_of(clamp) else column)[:, TIP] = 0
     return table_of(c, problem, column, row, travelled)
 
 

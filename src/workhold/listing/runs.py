@@ -26,7 +26,7 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-__all__ = ["Columns", "Run", "Runs", "in_order", "key_of"]
+__all__ = ["Columns", "SortedRun", "Runs", "in_order", "key_of"]
 
 Keys = NDArray[np.bytes_]
 Columns = tuple[NDArray[Any], ...]
@@ -88,20 +88,20 @@ def ranked(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
 
 
 @frozen(eq=False)
-class Run:
+class SortedRun:
     """Rows in memory in the order of their keys."""
 
     keys: Keys
     columns: Columns
 
     @classmethod
-    def of(cls, keys: Keys, columns: Columns) -> Run:
+    def of(cls, keys: Keys, columns: Columns) -> SortedRun:
         """A run of rows in any order."""
         order = order_of(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
-    def joined(cls, runs: Sequence[Run]) -> Run:
+    def joined(cls, runs: Sequence[SortedRun]) -> SortedRun:
         """Several runs as one."""
         if len(runs) == 1:
             return runs[0]
@@ -120,9 +120,9 @@ class Run:
         """How many of its rows come before a key (1,)."""
         return int(np.searchsorted(self.keys, key)[0])
 
-    def rows(self, first: int, end: int) -> Run:
+    def rows(self, first: int, end: int) -> SortedRun:
         """Some of its rows."""
-        return Run(self.keys[first:end], tuple(column[first:end] for column in self.columns))
+        return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
 @define(eq=False)
@@ -168,7 +168,7 @@ class StoredRun:
     some_keys: Keys
 
     @classmethod
-    def of(cls, run: Run, scratch: Scratch) -> StoredRun:
+    def of(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
         """A run written to a file."""
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
@@ -190,10 +190,10 @@ class StoredRun:
         first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
         return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
 
-    def rows(self, first: int, end: int) -> Run:
+    def rows(self, first: int, end: int) -> SortedRun:
         """Some of its rows."""
         keys, *columns = (self.array(number, first, end) for number in range(len(self.forms)))
-        return Run(keys, tuple(columns))
+        return SortedRun(keys, tuple(columns))
 
 
 @define(eq=False)
@@ -206,14 +206,14 @@ class Runs:
     """
 
     folder: Path | None = None
-    runs: list[Run | StoredRun] = field(factory=list, init=False)
-    fresh: list[Run] = field(factory=list, init=False)
+    runs: list[SortedRun | StoredRun] = field(factory=list, init=False)
+    fresh: list[SortedRun] = field(factory=list, init=False)
     scratch: Scratch | None = field(default=None, init=False)
 
     def __len__(self) -> int:
         return sum(map(len, self.runs)) + sum(map(len, self.fresh))
 
-    def add(self, run: Run) -> None:
+    def add(self, run: SortedRun) -> None:
         """Add rows.
 
         Raises
@@ -224,10 +224,10 @@ class Runs:
         self.fresh.append(run)
         if self.folder is not None and sum(map(len, self.fresh)) >= ROOM:
             self.scratch = self.scratch or Scratch(self.folder)
-            self.runs.append(StoredRun.of(Run.joined(self.fresh), self.scratch))
+            self.runs.append(StoredRun.of(SortedRun.joined(self.fresh), self.scratch))
             self.fresh = []
 
-    def parts(self) -> list[Callable[[], Run]]:
+    def parts(self) -> list[Callable[[], SortedRun]]:
         """What gives the rows of all runs in the order of their keys, part by part; rows of one key are in one part. At
         least one, where there is any run."""
         runs = [*self.runs, *self.fresh]
@@ -237,9 +237,9 @@ class Runs:
         edges = [[0] * len(runs), *places, [len(run) for run in runs]]
         return [self.part(runs, first, end) for first, end in pairwise(edges)]
 
-    def part(self, runs: Sequence[Run | StoredRun], first: list[int], end: list[int]) -> Callable[[], Run]:
+    def part(self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]) -> Callable[[], SortedRun]:
         """What gives one part."""
-        return lambda: Run.joined([run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)])
+        return lambda: SortedRun.joined([run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)])
 
     def close(self) -> None:
         """Give back memory and disk."""

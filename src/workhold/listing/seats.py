@@ -19,7 +19,7 @@ from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.kernels.contact.clamp_pairs import Clamps
 from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.clamp_contacts import ClampContacts
-from workhold.listing.clamp_placement import DIRECTION_NAMES, is_upright
+from workhold.listing.clamp_placement import DIRECTION_NAMES, is_bolted, is_upright
 
 __all__ = ["Seats", "seats_of"]
 
@@ -128,7 +128,7 @@ def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem
     clamp_of, hole = rank[found.hole_of[there]], found.holes[there]
     tip = found.tip[kept][clamp_of]
     plate = problem.toolkit.carriers[0]
-    place = hole * np.array(plate.pitch) + np.array(plate.offset) if problem.toolkit.moving.has_a_hole else tip
+    place = hole * np.array(plate.pitch) + np.array(plate.offset) if is_bolted(problem.toolkit.moving) else tip
     ends = np.searchsorted(clamp_of, np.arange(len(kept) + 1))
     clamps = Clamps(
         starts=np.searchsorted(seat[kept], np.arange(count + 1)).astype(np.int64),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
 from workhold.geometry.rotation import rotated
-from workhold.listing.clamp_placement import ClampPlacement, last_holes
+from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.listing.listed import Work
 from workhold.listing.ranked_table import RankedTable
 from workhold.model.query import Query
@@ -95,19 +95,18 @@ class WallFixtures:
         plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
         assert clamp.travel is not None
         columns, rows = last_holes(plate)
-        along_x, theta, count = clamp.is_along_x, flush.theta[self.edge], len(self)
-        axis = 0 if along_x else 1
-        on_line = (self.line <= rows) if along_x else (np.abs(self.line) <= columns)
+        axis, theta, count = axis_of(clamp), flush.theta[self.edge], len(self)
+        on_line = (np.abs(self.line) <= columns) if axis else (self.line <= rows)
         return ClampPlacement(
             clamp,
             axis,
             back=int(clamp.travel.unit[axis]),
             tip=self.tip,
             locators=self.locator[:, None],
-            place=self.tip[:, 0] - self.locator[:, 0] if along_x else self.tip[:, 1] - plate.offset[1],
+            place=self.tip[:, 1] - plate.offset[1] if axis else self.tip[:, 0] - self.locator[:, 0],
             pitch=plate.pitch[axis],
-            first=np.full(count, -columns if along_x else 0.0),
-            last=np.full(count, columns if along_x else rows),
+            first=np.full(count, 0.0 if axis else -columns),
+            last=np.full(count, rows if axis else columns),
             fits=on_line & (self.row <= rows),
             seen=flush.ends[self.edge, 0] - np.array(problem.workpiece.center) + turned(self.tip, -theta),
             theta=theta,
@@ -125,10 +124,10 @@ def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fixture
     clamp, flush, count = problem.toolkit.moving, problem.workpiece.flush, len(found)
     column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
     row[:, 0] = found.row
-    column[:, 3], row[:, 3] = (hole, found.line) if clamp.is_along_x else (found.line, hole)
+    column[:, 3], row[:, 3] = (found.line, hole) if axis_of(clamp) else (hole, found.line)
     # The lowest column is 0; where the clamp has no hole, its place is counted from there.
     column[:, [0, 3]] -= np.minimum(column[:, [0]], column[:, [3]])
-    if clamp.is_along_x and not clamp.has_a_hole:
+    if axis_of(clamp) == 0 and not is_bolted(clamp):
         column[:, 3] = 0
     across = column[:, 0] * clamp.pitch[0] - found.locator[:, 0]
     theta = flush.theta[found.edge]

@@ -7,8 +7,6 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
-from attrs import evolve
-
 from workhold.fixels.fields import TABLES, Table
 from workhold.model.fixture import WALL
 from workhold.model.flat import Flat
@@ -113,12 +111,7 @@ class FlatJaw(Toolkit):
     def datum(self) -> Datum:
         """Where column A meets the flat jaw; rows move with their jaw."""
         wall, jaw = self.carriers
-        return evolve(Datum.at_wall(wall, jaw), edge=None)
-
-    @property
-    def gap(self) -> float:
-        """The smallest gap in mm."""
-        return self.min_gap
+        return Datum.at_wall(wall, jaw)
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Half the pitch."""

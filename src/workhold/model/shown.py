@@ -306,14 +306,14 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
 
 
 def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
-    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it."""
+    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it where it stands still."""
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
     around = plate.plate.union(seen.part)
     bar = Box(around.x0, -thick, around.x1, 0.0)
-    # What stands still goes on below the bar; what slides ends above it.
-    below = evolve(plate.plate, y0=-thick if plate.clamping is None else max(plate.plate.y0, 0.0))
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
-    plate = evolve(plate, plate=below, broken=plate.broken - {"bottom"})
+    # What stands still goes on below the bar; rows are counted from the wall, so what slides ends before the first.
+    low = -thick if plate.clamping is None else plate.plate.y0
+    plate = evolve(plate, plate=evolve(plate.plate, y0=low), broken=plate.broken - {"bottom"})
     return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
 
 

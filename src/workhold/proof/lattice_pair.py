@@ -63,7 +63,10 @@ def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, S
 
 
 def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bool | None, list[arb]]:
-    """Return the verdict on the contacts of a pair at the precision in force, and the null vector of ``search.lattice_pairs.closure_of``."""
+    """Return the verdict on the contacts of a pair at the precision in force, and their null vector.
+
+    See ``search.lattice_pairs.closure_of`` for its formula.
+    """
     wall, ((u, v), a, slack), ((p, q), b, other) = contacts
     length, margin = arb(problem.wrench_length), arb(problem.contact_margin)
     along = a[0] * b[0]
@@ -86,38 +89,58 @@ def contacts_of(pair: LatticePair, problem: Problem) -> tuple[arb, Contact, Cont
     rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.features]
     pitch = problem.toolkit.moving.pitch
     shift = tuple(arb(one) * int(k) for one, k in zip(pitch, pair.step, strict=True))
-    (middle, axis, radius), (second, direction, other) = ((row.middle, row.axis, row.radius) for row in rows)
-    between = second[0] - shift[0] - middle[0], second[1] - shift[1] - middle[1]
-    if radius is None and other is None:
-        sine = axis[0] * direction[1] - axis[1] * direction[0]
-        if not abs(sine) > 0:
-            return None
-        s = (between[0] * direction[1] - between[1] * direction[0]) / sine
-        offset = s * axis[0], s * axis[1]
-    elif other is None or radius is None:
-        swaps = other is None
-        (ax, ay), size = (direction, radius) if swaps else (axis, other)
-        x, y = (-between[0], -between[1]) if swaps else between
-        half = half_chord((size - (ax * y - ay * x)) * (size + (ax * y - ay * x)))
-        if half is None:
-            return None
-        s = ax * x + ay * y + pair.branch * half
-        offset = s * ax, s * ay
-        if swaps:
-            offset = offset[0] + between[0], offset[1] + between[1]
-    else:
-        square = between[0] ** 2 + between[1] ** 2
-        apart = square.sqrt()
-        away = ((radius - other) * (radius + other) / apart + apart) / 2
-        half = half_chord((radius - away) * (radius + away))
-        if half is None:
-            return None
-        x, y = between[0] / apart, between[1] / apart
-        offset = away * x - pair.branch * half * y, away * y + pair.branch * half * x
-    first = middle[0] + offset[0], middle[1] + offset[1]
-    points = first, (first[0] + shift[0], first[1] + shift[1])
-    one, two = (row.contact(point) for row, point in zip(rows, points, strict=True))
-    return wall, one, two
+    (x, y), (u, v) = (row.middle for row in rows)
+    offset = crossing_of(rows[0], rows[1], (u - shift[0] - x, v - shift[1] - y), pair.branch)
+    if offset is None:
+        return None
+    first = x + offset[0], y + offset[1]
+    one = rows[0].contact(first)
+    return wall, one, rows[1].contact((first[0] + shift[0], first[1] + shift[1]))
+
+
+def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
+    """Return where two curves cross, from the middle of the first; None where they do not, or it is not known that they do.
+
+    Parameters
+    ----------
+    between : from the middle of the first to that of the second, in mm.
+    branch : -1 or 1, which of two crossings.
+    """
+    x, y = between
+    if one.radius is not None and other.radius is not None:
+        apart = (x * x + y * y).sqrt()
+        away = ((one.radius - other.radius) * (one.radius + other.radius) / apart + apart) / 2
+        half = half_chord((one.radius - away) * (one.radius + away))
+        x, y = x / apart, y / apart
+        return None if half is None else (away * x - branch * half * y, away * y + branch * half * x)
+    if other.radius is not None:
+        return on_line(between, one.axis, other.radius, branch)
+    if one.radius is not None:
+        place = on_line((-x, -y), other.axis, one.radius, branch)
+        return None if place is None else (place[0] + x, place[1] + y)
+    (ax, ay), (bx, by) = one.axis, other.axis
+    sine = ax * by - ay * bx
+    if not abs(sine) > 0:
+        return None
+    along = (x * by - y * bx) / sine
+    return along * ax, along * ay
+
+
+def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
+    """Return where a line crosses a circle, from the line's middle; None where it surely misses it.
+
+    Parameters
+    ----------
+    between : from the middle of the line to that of the circle, in mm.
+    axis : unit vector along the line.
+    """
+    (ax, ay), (x, y) = axis, between
+    away = ax * y - ay * x
+    half = half_chord((radius - away) * (radius + away))
+    if half is None:
+        return None
+    along = ax * x + ay * y + branch * half
+    return along * ax, along * ay
 
 
 def half_chord(square: arb) -> arb | None:

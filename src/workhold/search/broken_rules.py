@@ -41,7 +41,7 @@ __all__ = ["all_contacts", "removals_of"]
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-# Contacts kept from each block of the search; far more than a part without a fixture has.
+# ContactSets kept from each block of the search; far more than a part without a fixture has.
 MOST_LISTED = 5_000
 # Pegs this near in x, in mm, are even.
 EVEN = 1e-6
@@ -52,7 +52,7 @@ ROUNDING = 1e-12
 
 
 @define(frozen=True, eq=False)
-class Contacts:
+class ContactSets:
     """N sets of four simultaneous contacts and what the rules ask of them.
 
     Parameters
@@ -70,10 +70,10 @@ class Contacts:
     clamping: Array
     end_distance: Array
 
-    def take(self, chosen: BoolArray) -> Contacts:
+    def take(self, chosen: BoolArray) -> ContactSets:
         """Some of them."""
         rest = (values[chosen] for values in (self.margin, self.null, self.clamping, self.end_distance))
-        return Contacts(self.candidates.take(chosen), *rest)
+        return ContactSets(self.candidates.take(chosen), *rest)
 
 
 def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
@@ -100,7 +100,7 @@ def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) 
     return Removals(first, removals, nearest)
 
 
-def all_contacts(problem: Problem, threads: int | None) -> Contacts:
+def all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
     workers = thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
@@ -115,7 +115,7 @@ def all_contacts(problem: Problem, threads: int | None) -> Contacts:
     spans = (c.null > -1.0).any(axis=1)
     null = c.null * np.where(c.null.min(axis=1) >= -c.null.max(axis=1), 1.0, -1.0)[:, None]
     along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
-    return Contacts(
+    return ContactSets(
         evolve(c, force=null),
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
@@ -127,8 +127,8 @@ def all_contacts(problem: Problem, threads: int | None) -> Contacts:
 
 
 def facing(c: Candidates, swapped: int) -> Candidates:
-    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those whose moving
-    pegs are farther right in the middle.
+    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those whose
+    moving pegs are farther right in the middle.
 
     Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
     lower one is taken for the right one.
@@ -173,7 +173,7 @@ def restriction_removals(problem: Problem, threads: int | None, left: int) -> tu
     return first, removals
 
 
-Rule = tuple[str, Callable[[Contacts], BoolArray], Callable[[Contacts], tuple[int, str]]]
+Rule = tuple[str, Callable[[ContactSets], BoolArray], Callable[[ContactSets], tuple[int, str]]]
 
 
 def rules(problem: Problem, unit: Unit) -> list[Rule]:
@@ -220,12 +220,12 @@ def placing_rules(problem: Problem) -> list[Rule]:
     return out
 
 
-def no_contact(contacts: Contacts) -> BoolArray:
+def no_contact(contacts: ContactSets) -> BoolArray:
     """None of the contacts."""
     return np.zeros(len(contacts.margin), np.bool_)
 
 
-def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
+def short_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
     """The contact whose pegs are farthest from the ends of their faces."""
     index = int(c.end_distance.argmax())
     return index, (
@@ -234,7 +234,7 @@ def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
     )
 
 
-def too_near(frame: Frame, unit: Unit, c: Contacts) -> tuple[int, str]:
+def too_near(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
     """The contact whose moving pegs are farthest along the travel from the others."""
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
@@ -246,7 +246,7 @@ def too_near(frame: Frame, unit: Unit, c: Contacts) -> tuple[int, str]:
     )
 
 
-def open_contact(c: Contacts) -> tuple[int, str]:
+def open_contact(c: ContactSets) -> tuple[int, str]:
     """The contact that comes nearest to force closure."""
     index = int(c.margin.argmax())
     if c.margin[index] > -ROUNDING:
@@ -259,22 +259,22 @@ def open_contact(c: Contacts) -> tuple[int, str]:
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
 
 
-def unclamped(frame: Frame, c: Contacts) -> tuple[int, str]:
+def unclamped(frame: Frame, c: ContactSets) -> tuple[int, str]:
     """The contact that comes nearest to being clamped."""
     return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
 
-def no_place(noun: str, words: str, c: Contacts) -> tuple[int, str]:
+def no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
     """The best of what cannot be placed."""
     return int(c.margin.argmax()), f"it would hold, but what was asked for of the {noun} forbids it: {words}."
 
 
-def on_the_edge(c: Contacts) -> tuple[int, str]:
+def on_the_edge(c: ContactSets) -> tuple[int, str]:
     """The best of what the exact test removes."""
     return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
 
 
-def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) -> NearestMiss:
+def nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
     """A contact that is no fixture, placed in a toolkit without limits."""
     index, words = miss
     toolkit = problem.toolkit.without(problem.toolkit.limits)

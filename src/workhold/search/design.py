@@ -31,11 +31,11 @@ from workhold.search.cells import Block, run_blocks
 from workhold.search.contacts import contacts_of
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.preview import Preview, Previews
-from workhold.search.seated import Receiver, receive_seated, seated_answer
+from workhold.search.seated import Sink, deliver_seated, seated_answer
 from workhold.search.shares import Locating, answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["Receiver", "answer", "design"]
+__all__ = ["Sink", "answer", "design"]
 
 # The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
 SEARCH = 0.9
@@ -109,7 +109,7 @@ def answer(
     progress: Progress | None = None,
     cancel: Event | None = None,
     preview: Preview | None = None,
-    receiver: Receiver | None = None,
+    sink: Sink | None = None,
 ) -> Result:
     """Find every fixture that a query asks for, or the best of them.
 
@@ -120,7 +120,7 @@ def answer(
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
     preview : called from this thread now and then with some fixtures found so far, as a result marked incomplete; not in the
         first 0.3 s.
-    receiver : takes the fixtures, which are then not held in memory all at once; the result comes without them.
+    sink : takes the fixtures, which are then not held in memory all at once; the result comes without them.
 
     Returns
     -------
@@ -143,20 +143,20 @@ def answer(
     """
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
-        return answer_with_seating(query, workers, progress, cancel, preview, receiver)
+        return answer_with_seating(query, workers, progress, cancel, preview, sink)
     if query.toolkit.wall is not None:
-        return handed_over(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), receiver)
+        return deliver(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), sink)
     if query.toolkit.needs_pairs:
         with LatticeShares.of(query, workers, cancel) as shares:
-            return handed_over(answer_in_shares(shares, progress, cancel, preview), receiver)
+            return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
     ways = query.toolkit.ways
     if len(ways) == 1:
-        return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
+        return answer_of_a_way(query, workers, progress, cancel, preview, sink)
     results = []
     for number, way in enumerate(ways):
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
-    return handed_over(joined_ways(results, query), receiver)
+    return deliver(joined_ways(results, query), sink)
 
 
 def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
@@ -174,13 +174,13 @@ def answer_with_seating(
     progress: Progress | None,
     cancel: Event | None,
     preview: Preview | None,
-    receiver: Receiver | None,
+    sink: Sink | None,
 ) -> Result:
     """The answer with the seating of the first fixtures, see :func:`answer`."""
     search = partial(answer, threads=threads, preview=preview)
-    if receiver is None:
+    if sink is None:
         return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
-    return receive_seated(query, search, receiver, threads=threads, progress=progress, cancel=cancel)
+    return deliver_seated(query, search, sink, threads=threads, progress=progress, cancel=cancel)
 
 
 def answer_of_a_way(
@@ -189,7 +189,7 @@ def answer_of_a_way(
     progress: Progress | None,
     cancel: Event | None,
     preview: Preview | None,
-    receiver: Receiver | None = None,
+    sink: Sink | None = None,
 ) -> Result:
     """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
     problem = Problem.of(query)
@@ -200,9 +200,9 @@ def answer_of_a_way(
     receive = None if kept is None else kept.add
     look = None if preview is None else Previews(problem, preview).add
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
-    if receiver is not None and kept is None:
+    if sink is not None and kept is None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
-            collector = ResultCollector(problem, pool, 2 * threads, cancel, receiver.folder)
+            collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)
             with collector.given_up_on_errors():
                 _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
                 result = collected_result(collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
@@ -210,7 +210,7 @@ def answer_of_a_way(
                 listed = collector.listed
                 if listed < sum(result.found.values()):
                     result = result.cut_short(listed)
-                receiver.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
+                sink.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
         return result
     records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
     work = work_of(search, blocks, done)
@@ -218,13 +218,13 @@ def answer_of_a_way(
         result = best_result(kept, work)
     else:
         result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=threads)
-    return handed_over(with_reason(result, search, threads, cancel), receiver)
+    return deliver(with_reason(result, search, threads, cancel), sink)
 
 
-def handed_over(result: Result, receiver: Receiver | None) -> Result:
-    """A result that is whole in memory, after a receiver, if there is one, has taken it."""
-    if receiver is not None:
-        receiver.receive(result, len(result), [result.table])
+def deliver(result: Result, sink: Sink | None) -> Result:
+    """A result that is whole in memory, after a sink, if there is one, has taken it."""
+    if sink is not None:
+        sink.receive(result, len(result), [result.table])
     return result
 
 

@@ -123,6 +123,6 @@ def held_in_another(query: Query, change: Change) -> Query:
 
 def held_in(query: Query, toolkit: Toolkit) -> Query:
     """A query in another toolkit of the kind, where that has another number of clamps without what only the first has."""
-    if toolkit.needs_pairs == query.toolkit.needs_pairs:
+    if toolkit.peg_count == query.toolkit.peg_count:
         return evolve(query, toolkit=toolkit)
     return evolve(query, toolkit=toolkit, arrangements=None, ranking=None, listing=None)

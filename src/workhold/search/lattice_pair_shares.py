@@ -1,4 +1,4 @@
-"""The search of a lattice that slides toward a wall, in shares: one hull edge of the part after the other lies on the wall."""
+"""The search of a lattice that slides toward a wall, in shares: one hull edge after the other lies on the wall."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ class LatticePairs:
 def pairs_on(
     lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
 ) -> Iterator[LatticePairs]:
-    """Yield the pairs of pegs that touch a part on a wall, at least nearly ``margin`` mm inside their features, some at a time.
+    """Yield the pairs of pegs that touch a part on a wall, nearly ``margin`` mm inside their features or farther.
 
     Parameters
     ----------
@@ -305,7 +305,7 @@ def closure_of(pairs: LatticePairs, lying: PartOnWall, problem: Problem) -> tupl
 def are_pressed(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
-    """Return the pairs that press the part as it lies on a hull edge, the numbers of those not decided, and of those in balls.
+    """Return the pairs that press the part on a hull edge, the numbers of those left open, and how many needed balls.
 
     Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
     """

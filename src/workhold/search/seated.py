@@ -29,13 +29,13 @@ from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
 from workhold.seating.pattern import refuse_unseated
 
-__all__ = ["Receiver", "receive_seated", "refuse_unasked", "seated_answer"]
+__all__ = ["Sink", "deliver_seated", "refuse_unasked", "seated_answer"]
 
 # The part of the work, as progress tells it, that is the search.
 SEARCHED = 0.3
 
 
-class Receiver(Protocol):
+class Sink(Protocol):
     """What takes a result too large for memory.
 
     Attributes
@@ -92,16 +92,16 @@ def seated_answer(
     if query.seating is None:
         return search(query, progress=progress, cancel=cancel)
     refuse_unasked(query)
-    if query.toolkit.needs_pairs:
+    if is_put_in_by_hand(query):
         return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel), query)
     result = search(query.without_seating, progress=stage(progress, 0.0, SEARCHED), cancel=cancel)
     return seated(result, SeatingWork(query, threads, stage(progress, SEARCHED, 1.0), cancel))
 
 
-def receive_seated(
+def deliver_seated(
     query: Query,
     search: Callable[..., Result],
-    receiver: Receiver,
+    sink: Sink,
     *,
     threads: int,
     progress: Progress | None,
@@ -111,7 +111,7 @@ def receive_seated(
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``receiver`` takes its fixtures.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its fixtures.
 
     Raises
     ------
@@ -119,14 +119,19 @@ def receive_seated(
         As :func:`seated_answer`.
     """
     refuse_unasked(query)
-    if query.toolkit.needs_pairs:
-        by_hand = SeatedReceiver(receiver, SeatingWork(query, threads, None, cancel))
-        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel, receiver=by_hand), query)
+    if is_put_in_by_hand(query):
+        by_hand = SeatedSink(sink, SeatingWork(query, threads, None, cancel))
+        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel, sink=by_hand), query)
     told = None if progress is None else rising(progress)
     work = SeatingWork(query, threads, stage(told, SEARCHED, 1.0), cancel)
-    share, taker = stage(told, 0.0, SEARCHED), SeatedReceiver(receiver, work)
-    result = search(query.without_seating, progress=share, cancel=cancel, receiver=taker)
+    share, taker = stage(told, 0.0, SEARCHED), SeatedSink(sink, work)
+    result = search(query.without_seating, progress=share, cancel=cancel, sink=taker)
     return evolve(result, query=query)
+
+
+def is_put_in_by_hand(query: Query) -> bool:
+    """Whether the part is pushed against its locators by hand, as with two clamps, of which none brings it home."""
+    return query.toolkit.needs_pairs
 
 
 def refuse_unasked(query: Query) -> None:
@@ -137,7 +142,7 @@ def refuse_unasked(query: Query) -> None:
     InputError
         As ``refuse_unseated``, but that with two clamps only figures of seating cannot be asked for.
     """
-    if not query.toolkit.needs_pairs:
+    if not is_put_in_by_hand(query):
         refuse_unseated(query.toolkit)
     elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.ranking):
         raise InputError(
@@ -217,7 +222,7 @@ def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
     """The seating of all fixtures of a result; None of those that were left undone."""
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
-    from workhold.seating.seating import Solver
+    from workhold.seating.solver import Solver
 
     told = Solver(result.workpiece, result.toolkit).as_many(
         result,
@@ -229,34 +234,34 @@ def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
 
 
 @frozen
-class SeatedReceiver:
+class SeatedSink:
     """Hands over results with the seating of their first fixtures.
 
     Parameters
     ----------
-    receiver : takes them.
+    sink : takes them.
     work : how the seating is worked out.
     """
 
-    receiver: Receiver
+    sink: Sink
     work: SeatingWork
 
     @property
     def folder(self) -> Path:
         """Where there is room for what is being sorted."""
-        return self.receiver.folder
+        return self.sink.folder
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
         """Take a result and its fixtures, so many, best first, in tables one after the other."""
-        if self.work.query.toolkit.needs_pairs:
-            self.receiver.receive(put_in_by_hand(result, self.work.query), listed, tables)
+        if is_put_in_by_hand(self.work.query):
+            self.sink.receive(put_in_by_hand(result, self.work.query), listed, tables)
             return
         rest = iter(tables)
         held = list(taken(rest, self.work.query.seating or 0)) or [result.table]
         made = seated(evolve(result, table=FixtureTable.joined(held)), self.work, listed)
         further = () if self.work.query.has_seating_rules else rest
         count = len(made) + (0 if self.work.query.has_seating_rules else listed - sum(map(len, held)))
-        self.receiver.receive(made, count, chain([made.table], further))
+        self.sink.receive(made, count, chain([made.table], further))
 
 
 def taken(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:

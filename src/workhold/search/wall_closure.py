@@ -110,14 +110,16 @@ def closure(
     one: PinContacts,
     two: PinContacts,
     locator: IntArray,
-    push: tuple[float, float],
+    push: tuple[float, float] | None,
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
     """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force the clamp passes
     on in its direction; which pairs (M,) press the part, and of which that is open.
 
-    With normals a, b and moments m, M of locator and clamp about the start of the hull edge of length l, lengths in parts of
-    L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
+    Where both pegs move towards the wall, ``push`` is None: they pass on what the wall takes up, in parts of the
+    second one's force. With normals a, b and moments m, M of locator and clamp about the start of the hull edge of
+    length l, lengths in parts of L, and p = -b_u sign a_u, q = |a_u|, the null vector is
+    (l (p a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal
@@ -131,13 +133,13 @@ def closure(
     null = np.stack(forces, axis=1)
     reach = np.maximum(one.reach[locator], two.reach)
     swing = np.maximum(one.swing[locator], two.swing)
-    pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
-    with np.errstate(invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pushes = (both / (across * wall)) if push is None else -(b[:, 0] * push[0] + b[:, 1] * push[1])
         band = 20.0 * swing + 4.0 * (reach + lying.off) / length + ROUNDING
         size = sum(map(np.abs, forces))
         smallest = np.minimum(np.minimum(*forces[:2]), np.minimum(*forces[2:]))
         least = np.minimum(smallest - LEAST_CLOSURE * size, size - LEAST_SPAN)
-        force = null[:, 3] * pushes - LEAST_CLAMPING * size
+        force = (both if push is None else null[:, 3] * pushes) - LEAST_CLAMPING * size
         slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
         worst = np.minimum(least / band, force / (3.0 * band + size * swing))
         worst = np.minimum(worst, slack / np.maximum(1.2 * reach, 1e-300))

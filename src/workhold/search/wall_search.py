@@ -29,6 +29,7 @@ from workhold.conventions import (
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
+from workhold.listing.clamp_placement import axis_of
 from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
 from workhold.model.fixture import Pose
 from workhold.model.query import Query
@@ -251,7 +252,7 @@ class WallSearch:
             edge=edge,
             row=int(one.line[behind]),
             line=int(two.line[k]),
-            is_upright=not self.clamp.is_along_x,
+            is_upright=axis_of(self.clamp) == 1,
             features=(int(one.feature[behind]), int(two.feature[k])),
             branches=(float(one.branch[behind]), float(two.branch[k])),
         )
@@ -312,7 +313,7 @@ def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[Wal
         search.locators += len(locators)
     if len(locators) == 0:
         return
-    along = [search for search in searches if search.clamp.is_along_x]
+    along, upright = ([search for search in searches if axis_of(search.clamp) == axis] for axis in (0, 1))
     if along:
         places = locators
         if problem.moving != problem.standing:
@@ -321,7 +322,6 @@ def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[Wal
             for part in search.of_rows(places, locators):
                 if len(part):
                     yield search, search.closing(edge, lying, locators, part)
-    upright = [search for search in searches if not search.clamp.is_along_x]
     for part in one.on_columns(lying, locators) if upright else ():
         for search in upright:
             pushing = part.take(search.may_press(part.places))

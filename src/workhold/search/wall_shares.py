@@ -82,7 +82,7 @@ class WallShares:
 
     def work(self, done: int, complete: bool) -> Work:
         """How the search went; with one clamp each direction counts as a search of its own."""
-        times = 1 if self.collector.query.toolkit.needs_pairs else len(self.searches)
+        times = 1 if self.searches[0].problem.pairing else len(self.searches)
         statistics = {
             "features": times * len(self.searches[0].problem.rows),
             "hull_edges": times * done,

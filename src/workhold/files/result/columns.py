@@ -31,14 +31,14 @@ from workhold.model.columns import COLUMNS_OF, HEAD, columns_said
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 
-__all__ = ["ColumnsReceiver", "MappedTable", "answer_to_file", "read_columns", "write_columns"]
+__all__ = ["ColumnsSink", "MappedTable", "answer_to_file", "read_columns", "write_columns"]
 
 # Fixtures rounded and written together.
 BLOCK = 1 << 15
 
 
 @frozen
-class ColumnsReceiver:
+class ColumnsSink:
     """Writes results in columns as they come; an earlier file of the name is replaced only when all went well."""
 
     path: Path
@@ -79,7 +79,7 @@ def write_columns(result: Result, path: str | Path) -> None:
     InputError
         When the file cannot be written.
     """
-    ColumnsReceiver(Path(path)).receive(result, len(result), [result.table])
+    ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
 def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
@@ -106,7 +106,7 @@ def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
 
     path = Path(path)
     with plain_errors(path):
-        answer(query, receiver=ColumnsReceiver(path), **watching)
+        answer(query, sink=ColumnsSink(path), **watching)
     return read_columns(path)
 
 

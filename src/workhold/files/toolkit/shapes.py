@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping
 from functools import reduce
@@ -41,7 +42,7 @@ def forms_by_noun(
         kinds = tuple(one for one, other in TABLES.items() if other is table)
         fields = {} if kind is None else {"kind": kind(kinds)}
         forms[noun] = create_model(
-            name.format(noun.title()),
+            name.format(re.sub(r"\W", "", noun.title())),
             __base__=base,
             __module__=base.__module__,
             __doc__=summary.format(table.summary),
