@@ -10,7 +10,8 @@ import numpy as np
 from workhold.conventions import CIRCULAR
 from workhold.errors import InputError
 from workhold.files.svg.lengths import Figure, numbers
-from workhold.files.svg.path import Shape, near, path
+from workhold.files.svg.path import path
+from workhold.files.svg.shape import Shape, near
 from workhold.geometry.rational import Pieces, ellipse_pieces
 
 __all__ = ["SHAPES"]
