@@ -15,8 +15,10 @@ from svg_reading import texts
 from workhold import Fence, Result, Workpiece, design
 from workhold.cli.seat_command import seat_table
 from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.part import contact_of
 from workhold.drawing.result_sheet import result_sheet
+from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.seats_picture import draw_seats
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
@@ -27,7 +29,6 @@ from workhold.model.restrictions import Restrictions
 from workhold.model.seating import Seat
 from workhold.model.shown import shown
 from workhold.model.units import MILLIMETRE
-from workhold.seating.reading import Gauge
 from workhold.statics.contact_matrix import Touched
 
 L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
@@ -138,7 +139,9 @@ def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
     own = evolve(seat, jaw_separation=fixture.jaw_separation, difference=0.0, is_own=True)
     picture = texts(draw_seats([own, seat], fixture, result.workpiece, result.toolkit))
     assert picture.count("flush") == 2 and "four pegs" not in picture
-    table = seat_table([own, seat], Gauge(fixture, result.toolkit), MILLIMETRE)
+    lengths = LengthUnit.suiting(MILLIMETRE, 10.0)
+    gauge = SeatingWords(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
+    table = seat_table([own, seat], gauge, MILLIMETRE)
     assert [row[-1] for row in table.rows] == ["right", "flush on the fence"]
 
 
