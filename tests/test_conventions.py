@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from workhold import conventions
-from workhold.verification import rules
+from workhold.verification import tolerances as rules
 
 BELIEF = Path(__file__).parent.parent / "docs" / "belief.md"
 # Of each row of the table, by its first words: the numbers in it, and what verification calls them where it uses them.

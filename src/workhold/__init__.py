@@ -7,9 +7,11 @@ Names are imported on first use, so that ``import workhold`` costs next to nothi
 
 from __future__ import annotations
 
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from workhold.model.delegates import hand_over
 from workhold.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -92,10 +94,32 @@ HOMES = {
 }
 
 
+# What methods of the model's classes end in, see ``model.delegates``.
+DELEGATES = {
+    "fixture_picture": "workhold.presenting.pictures",
+    "preset_fields": "workhold.presenting.presets",
+    "preset_names_of": "workhold.presenting.presets",
+    "preset_tolerance": "workhold.presenting.presets",
+    "result_picture": "workhold.presenting.pictures",
+    "save_sheet": "workhold.presenting.papers",
+    "to_arrow": "workhold.presenting.frames",
+    "to_pandas": "workhold.presenting.frames",
+    "workpiece_picture": "workhold.presenting.pictures",
+}
+
+
+def imported(name: str, home: str) -> Any:
+    """An object of a module, which is imported now; a home is a module, or a module and the object's own name there."""
+    module, _, known_as = home.partition(":")
+    return getattr(import_module(module), known_as or name)
+
+
+hand_over({name: partial(imported, name, home) for name, home in DELEGATES.items()})
+
+
 def __getattr__(name: str) -> Any:
     if name in HOMES:
-        module, _, known_as = HOMES[name].partition(":")
-        return getattr(import_module(module), known_as or name)
+        return imported(name, HOMES[name])
     raise AttributeError(f"module 'workhold' has no attribute {name!r}")
 
 

@@ -83,8 +83,9 @@ def completed(outcome: Verification, listing: Listing, *, threads: int | None = 
     query = listing.query if listing.complete else evolve(listing.query, best=None)
     if is_by_algebra(listing.statistics):
         from workhold.algebra.engine import answer_by_algebra
+        from workhold.search.seated import seated_answer
 
-        result = answer_by_algebra(query, **watching)
+        result = seated_answer(query, answer_by_algebra, **watching)
     else:
         from workhold.search.design import answer
 

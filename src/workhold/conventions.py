@@ -2,7 +2,7 @@
 
 Each stands here once, with what it measures and why it is what it is, and is imported by whoever asks. Lengths are in mm and
 angles in radians unless said otherwise. Roundings counted by hand for a proof stand beside their formulas instead, and so do
-numbers that only say how much work is done. ``workhold.verification.rules`` is a copy of what it needs, on purpose.
+numbers that only say how much work is done. ``workhold.verification.tolerances`` is a copy of what it needs, on purpose.
 """
 
 from __future__ import annotations

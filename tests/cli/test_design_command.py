@@ -290,17 +290,21 @@ def test_a_refusal_of_the_search_leaves_the_earlier_output(
 
 
 def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:
-    """``--engine algebra`` searches by the paper's polynomials and lists the same fixtures."""
-    counts = []
+    """``--engine algebra`` searches by the paper's polynomials and lists the same fixtures, the first with seating."""
+    counts, seatings = [], []
     for engine in ("curves", "algebra"):
         out = tmp_path / f"{engine}.json"
         arguments = ["design", "oblongPart", "--pitch", "12", "--columns", "1", "--peg-radius", "3"]
-        done = run(*arguments, "--engine", engine, "--out", str(out))
+        done = run(*arguments, "--engine", engine, "--seating", "2", "--out", str(out))
         assert done.exit_code == 0, done.stderr
-        counts.append(json.loads(out.read_text())["counts"])
+        written = json.loads(out.read_text())
+        counts.append(written["counts"])
+        seatings.append([len(one["seating"]["seats"]) for one in written["fixtures"] if "seating" in one])
+        assert written["seating"] == 2 and run("verify", str(out), "--complete").exit_code == 0
         head = "Proven: " if engine == "curves" else "Proven one by one: "
         assert [line for line in told(done) if line.startswith(head) and line.endswith(", none undecided.")]
     assert counts[0] == counts[1]
+    assert seatings[0] == seatings[1] and len(seatings[0]) == 2
     assert run(*arguments, "--engine", "luck").exit_code == 2
 
 

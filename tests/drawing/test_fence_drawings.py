@@ -65,11 +65,12 @@ def test_the_bar_lies_below_the_part_and_the_plate_goes_on_below_it() -> None:
     """As long as plate and part."""
     result = held(KITE)
     seen = shown(result[0], result.toolkit, result.workpiece)
-    assert seen.wall is not None and seen.wall.bar.y1 == 0.0 < -seen.wall.bar.y0
-    assert seen.wall.bar.x0 <= seen.part.x0 and seen.wall.bar.x1 >= seen.part.x1
+    (wall,) = seen.walls
+    assert wall.bar.y1 == 0.0 < -wall.bar.y0
+    assert wall.bar.x0 <= seen.part.x0 and wall.bar.x1 >= seen.part.x1
     assert seen.part.y0 == pytest.approx(0.0, abs=1e-9)
-    assert seen.carriers[0].plate.y0 == seen.wall.bar.y0
-    assert seen.wall.ends == (result[0].pegs[1].x, result[0].pegs[2].x)
+    assert seen.carriers[0].plate.y0 == wall.bar.y0
+    assert wall.ends == (result[0].pegs[1].x, result[0].pegs[2].x)
 
 
 def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:

@@ -18,7 +18,7 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
-from workhold.listing.alike import entries
+from workhold.listing.near_duplicates import entries
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions
 from workhold.model.setting import settings_of

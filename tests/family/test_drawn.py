@@ -14,7 +14,7 @@ from workhold import Plate, Query, Vise
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.family.curve_picture import draw_curve
 from workhold.family.family import Asked, Family, family_of
-from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING, loss_text
+from workhold.family.losses import RANKINGS, loss_text
 from workhold.family.plan import Plan
 from workhold.family.setup_pages import draw_setups, grid, holes_of, moves_words
 from workhold.geometry.box import Box
@@ -27,7 +27,7 @@ DAY = date(2026, 3, 31)
 
 def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
-    ranking = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+    ranking = RANKINGS[toolkit.travels]
     return family_of([Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in shop_parts(count)], threads=1)
 
 

@@ -17,7 +17,7 @@ from workhold.errors import InputError
 from workhold.family.family import Asked, Family, family_of
 from workhold.family.file import family_text
 from workhold.family.holding import holes_of, shifted, turned
-from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING, losses, threshold
+from workhold.family.losses import RANKINGS, losses, threshold
 from workhold.family.members import member_of, with_half_turns
 from workhold.family.plan import Holding
 from workhold.listing.ranking import measured
@@ -36,7 +36,7 @@ TWENTY = shop_parts(20)
 
 def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[Asked]:
     """Parts to be members, ranked by location error first."""
-    ranking = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+    ranking = RANKINGS[toolkit.travels]
     return [Asked(part.name, Query(part, toolkit, **{"ranking": ranking, **more})) for part in parts]  # type: ignore[arg-type]
 
 

@@ -9,7 +9,7 @@ from family_parts import shop_parts
 from workhold import Plate, Query, Vise, Workpiece, answer
 from workhold.family.family import Asked, family_of
 from workhold.family.holding import holes_of
-from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
+from workhold.family.losses import RANKINGS
 from workhold.family.other_side import other_side, zero_of_other_side
 from workhold.model.load import Load
 from workhold.model.part_zero import PartZero, part_zero
@@ -83,7 +83,7 @@ def test_the_zero_is_the_same_point_of_the_part() -> None:
 
 def test_both_sides_share_pins() -> None:
     parts = [
-        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=FAMILY_RANKING)) for p in shop_parts(2)
+        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=RANKINGS[1])) for p in shop_parts(2)
     ]
     family = family_of([side for one in parts for side in (one, one.turned_over)], threads=1)
     assert [one.name for one in family.members] == ["ell-1", "ell-1, side 2", "bracket-2", "bracket-2, side 2"]
@@ -97,7 +97,7 @@ def test_both_sides_share_pins() -> None:
 
 @pytest.mark.parametrize("toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)])
 def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
-    ranking = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+    ranking = RANKINGS[toolkit.travels]
     # Rectangles of one height: a common corner can lie at one place.
     parts = [
         Workpiece.from_loops(str(w), [[[0, 0, 0], [w, 0, 0], [w, 45.0, 0], [0, 45.0, 0]]])

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from attrs import NOTHING, fields, fields_dict
 
+from toolkit_values import VALUES, given
 from workhold.cli.many_toolkits import toolkits_to_try
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.toolkits_command import own_figures
@@ -20,30 +21,6 @@ from workhold.model.kinds import KINDS, toolkit_of
 from workhold.model.units import MILLIMETRE, unit_named
 from workhold.web.forms import FORMS
 from workhold.web.toolkits import page_fields
-
-# A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
-VALUES: dict[str, tuple[Any, Any]] = {
-    "pitch": ((16.0, 18.0), "16,18"),
-    "columns": (3, "3"),
-    "peg_radius": (2.5, "2.5"),
-    "body_radius": (3.5, "3.5"),
-    "flat": ((2.25, 1.0), "2.25,1"),
-    "rows": (7, "7"),
-    "blocked": (["L-B3", "R-A"], ["L-B3", "R-A"]),
-    "min_gap": (13.0, "13"),
-    "max_opening": (61.0, "61"),
-    "row_offset": (-4.5, "-4.5"),
-    "clamps": (2, "2"),
-    "clamp_radius": (5.5, "5.5"),
-    "travel": ((11.0, 41.0), "11,41"),
-    "directions": ([("-x", "-y")], "-x:-y"),
-    "wall_offset": (9.5, "9.5"),
-}
-
-
-def given(kind: str) -> dict[str, Any]:
-    """A value for each field of a kind."""
-    return {row.name: VALUES[row.name][0] for row in table_of(kind).fields}
 
 
 def typed(**words: Any) -> ToolkitWords:

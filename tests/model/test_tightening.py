@@ -56,7 +56,7 @@ def test_other_fixtures_have_no_order() -> None:
 @pytest.mark.parametrize(("low", "high", "ratio"), [(0.0, inf, 1.0), (0.0, 0.0001, 0.00005), (1.0, inf, 1 + 2**0.5)])
 def test_the_shares_are_in_the_working_ratio(low: float, high: float, ratio: float) -> None:
     """They make up the whole, in the ratio that is the middle of the range as an angle."""
-    first, second = clamp_shares(held(low, high).pair)  # type: ignore[arg-type]
+    first, second = clamp_shares(held(low, high))
     assert first + second == pytest.approx(1.0) and second / first == pytest.approx(ratio)
 
 

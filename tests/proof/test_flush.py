@@ -7,10 +7,10 @@ import pytest
 
 from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
-from workhold.listing.on_fence import Pressed
+from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.flush import Candidate, pressing
-from workhold.search import fence_closure, fence_places
-from workhold.search.fence_search import FenceSearch
+from workhold.search import pin_contacts, wall_closure
+from workhold.search.wall_search import WallSearch
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
 ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
@@ -19,12 +19,12 @@ SLOT = [[0, 0, 0], [30, 4, 1], [28, 18, 0], [0, 14, 0.3]]
 
 def searched(
     loop: list[list[float]], direction: str, margin: float = 0.0
-) -> tuple[FenceSearch, set[tuple[object, ...]]]:
+) -> tuple[WallSearch, set[tuple[object, ...]]]:
     """A search that is done, and what it found."""
     fence = Fence((9, 7), 2, wall_offset=4, clamp_radius=2.5, directions=[direction])
-    search = FenceSearch(Problem.of(Query(Workpiece.from_loops("part", [loop]), fence, contact_margin=margin)))
-    parts = [part for edge in search.edges for part in search.pressed(edge)]
-    found = Pressed.joined(parts)
+    search = WallSearch(Problem.of(Query(Workpiece.from_loops("part", [loop]), fence, contact_margin=margin)))
+    parts = [part for edge in search.edges for part in search.fixtures(edge)]
+    found = WallFixtures.joined(parts)
     columns = (found.edge, found.row, found.line, *found.feature.T, *np.round(found.tip.T, 6))
     return search, set(zip(*(column.tolist() for column in columns), strict=True))
 
@@ -38,11 +38,11 @@ def test_balls_and_bounds_agree_on_every_pair(
     """With rounding taken for as large as lengths are, everything is left to the balls."""
     search, found = searched(loop, direction, margin)
     with monkeypatch.context() as patched:
-        patched.setattr(fence_closure, "ROUNDING", 1e3)
+        patched.setattr(wall_closure, "ROUNDING", 1e3)
         in_balls, also = searched(loop, direction, margin)
         # So are places, and contacts far beyond the ends of their faces are looked at, too.
-        patched.setattr(fence_places, "ROUNDING", 1e-4)
-        patched.setattr(fence_places, "LOOSE", 6.0)
+        patched.setattr(pin_contacts, "ROUNDING", 1e-4)
+        patched.setattr(pin_contacts, "LOOSE", 6.0)
         wider, once_more = searched(loop, direction, margin)
     assert in_balls.escalated == in_balls.examined == search.examined > 10
     assert found == also and len(found) == search.verified == in_balls.verified > 0
@@ -57,9 +57,9 @@ def test_pairs_that_cannot_oppose_each_other_need_no_look(loop: list[list[float]
     problem = Problem.of(
         Query(Workpiece.from_loops("part", [loop]), Fence(2, 0.5, wall_offset=4, directions=[direction]))
     )
-    quick, whole = FenceSearch(problem), FenceSearch(problem, explains=True)
+    quick, whole = WallSearch(problem), WallSearch(problem, explains=True)
     for edge in quick.edges:
-        one, other = (Pressed.joined(list(search.pressed(edge))) for search in (quick, whole))
+        one, other = (WallFixtures.joined(list(search.fixtures(edge))) for search in (quick, whole))
         for name in ("row", "line", "locator", "tip", "feature", "null", "push"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     for name in ("examined", "verified", "escalated", "undecided"):
@@ -72,8 +72,8 @@ def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
     part = Workpiece.from_loops("arch", [ARCH])
     fence = Fence((10, 42 - 4), 2, wall_offset=4, directions=["-x", "-y"])
     for way in fence.ways:
-        search = FenceSearch(Problem.of(Query(part, fence.changed({"directions": way.directions}))))
-        tops = [p for e in search.edges for found in search.pressed(e) for p in found.locator.tolist() if e == 0]
+        search = WallSearch(Problem.of(Query(part, fence.changed({"directions": way.directions}))))
+        tops = [p for e in search.edges for found in search.fixtures(e) for p in found.locator.tolist() if e == 0]
         assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
         assert not search.undecided
         laid, standing = search.laid(0), search.problem.standing

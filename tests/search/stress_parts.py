@@ -19,8 +19,8 @@ from workhold.verification.closure import minors
 from workhold.verification.contacts import Contact, contact_system
 from workhold.verification.contacts import Pose as Balls
 from workhold.verification.fixture_proof import Judge
-from workhold.verification.krawczyk import certified_zero
 from workhold.verification.outline import Outline
+from workhold.verification.placing import certified_zero
 
 __all__ = [
     "Carried",

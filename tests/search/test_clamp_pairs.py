@@ -402,7 +402,7 @@ def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> N
     """However many ranges are worked through one after the other, the list is the same."""
     query = Query(part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2))
     whole = answer(query, threads=1)
-    monkeypatch.setattr("workhold.search.clamp_pairs.BLOCKS_TOGETHER", 3)
+    monkeypatch.setattr("workhold.search.lattice_shares.BLOCKS_TOGETHER", 3)
     again = answer(query, threads=1)
     assert again.table == whole.table and again.distinct == whole.distinct
     assert (again.pairs, again.seats) == (whole.pairs, whole.seats)

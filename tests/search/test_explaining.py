@@ -130,6 +130,23 @@ def test_why_two_clamps_hold_nothing() -> None:
     assert counts["with a clamp of any stroke"] == len(design(RECTANGLE, evolve(plate, travel=None))) > 0
 
 
+def test_why_two_clamps_hold_nothing_on_a_fence() -> None:
+    """Counts add up over the restrictions and end with the second clamp; and a change helps as it says."""
+    fence = Fence(pitch=20, peg_radius=3, wall_offset=10, travel=(1, 2), columns=4, rows=3, clamps=2)
+    query = Query(RECTANGLE, fence, restrictions=Restrictions(angles=((-1, 91),)), contact_margin=2.0)
+    assert len(answer(query)) == 0
+    explanation = explain(query)
+    removals = explanation.removals
+    assert explanation.contacts == removals[0].before > removals[-1].before > 0 and explanation.nearest is None
+    assert all(one.after == next_.before for one, next_ in pairwise(removals)) and removals[-1].after == 0
+    rules = [removal.rule for removal in removals]
+    assert rules[:-1] == ["angles of the part", "holes that the plate does not have", "contact margin"]
+    assert rules[-1].startswith("a second clamp")
+    counts = {item.change: item.fixtures for item in explanation.helps}
+    longer = evolve(query, toolkit=evolve(fence, travel=None))
+    assert counts["with a clamp of any stroke"] == len(answer(longer)) > 0
+
+
 def test_what_comes_nearest_on_a_fence_has_forces() -> None:
     """Also where locator and clamp press along the fence alone, against no end of it."""
     corners = [(0, 0), (100, 0), (100, 60), (70, 60), (70, 30), (30, 30), (30, 60), (0, 60)]

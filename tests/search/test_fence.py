@@ -16,10 +16,10 @@ import workhold
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
+from workhold.listing import wall_fixtures
 from workhold.listing.ranking import ranking_keys
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.search import fence as searching
-from workhold.search import fence_search
+from workhold.search import wall_search
 from workhold.verification import verify
 
 TESTS = Path(__file__).parent.parent
@@ -280,8 +280,8 @@ def test_listing_a_few_at_a_time_lists_the_same(monkeypatch: pytest.MonkeyPatch)
         query = Query(part(corners), Fence(pitch=7, peg_radius=2, wall_offset=4), best=best)
         whole = answer(query)
         with monkeypatch.context() as patched:
-            patched.setattr(fence_search, "TOGETHER", 60)
-            patched.setattr(searching, "WAITING", 0)
+            patched.setattr(wall_search, "TOGETHER", 60)
+            patched.setattr(wall_fixtures, "WAITING", 0)
             again = answer(query)
         assert again == whole and len(whole) > 8
         assert again.distinct["edge"] == whole.distinct["edge"] == whole.found["edge"] / 3
@@ -318,7 +318,7 @@ def test_every_face_length_and_number_that_cannot_be_is_refused() -> None:
     """In one sentence each."""
     for fields, words in (
         ({"wall_offset": 2}, "would stand in the fence"),
-        ({"wall_offset": float("nan")}, "would stand in the fence"),
+        ({"wall_offset": float("nan")}, "not a positive length"),
         ({"wall_offset": 10, "directions": ["up"]}, "none in which a clamp moves"),
         ({"wall_offset": 10, "travel": (5, 3)}, "none that a clamp has"),
     ):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from math import cos, sin
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import attrs
@@ -12,9 +13,9 @@ import pytest
 
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
-from workhold import Fence, Workpiece, design
+from workhold import Fence, Query, Workpiece, answer, design
 from workhold.proof.flush import reactions_on_fence
-from workhold.search import fence_search
+from workhold.search import wall_search
 
 COMPLETE = Path(__file__).parent.parent / "data" / "toolkits" / "edge2_saddle_10.json"
 ALL = ["-x", "+x", "-y", "+y"]
@@ -135,6 +136,27 @@ def test_a_symmetric_part_counts_its_copies_once() -> None:
     assert result.distinct == {"edge2": len(result) // 2} and len(result) > 10
 
 
+def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was found on the edge before is listed, and the result says that it is incomplete."""
+    query = Query(part(NOTCHED), Fence((16, 12), 3, wall_offset=6, clamps=2, columns=4, rows=5))
+    whole, stop, looked_at = answer(query), Event(), 0
+    closing = wall_search.WallSearch.closing
+
+    def stopping(*given: Any) -> Any:
+        nonlocal looked_at
+        looked_at += 1
+        if looked_at == 12:
+            stop.set()
+        return closing(*given)
+
+    monkeypatch.setattr(wall_search.WallSearch, "closing", stopping)
+    monkeypatch.setattr(wall_search, "TOGETHER", 40)
+    stopped = answer(query, cancel=stop)
+    assert looked_at == 12 and not stopped.complete and not stopped.notes
+    assert stopped.statistics["hull_edges"] < whole.statistics["hull_edges"]
+    assert len(stopped) > 0 and stopped.pairs is not None and whole.pairs is not None and stopped.pairs < whole.pairs
+
+
 def test_what_doubles_leave_open_balls_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     """With every force told by balls the list is the same, and forces agree to the last digits."""
     fence = Fence((16, 12), 3, wall_offset=6, clamps=2, columns=4, rows=4)
@@ -145,8 +167,8 @@ def test_what_doubles_leave_open_balls_tell(monkeypatch: pytest.MonkeyPatch) -> 
         asked.append(task)
         return reactions_on_fence(*task)
 
-    monkeypatch.setattr(fence_search, "DOUBTFUL", -1.0)
-    monkeypatch.setattr(fence_search, "reactions_on_fence", counted)
+    monkeypatch.setattr(wall_search, "DOUBTFUL", -1.0)
+    monkeypatch.setattr(wall_search, "reactions_on_fence", counted)
     other = design(part(NOTCHED), fence, listing="all")
     assert seen(one) == seen(other) and len(asked) > 20
     assert abs(one.table.force - other.table.force).max() < 1e-10 * abs(one.table.force).max()

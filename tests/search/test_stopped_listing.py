@@ -16,12 +16,12 @@ import workhold
 from workhold import Query, Result, Vise
 from workhold.cli import result_forms
 from workhold.cli.ending import Interrupted
-from workhold.listing import gathering, runs
-from workhold.listing.gathering import Gathering
+from workhold.listing import collector, runs
+from workhold.listing.collector import ResultCollector
 from workhold.listing.listed import MEASURED
 from workhold.model.notes import cut_note, kept_note
 from workhold.search.design import SEARCH
-from workhold.seating.first import SEARCHED
+from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
 from workhold.web import jobs
 from workhold.web.tasks import Found
@@ -38,7 +38,7 @@ LISTING = (1.0 + ALL_MEASURED) / 2
 @pytest.fixture(autouse=True)
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few are many."""
-    monkeypatch.setattr(gathering, "LISTED_LATE", MOST)
+    monkeypatch.setattr(collector, "LISTED_LATE", MOST)
     for name, value in (("PART", 30), ("STRIDE", 5)):
         monkeypatch.setattr(runs, name, value)
 
@@ -95,15 +95,15 @@ def test_what_is_listed_before_somebody_asks_to_stop_stays(tmp_path: Path) -> No
 def test_what_is_not_measured_soon_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Asked to stop before, the first parts are measured, and counts are those of what is."""
     monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.0)
-    decided = Gathering.finish_deciding
+    decided = ResultCollector.finish_deciding
 
-    def deciding(self: Gathering, progress: Any = None) -> Any:
+    def deciding(self: ResultCollector, progress: Any = None) -> Any:
         account = decided(self, progress)
         if self.cancel is not None:
             self.cancel.set()
         return account
 
-    monkeypatch.setattr(Gathering, "finish_deciding", deciding)
+    monkeypatch.setattr(ResultCollector, "finish_deciding", deciding)
     result = workhold.answer(SYMMETRIC, cancel=Event())
     assert not result.complete and 0 < len(result) == sum(result.found.values()) <= MOST
     everything = {fixture.pose.theta_deg for fixture in workhold.answer(SYMMETRIC)}

@@ -11,7 +11,7 @@ import pytest
 import workhold
 from workhold import InputError, Query, Vise
 from workhold.listing import finish, runs
-from workhold.listing.gathering import Gathering
+from workhold.listing.collector import ResultCollector
 
 QUERIES = {
     "widget": Query(workhold.load("widget"), Vise(pitch=8, columns=1, peg_radius=3)),
@@ -96,14 +96,14 @@ def test_a_cancel_in_the_search_keeps_what_was_found(small: None, tmp_path: Path
 def test_a_cancel_while_fixtures_are_measured_keeps_the_first_of_them(
     small: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cancel, measured = Event(), Gathering.measured_part
+    cancel, measured = Event(), ResultCollector.measured_part
 
-    def stopping(self: Gathering, numbered: Any) -> Any:
+    def stopping(self: ResultCollector, numbered: Any) -> Any:
         if numbered[0] == 2:
             cancel.set()
         return measured(self, numbered)
 
-    monkeypatch.setattr(Gathering, "measured_part", stopping)
+    monkeypatch.setattr(ResultCollector, "measured_part", stopping)
     monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.0)
     result = workhold.answer_to_file(QUERIES["symmetric"], tmp_path / "a.npz", cancel=cancel, threads=1)
     assert not result.complete

@@ -15,7 +15,7 @@ from workhold import Fence, Fixture, Plate, Result, Workpiece
 from workhold.model.force_ratio import working_forces
 from workhold.model.tightening import order_words
 from workhold.seating.by_hand import WHY, by_hand
-from workhold.seating.sticking_of_two import sticking_friction_of_two
+from workhold.seating.sticking_friction import sticking_friction_of_two
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 BOWED = Workpiece.from_loops("bowed", [[[0, 0, 0], [70, 0, 0], [70, 45, 0.2], [20, 50, 0.3], [0, 40, 0]]])

@@ -16,7 +16,7 @@ from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, CONFIG, MO
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.seating.alone import in_balance
 from workhold.seating.equilibria import equilibria
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver

@@ -11,7 +11,7 @@ from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver

@@ -29,8 +29,8 @@ from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.slides import slides_stopped
 from workhold.seating import alone, holdings
 from workhold.seating.equilibria import Equilibria, equilibria
-from workhold.seating.filled import filled
 from workhold.seating.groups import Group, groups_of
+from workhold.seating.growing_rows import filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
@@ -74,7 +74,7 @@ def test_nothing_depends_on_what_was_solved_before():
         assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[number]
         count += len(groups_of(patterns()[number]))
     [locus] = solver.loci.values()
-    assert len(locus.alone["kept"].found) < 0.8 * count and len(locus.held) < count
+    assert len(locus.once(alone.Kept.empty).found) < 0.8 * count and len(locus.once(holdings.held_by_jaws)) < count
 
 
 def test_what_is_forgotten_is_found_again(monkeypatch):
@@ -86,8 +86,8 @@ def test_what_is_forgotten_is_found_again(monkeypatch):
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for locus in (one for drawn in solver.loci.values() for one in (drawn, drawn.turned_over)):
-        assert 0 < len(locus.alone["kept"].found) <= len(groups_of(patterns()[1]))
-        assert 0 < sum(len(one.cells) for one in locus.held.values()) <= 1500
+        assert 0 < len(locus.once(alone.Kept.empty).found) <= len(groups_of(patterns()[1]))
+        assert 0 < sum(len(one.cells) for one in locus.once(holdings.held_by_jaws).values()) <= 1500
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2, 3], [3, 1, 0, 2]])

@@ -28,9 +28,10 @@ from workhold.kernels.seating.pieces import clearances
 from workhold.seating import alone
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import equilibria
+from workhold.seating.pass_descents import both_ways_down, free_ways, shifts_of
 from workhold.seating.pattern import Pattern
 from workhold.seating.seating import Solver
-from workhold.seating.ways_down import Trodden, both_ways_down, free_ways, shifts_of, starts_off
+from workhold.seating.ways_down import Trodden, starts_off
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))

@@ -19,10 +19,10 @@ from workhold import Vise
 from workhold.verification.balls import Point
 from workhold.verification.closure import Balance, closure_findings, minors, span
 from workhold.verification.contacts import Pose
-from workhold.verification.vise import ViseRules
+from workhold.verification.rules.hardware import Hardware
 
 # The part as it is drawn.
-HARDWARE = ViseRules(Vise(pitch=10, columns=1, peg_radius=0))
+HARDWARE = Hardware(Vise(pitch=10, columns=1, peg_radius=0))
 UPRIGHT = Pose.of(arb(0), arb(0), arb(0), arb(0))
 
 
@@ -103,7 +103,7 @@ def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_p
             for k, ((x, y), (n, m)) in enumerate(ways)
         ]
         balance = Balance.of(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
-        words = [found.reason for found in closure_findings(balance, length, HARDWARE)]
+        words = [found.reason for found in closure_findings(balance, length, HARDWARE.names, HARDWARE.slack_words)]
         assert any("their wrenches span only" in reason for reason in words) == (not spans)
 
 

@@ -19,8 +19,8 @@ from workhold.completeness import verify as verify_completely
 from workhold.model.load import Load
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.search.fence_places import Places
-from workhold.search.fence_search import FenceSearch
+from workhold.search.pin_contacts import PinContacts
+from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.undecided import undecided_faults
 
@@ -208,12 +208,12 @@ def test_undecided_entries_must_name_faces_and_reasons() -> None:
 def test_a_tip_in_the_fence_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a search that does not keep it out."""
 
-    def pushing(self: FenceSearch, places: Places) -> NDArray[np.bool_]:
+    def pushing(self: WallSearch, places: PinContacts) -> NDArray[np.bool_]:
         return np.asarray(-(places.normal @ np.array(self.push)) > 0.0)
 
     query = Query(part(KITE), Fence((10, 8), 2, clamp_radius=6, wall_offset=3))
     true = {one_of(fixture) for fixture in answer(query)}
-    monkeypatch.setattr(FenceSearch, "may_press", pushing)
+    monkeypatch.setattr(WallSearch, "may_press", pushing)
     low = [fixture for fixture in answer(query) if one_of(fixture) not in true]
     assert low
     for fixture in low:

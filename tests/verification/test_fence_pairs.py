@@ -14,14 +14,14 @@ from attrs import evolve
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, InputError, Result, design
-from workhold.listing.paired import PairedFixtures
+from workhold.listing.clamped_seats import undecided_pairs
 from workhold.model.load import Load
 from workhold.model.notes import no_pair_note
 from workhold.model.proof import Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
-from workhold.verification.kinds import hardware_of
 from workhold.verification.repeats import Seen
+from workhold.verification.rules.hardware import Hardware
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -164,7 +164,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
     assert "it has the seat and the directions of fixture 1" in again
     assert "the one before it" in told(edited(lambda content: content["fixtures"].reverse()))
     every = results["all"]
-    seen, less = Seen(hardware_of(every.toolkit)), len(every) - 1
+    seen, less = Seen(Hardware(every.toolkit)), len(every) - 1
     second = next(index for index, fixture in enumerate(every) if seen.add(index, fixture) is not None)
     table = every.table.take(np.delete(np.arange(len(every)), second))
     short = evolve(every, table=table, found={"edge2": less}, distinct={"edge2": less}, pairs=less)
@@ -176,7 +176,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen, refuted = Seen(hardware_of(best.toolkit)), 0
+    seen, refuted = Seen(Hardware(best.toolkit)), 0
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     for place in range(0, len(every), 3):
@@ -225,9 +225,7 @@ def test_a_tip_keeps_off_the_wall() -> None:
 def test_an_undecided_pair_is_named_as_it_must_be(results: dict[str, Result]) -> None:
     """By its kind, directions and faces."""
     result = results["best"]
-    fake = PairedFixtures.__new__(PairedFixtures)
-    fake.toolkit = result.toolkit
-    entries: list[Undecided] = fake.named(result.table.take(np.arange(3)))
+    entries: list[Undecided] = undecided_pairs(result.table.take(np.arange(3)), result.toolkit)
     assert list(undecided_faults(entries, result.query)) == []
     single = f"edge {entries[0].type.split()[1]}"
     four = evolve(entries[0], type=single, faces=entries[0].faces[:4], columns=(0,) * 4, rows=(0,) * 4)

@@ -8,10 +8,10 @@ from math import pi
 import attrs
 import pytest
 
-from workhold import Fixture, Pose, Result
-from workhold.verification.hardware import Key, Place
-from workhold.verification.kinds import hardware_of
-from workhold.verification.repeats import Seen
+from workhold import Fixture, Pose, Result, Vise
+from workhold.verification import repeats
+from workhold.verification.repeats import Key, Place, Seen
+from workhold.verification.rules.hardware import Hardware
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:
@@ -50,7 +50,7 @@ def moved(fixture: Fixture, distance: float) -> Fixture:
 
 @pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
 def test_the_same(widget_result: Result, again: object) -> None:
-    seen = Seen(hardware_of(widget_result.toolkit))
+    seen = Seen(Hardware(widget_result.toolkit))
     for index, fixture in enumerate(widget_result):
         assert seen.add(index, fixture) is None
     for index, fixture in enumerate(widget_result):
@@ -59,7 +59,7 @@ def test_the_same(widget_result: Result, again: object) -> None:
 
 def test_not_the_same(widget_result: Result) -> None:
     """Another place of the workpiece, or another opening with the same left pegs and pose."""
-    seen = Seen(hardware_of(widget_result.toolkit))
+    seen = Seen(Hardware(widget_result.toolkit))
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
@@ -75,20 +75,20 @@ class Placed:
     type: str = "I"
 
 
-class OnePattern:
-    """Hardware on which every fixture stands in the same holes."""
-
-    def patterns(self, fixture: Placed) -> Iterator[tuple[Key, Place]]:
-        """The one pattern."""
-        yield ("holes",), fixture.place
+def one_pattern(fixture: Placed, hardware: object) -> Iterator[tuple[Key, Place]]:
+    """Every fixture stands in the same holes."""
+    yield ("holes",), fixture.place
 
 
 @pytest.mark.parametrize(("off", "sets"), [(0.0, 1), (3e-6, 1), (5e-6, 2)])
 @pytest.mark.parametrize("number", range(4))
-def test_one_set_when_a_rotation_carries_one_to_the_other(number: int, off: float, sets: int) -> None:
+def test_one_set_when_a_rotation_carries_one_to_the_other(
+    monkeypatch: pytest.MonkeyPatch, number: int, off: float, sets: int
+) -> None:
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
-    seen = Seen(OnePattern(), [pi / 2], (10.0, -4.0))  # type: ignore[arg-type]
+    monkeypatch.setattr(repeats, "patterns", one_pattern)
+    seen = Seen(Hardware(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]

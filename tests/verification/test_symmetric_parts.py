@@ -15,7 +15,7 @@ from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, 
 from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
 from workhold.model.toolkit import Toolkit
 from workhold.verification import verify
-from workhold.verification.turning import Turning
+from workhold.verification.repeats import Turning
 
 PARTS = symmetric_parts()
 PLATE = Plate(pitch=(20, 24), peg_radius=3, clamp_radius=4, travel=(6, 40), columns=3, rows=3)

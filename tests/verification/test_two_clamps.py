@@ -17,21 +17,20 @@ from flint import arb
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
-from workhold.listing.paired import PairedFixtures
+from workhold.listing.clamped_seats import undecided_pairs
 from workhold.model.fixture import Pair, Peg
 from workhold.model.load import Load
 from workhold.model.notes import no_pair_note
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
+from workhold.verification.account import too_few_contacts
 from workhold.verification.contacts import Pose as Balls
-from workhold.verification.kinds import hardware_of
 from workhold.verification.listing import listing_of
 from workhold.verification.outline import Outline
-from workhold.verification.pair_account import too_few_contacts
-from workhold.verification.pair_balance import seat_of
-from workhold.verification.plate import PLATE, WAYS, PlateRules, clamp_place
 from workhold.verification.repeats import Seen
+from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.stroke import WAYS, clamp_place
 from workhold.verification.seat import Push, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, Standing
 from workhold.verification.undecided import undecided_faults
@@ -231,7 +230,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
 def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]
-    rules = hardware_of(result.toolkit)
+    rules = Hardware(result.toolkit)
     seen = Seen(rules)
     again = [index for index, fixture in enumerate(result) if seen.add(index, fixture) is not None]
     kept = np.delete(np.arange(len(result)), again[0])
@@ -247,7 +246,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen = Seen(hardware_of(best.toolkit))
+    seen = Seen(Hardware(best.toolkit))
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     refuted = 0
@@ -269,12 +268,10 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> Standing:
     """The seat of a fixture, at its pose as it is written."""
-    rules, outline = hardware_of(toolkit), Outline.of(workpiece)
-    assert isinstance(rules, PlateRules)
+    rules, outline = Hardware(toolkit), Outline.of(workpiece)
     pose = Balls.of(arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
     locators = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
-    query = Query(workpiece, toolkit)
-    return Standing(query, rules, outline, fixture.pegs[:3], locators, pose, seat_of(locators, pose))
+    return Standing.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
 
 
 def with_clamps(fixture: Fixture, *clamps: SeatClamp) -> Fixture:
@@ -284,7 +281,7 @@ def with_clamps(fixture: Fixture, *clamps: SeatClamp) -> Fixture:
         along_x = clamp.direction.endswith("x")
         column, row = (0, clamp.line) if along_x else (clamp.line, 0)
         x, y = (float(value.mid()) for value in clamp.tip)
-        called = clamp_place(clamp.direction, column, row, False)
+        called = clamp_place("plate", clamp.direction, column, row, False)
         pegs.append(Peg(f"clamp {clamp.direction}", column, row, x, y, clamp.face, 0.0, called))
     travels = tuple(
         sum(v * w for v, w in zip((peg.x, peg.y), WAYS[clamp.direction], strict=True))
@@ -380,10 +377,7 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
     """Its locators with each of its clamps."""
     result = results["best"]
     table = result.table.take(np.arange(3))
-    fake = PairedFixtures.__new__(PairedFixtures)
-    assert isinstance(result.toolkit, Plate)
-    fake.toolkit = result.toolkit
-    entries = fake.named(table)
+    entries = undecided_pairs(table, result.toolkit)
     assert all(entry.reason == AT_AN_EDGE and len(entry.faces) == 5 for entry in entries)
     assert list(undecided_faults(entries, result.query)) == []
     for edit in (
@@ -396,4 +390,4 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
         entry: Undecided = attrs.evolve(entries[0], **edit)
         assert len(list(undecided_faults([entry], result.query))) == 1, edit
     assert degrees(table.theta[0]) % 360 == pytest.approx(entries[0].theta_deg)
-    assert {peg.carrier for peg in result[0].pegs[:3]} == {PLATE}
+    assert {peg.carrier for peg in result[0].pegs[:3]} == {"plate"}

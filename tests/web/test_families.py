@@ -12,7 +12,7 @@ from family_parts import shop_parts
 from workhold import Query, Vise
 from workhold.family.family import Asked, family_of
 from workhold.family.file import family_text
-from workhold.family.losses import FAMILY_RANKING
+from workhold.family.losses import RANKINGS
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -42,7 +42,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     assert (state["kind"], state["state"], state["fraction"], state["complete"]) == ("family", "done", 1.0, True)
     answer = server.client.get(f"{job}/family").json()
     vise = Vise(pitch=10, columns=1, peg_radius=3)
-    family = family_of([Asked(part.name, Query(part, vise, ranking=FAMILY_RANKING)) for part in PARTS], threads=1)
+    family = family_of([Asked(part.name, Query(part, vise, ranking=RANKINGS[1])) for part in PARTS], threads=1)
     assert [(one["setups"], one["loss"]) for one in answer["points"]] == [(p.setups, p.loss) for p in family.points]
     assert [one["pegs_moved"] for one in answer["points"]] == [plan.moved for plan in family.plans]
     assert len(family.points) > 1

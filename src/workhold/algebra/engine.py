@@ -37,7 +37,6 @@ from workhold.listing.listed import Work, listed_result
 from workhold.listing.ways import joined_ways
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.seating.first import seated_answer
 
 __all__ = ["answer_by_algebra"]
 
@@ -209,7 +208,7 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
 
     Parameters
     ----------
-    query : what is asked; all fixtures are found also where only the best are.
+    query : what is asked but its seating, see ``search.seated``; all fixtures are found also where only the best are.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
 
@@ -225,12 +224,6 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
     InputError
         As ``workhold.answer``, and for a toolkit whose carriers are not alike.
     """
-    if query.seating is not None:
-
-        def search(asked: Query, share: Progress | None) -> Result:
-            return answer_by_algebra(asked, progress=share, cancel=cancel)
-
-        return seated_answer(query, search, progress=progress, cancel=cancel)
     ways = query.toolkit.ways
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]

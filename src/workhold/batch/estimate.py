@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import exp, hypot, log
 
-from workhold.model.fence import Fence
-from workhold.model.plate import Plate
 from workhold.model.toolkit import Toolkit
 
 __all__ = ["answering_seconds", "measures", "reading_seconds"]
@@ -48,10 +46,7 @@ def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[s
         diameter / pitch if count is None else min(count - 1.0, diameter / pitch)
         for pitch, count in zip(carrier.pitch, (carrier.columns, carrier.rows), strict=True)
     )
-    law = "vise"
-    if isinstance(toolkit, Plate):
-        law = "fence" if isinstance(toolkit, Fence) else "two clamps" if toolkit.needs_pairs else "plate"
-    return law, log(faces), log((2.0 * across + 1.0) * (2.0 * along + 1.0))
+    return toolkit.law, log(faces), log((2.0 * across + 1.0) * (2.0 * along + 1.0))
 
 
 def answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:

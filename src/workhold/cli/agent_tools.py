@@ -22,7 +22,7 @@ from workhold.files.loads_form import LoadTable
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.result.save import save
 from workhold.files.toolkit.presets import load_toolkit
-from workhold.listing.alike import entries
+from workhold.listing.near_duplicates import entries
 from workhold.model.kinds import ALIASES, KINDS, toolkit_of
 from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking
@@ -185,7 +185,7 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
     shown = fixture_data(fixture, result.toolkit, asked.rank)
-    if asked.seating and fixture.pair is not None:
+    if asked.seating and not result.toolkit.closes_at_once:
         from workhold.seating.by_hand import by_hand
 
         shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()

@@ -186,7 +186,7 @@ def is_seated(held: HeldIn) -> bool:
     """Whether seating is asked for, of one clamp or a vise: with two clamps there is nothing to compile for it."""
     from workhold.model.query import Query
 
-    return isinstance(held.query, Query) and held.query.seating is not None and not held.query.toolkit.needs_pairs
+    return isinstance(held.query, Query) and held.query.seating is not None and held.query.toolkit.closes_at_once
 
 
 def place_to_work(

@@ -105,7 +105,7 @@ def tell_copies(found: list[Fixture], packing: Packing, result: Result, size: tu
     table = Table((">copy", f">X0 at x {unit.abbreviation}", f">Y0 at y {unit.abbreviation}", "holes"))
     for number, fixture in enumerate(found, 1):
         x, y = fixture.pose.apply(*zero.point)
-        holes = ", ".join(peg.hole for peg in fixture.pegs if not peg.is_on_wall)
+        holes = ", ".join(peg.hole for peg in fixture.placed)
         table.add_row(str(number), unit.number(x), unit.number(y), holes)
     proven = "no more fit" if packing.at_most == len(found) else f"at most {packing.at_most} fit"
     count = "1 copy" if len(found) == 1 else f"{len(found)} copies"

@@ -124,7 +124,7 @@ def design(
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
         if first_run and engine == "curves":
             compile_kernels(cancel, second)
-        if query.seating is not None and not query.toolkit.needs_pairs:
+        if query.seating is not None and query.toolkit.closes_at_once:
             from workhold.cli.warming import compile_seating
 
             compile_seating(cancel)
@@ -176,8 +176,9 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     """The answer of an engine, which is imported only now, written on the way where a file is named for that."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
+        from workhold.search.seated import seated_answer
 
-        return answer_by_algebra(query, **watching)
+        return seated_answer(query, answer_by_algebra, **watching)
     if streamed is not None:
         from workhold.files.result.columns import answer_to_file
 
@@ -190,7 +191,7 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
 def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool) -> None:
     """Tell about a result that is written; the words go to stderr where stdout carries the file."""
     from workhold.cli.tables import counts_sentence, print_tables, proof_sentences, result_table, unfit_sentence
-    from workhold.listing.alike import entries
+    from workhold.listing.near_duplicates import entries
 
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
@@ -215,7 +216,7 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
 
 def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> dict[str, Any]:
     """What :func:`report` says, as plain data."""
-    from workhold.listing.alike import entries
+    from workhold.listing.near_duplicates import entries
     from workhold.presenting.data import result_data
 
     return {**result_data(result, entries(result, unfit), max(listed, 0)), "result_file": out}

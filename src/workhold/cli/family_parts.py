@@ -87,12 +87,12 @@ def asked_of(
     from hashlib import sha256
 
     from workhold.family.family import Asked, LeftOut
-    from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
+    from workhold.family.losses import RANKINGS
     from workhold.files.part_list import read_listed
     from workhold.model.part_zero import part_zero
     from workhold.model.query import Query
 
-    usual = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+    usual = RANKINGS[toolkit.travels]
     members, left_out = [], []
     for job in jobs:
         read, path = read_listed(job.listed, **job.reading.options()), job.listed.path

@@ -10,7 +10,6 @@ from workhold.cli.table import Table
 if TYPE_CHECKING:
     from workhold.family.family import Family
     from workhold.family.plan import Plan, SetUp
-    from workhold.model.setting import Setting
     from workhold.model.toolkit import Toolkit
     from workhold.model.units import Unit
 
@@ -78,7 +77,7 @@ def curve_table(found: Family, unit: Unit) -> Table:
 
 def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
     """The holes of a set-up."""
-    return ", ".join(peg.hole for peg in setup.standing.fixture.pegs if not peg.is_on_wall)
+    return ", ".join(peg.hole for peg in setup.standing.fixture.placed)
 
 
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
@@ -88,7 +87,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
     from workhold.model.setting import settings_of
 
     settings = settings_of(setup.standing.fixture, found.toolkit)
-    names = [f">{setting_name(setting)} {unit.abbreviation}" for setting in settings]
+    names = [f">{setting.short} {unit.abbreviation}" for setting in settings]
     columns = ("part", ">fixture", ">angle", f">x {unit.abbreviation}", f">y {unit.abbreviation}", *names, ">loss")
     # Long names, or the lengths of two clamps, leave no room for it on a terminal.
     with_figure = len(settings) < 2 and max(len(one.member.name) for one in setup.holdings) <= SHORT_NAME
@@ -108,11 +107,6 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             *([figure_text(found.figure, one.figure, unit)] if with_figure else []),
         )
     return table
-
-
-def setting_name(setting: Setting) -> str:
-    """What a length to set is called over a column."""
-    return setting.sign if setting.tip is None or setting.carrier.has_a_hole else f"tip {setting.sign}"
 
 
 def short_name(name: str) -> str:

@@ -84,7 +84,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     """
     from workhold.drawing.fixture_picture import draw_fixture
     from workhold.drawing.thumbnails import best_at_a_glance
-    from workhold.listing.alike import entries
+    from workhold.listing.near_duplicates import entries
 
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -77,7 +77,7 @@ def write_found(result: Result, out: str, form: str) -> Result:
     try:
         write_output(result, out, form)
     except Interrupted:
-        from workhold.listing.gathering import LISTED_LATE
+        from workhold.listing.collector import LISTED_LATE
 
         if out == STANDARD_OUTPUT or len(result) <= LISTED_LATE:
             raise

@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["by_hand_words", "seat", "seating_words"]
 
 SIDES = ("both", "drawn", "turned-over")
-FLUSH = "flush on the fence"
 KINDS = {
-    "fixture": "all four pegs on faces",
     "corner": "four pegs, one on a corner",
     "pocket": "a peg in a corner of the part",
     "curved": "held by curvature",
@@ -71,7 +69,7 @@ def seat(
     from workhold.cli.tables import print_tables
     from workhold.seating.reading import Gauge
 
-    if fixture.pair is not None:
+    if not result.toolkit.closes_at_once:
         tell_by_hand(result, rank, picture, shown_unit, json_)
         return
     gauge, told = Gauge(fixture, result.toolkit), fixture.seating
@@ -164,7 +162,7 @@ def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     from workhold.model.seating import DRY_STEEL
 
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
-    named = f"a {setting.name} of " if carrier.on else ""
+    named = "" if setting.tip is None else f"a {setting.name} of "
     more, less = ("more", "less") if gauge.grows else ("less", "more")
     if told.is_untold:
         words = [f"From where on it is caught is not known: put the part in its place, hold it there and {ways.close}."]
@@ -185,7 +183,7 @@ def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         words.append(f"{ways.done} so far, there is about {unit.text(told.drop_room)} of room at every peg at once.")
     if told.cage is not None and told.placing is not None:
         low, high = told.cage.theta_deg
-        shifts = (told.cage.x, told.cage.y) if carrier.is_along_x else (told.cage.y, told.cage.x)
+        shifts = (told.cage.x, told.cage.y) if carrier.line == "row" else (told.cage.y, told.cage.x)
         along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
         words += [
             f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along the {ways.whose} "
@@ -225,12 +223,12 @@ def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
     from workhold.cli.table import Table
 
     of, fixture = unit.abbreviation, gauge.fixture
+    kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
     table = Table(("seat", f">reads {of}", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"))
     for k, one in enumerate(seats):
         turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         pegs = ", ".join(f"{fixture.pegs[c.peg].hole} {c.words}" for c in one.contacts)
-        flat = one.kind == "fixture" and any(peg.is_on_wall for peg in fixture.pegs)
-        words = "right" if one.is_own else "same place" if one.same_place else FLUSH if flat else KINDS[one.kind]
+        words = "right" if one.is_own else "same place" if one.same_place else kinds[one.kind]
         table.add_row(
             str(k + 1),
             unit.number(gauge.at(one.jaw_separation)),

@@ -117,7 +117,7 @@ def sheet(
     given = asked_loads(load, loads, shown_unit)
     refuse_output(path, (result_file, loads), force)
     result = result_with(result_file, rank)
-    if seating and result[rank - 1].seating is None and not result.toolkit.needs_pairs:
+    if seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:
         from workhold.cli.warming import compile_seating
 
         compile_seating(Event())

@@ -104,7 +104,7 @@ def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Un
         from workhold.cli.seat_command import seating_words
 
         print_tables(*seating_words(fixture, result, unit))
-    elif fixture.pair is not None and rank <= (result.query.seating or 0):
+    elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
         from workhold.cli.seat_command import by_hand_words
 
         print_tables(*by_hand_words(rank, result, unit))

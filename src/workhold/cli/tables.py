@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 
 from workhold.cli.table import Table
-from workhold.model.holes import hole_name
+from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.plain import plain, shortened
 
 if TYPE_CHECKING:
     from workhold.geometry.face import Face
-    from workhold.listing.alike import Entries
+    from workhold.listing.near_duplicates import Entries
     from workhold.model.fixture import Fixture, Peg
     from workhold.model.proof import Proof, Undecided
     from workhold.model.quality import Figure
@@ -203,11 +203,11 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     headings = [f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures]
     toolkit = result.toolkit
     groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
-    pairs = [">best of"] if toolkit.needs_pairs and result.query.listing == "best" else []
+    pairs = [">best of"] if result.query.listing == "best" else []
     columns = (">rank", ">like it", *groups, *pairs, opening, ">angle deg", *headings, "type")
     table = Table(columns, spare=max(len(headings) - (3 if result.seating else 1), 0) + 1)
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
-    decimals, degrees_decimals = (unit.decimals - 2, 1) if toolkit.needs_pairs else (unit.decimals, 3)
+    decimals, degrees_decimals = (unit.decimals, 3) if toolkit.closes_at_once else (unit.decimals - 2, 1)
     red = unfit(result.table.quality, result.query.tolerance)
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
         fixture = result[index]
@@ -220,7 +220,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
                 " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
                 for names in groups.values()
             ),
-            *([f"{fixture.pair.count:,}"] if pairs and fixture.pair else []),
+            *(f"{result.table.pairs[index]:,}" for _ in pairs),
             " ".join(unit.number(setting.length, decimals) for setting in settings_of(fixture, toolkit)),
             rounded(fixture.pose.theta_deg, degrees_decimals),
             *(
@@ -243,21 +243,19 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
     >>> peg_groups(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
     {'locators': ['plate'], 'clamp': ['clamp -x', 'clamp -y']}
     """
-    clamps = [carrier for carrier in toolkit.carriers if carrier.on is not None]
     groups: dict[str, list[str]] = {}
     for carrier in toolkit.carriers:
-        if carrier.is_wall:
-            continue
-        clamp = f"{carrier.noun}{'s' * toolkit.needs_pairs}"
-        word = clamp if carrier in clamps else f"{carrier.peg}s" if clamps else f"{carrier.name} holes"
-        groups.setdefault(word, []).append(carrier.name)
+        is_alone = carrier.contact is CLAMP_TIP and toolkit.closes_at_once
+        pegs = carrier.peg if is_alone else f"{carrier.peg}s"
+        if carrier.contact.is_placed:
+            groups.setdefault(f"{carrier.name} holes" if len(toolkit.plates) > 1 else pegs, []).append(carrier.name)
     return groups
 
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """The name of a peg's hole or line, without the noun of a clamp."""
     carrier = toolkit.carrier(peg.carrier)
-    return peg.hole if carrier.on is None else peg.hole.removeprefix(f"{carrier.noun} ")
+    return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
 
 
 def heading(figure: Figure, unit: Unit) -> str:
@@ -325,13 +323,13 @@ def fixture_tables(
     """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
     from workhold.model.setting import settings_of
 
-    noun, clamped = toolkit.moving.noun, fixture.direction is not None
+    noun, several = toolkit.moving.noun, len(toolkit.plates) > 1
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
-    per = f">force per {noun} force" if fixture.pair is None else f">force per {noun} force of both"
-    flats = toolkit.has_flats
-    pegs = Table(("hole", "peg" if clamped else noun, x, y, ">face", *[">flat at"] * flats, per))
+    per = f">force per {noun} force{' of both' * (len(fixture.travels) > 1)}"
+    flats = FLAT_PIN in toolkit.contacts
+    pegs = Table(("hole", noun if several else "peg", x, y, ">face", *[">flat at"] * flats, per))
     for peg in fixture.pegs:
-        stands_on = toolkit.carrier(peg.carrier).peg if clamped else peg.carrier
+        stands_on = peg.carrier if several else toolkit.carrier(peg.carrier).peg
         where = unit.number(peg.x), unit.number(peg.y)
         looks = ["" if peg.flat_deg is None else f"{rounded(peg.flat_deg, 2)}°"] * flats
         pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:z.3f}")
@@ -341,15 +339,9 @@ def fixture_tables(
         *(setting_sentence(setting, unit) for setting in settings_of(fixture, toolkit)),
         *pair_sentences(fixture),
         f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
-        f"{unit.abbreviation} from {origin_words(toolkit)}",
+        f"{unit.abbreviation} from {toolkit.datum.full}",
         pegs,
     )
-
-
-def origin_words(toolkit: Toolkit) -> str:
-    """What places are told from."""
-    first, wall = toolkit.carriers[0], toolkit.wall
-    return f"the {first.title}'s hole {hole_name(first.name, 0, 0)}" if wall is None else f"column A at the {wall.noun}"
 
 
 def setting_sentence(setting: Setting, unit: Unit) -> str:
@@ -357,8 +349,7 @@ def setting_sentence(setting: Setting, unit: Unit) -> str:
     mover, length = setting.carrier, unit.text(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
-    where = mover.place_name(setting.tip.column, setting.tip.row).removeprefix(f"{mover.noun} ")
-    place = f"bolted in {where}" if mover.has_a_hole else f"on {where}"
+    place = setting.mounting.there.format(place=setting.place)
     return f"The {mover.noun}, {place}, pushes {mover.towards}; {setting.title} {length}"
 
 
@@ -366,13 +357,12 @@ def pair_sentences(fixture: Fixture) -> list[str]:
     """In which order two clamps are tightened and with what forces; none of other fixtures."""
     from workhold.model.tightening import clamp_names, clamp_shares, order_words
 
-    if fixture.pair is None:
+    order = order_words(fixture)
+    if not order:
         return []
-    each = [
-        f"{share:.0%} at {name}" for name, share in zip(clamp_names(fixture), clamp_shares(fixture.pair), strict=True)
-    ]
+    each = [f"{share:.0%} at {name}" for name, share in zip(clamp_names(fixture), clamp_shares(fixture), strict=True)]
     return [
-        order_words(fixture),
+        order,
         f"Forces are told for {' and '.join(each)} of the clamp force, which is that of both.",
     ]
 

@@ -102,7 +102,6 @@ class ToolkitWords:
         opening = optional_length("--min-opening", self.min_opening, unit)
         from workhold.fixels.fields import USUAL
         from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
-        from workhold.model.vise import Vise
 
         kind, said = kind_of(USUAL)
         named = [
@@ -131,15 +130,16 @@ class ToolkitWords:
                     "workhold toolkits)."
                 )
         vise = toolkit_of(kind, fields)
-        if not isinstance(vise, Vise):
+        travel = vise.moving.travel
+        if opening is None or travel is None:
             return vise, tolerance
-        if opening is not None and vise.max_opening is not None and opening > vise.max_opening:
-            most = unit.figure(vise.max_opening)
+        if travel.most is not None and opening > travel.most:
+            most = unit.figure(travel.most)
             raise InputError(
                 f"the smallest opening {unit.figure(opening)} {unit.abbreviation} is above the largest, {most} "
                 f"{unit.abbreviation}: no opening is left."
             )
-        if opening is not None and opening > vise.min_gap:
+        if opening > travel.least:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
             vise = toolkit_of(kind, fields | {"min_gap": opening})
         return vise, tolerance

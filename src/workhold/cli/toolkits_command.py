@@ -83,7 +83,7 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
-    each = f"on {'the' if toolkit.moving.on is not None else 'each'} {first.noun}"
+    each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
     table = Table(("figure", "value"))
     table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
     for words, count in (("columns", first.columns), ("rows", first.rows)):
@@ -111,8 +111,8 @@ def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     toolkit = loaded.toolkit
     for row in table_of(loaded.kind).fields:
         value = getattr(toolkit, row.name)
-        is_usual = value == (getattr(toolkit, row.follows) if row.follows else row.default)
-        if row.figure and (row.unset or not is_usual):
+        is_usual = value == (toolkit.followed(row) if row.follows else row.default)
+        if row.figure and (row.unset or row.is_always_shown or not is_usual):
             assumed = " (assumed: no source says)" if row.name in loaded.assumed else ""
             yield row.figure, (row.unset if value is None else words_of_value(row.form, value, unit)) + assumed
 

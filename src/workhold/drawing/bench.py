@@ -64,9 +64,9 @@ class Bench:
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
     @property
-    def round_pegs(self) -> list[int]:
-        """The pegs themselves: all but the ends of the contact with a wall."""
-        return [index for index, peg in enumerate(self.fixture.pegs) if not peg.is_on_wall]
+    def placed(self) -> list[int]:
+        """The pegs and clamps themselves: all but the ends of the contact with a wall."""
+        return [index for index, peg in enumerate(self.fixture.pegs) if peg in self.fixture.placed]
 
     def radius(self, view: View, index: int) -> float:
         """Radius of a peg on the page."""
@@ -80,7 +80,7 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
     contacts = [
-        ((peg.x, peg.y), (0.0, -1.0)) if peg.is_on_wall else contact_of((peg.x, peg.y), face)
+        contact_of(toolkit.carrier(peg.carrier).contact, (peg.x, peg.y), face)
         for peg, face in zip(fixture.pegs, faces, strict=True)
     ]
     return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece))
@@ -116,8 +116,8 @@ def draw_bench(
     holes = scene.group("holes")
     for carrier in bench.shown.carriers:
         draw_holes(holes, carrier, view, most_holes(view, bench.shown))
-    if bench.shown.wall is not None:
-        draw_wall(scene.group("wall"), bench.shown.wall, view, weight)
+    for wall in bench.shown.walls:
+        draw_wall(scene.group("wall"), wall.bar, view, weight)
     if axes and bench.shown.measured:
         group = scene.group("axes")
         for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
@@ -134,7 +134,7 @@ def draw_bench(
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
             arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if min(bench.radius(view, index) for index in bench.round_pegs) > 7.0 * weight:
+    if min(bench.radius(view, index) for index in bench.placed) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
             contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
@@ -154,7 +154,7 @@ def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     """Draw the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
-    for index in bench.round_pegs:
+    for index in bench.placed:
         peg = bench.fixture.pegs[index]
         (x, y), radius, hole = view((peg.x, peg.y)), bench.radius(view, index), holes.get(peg.carrier, 0.0)
         cross = min(0.55 * radius, 6.0 * weight)

@@ -7,8 +7,9 @@ from attrs import frozen
 from workhold.drawing.bench import Bench, bench_of
 from workhold.drawing.dimensions import scale_bar
 from workhold.drawing.inset import draw_inset
+from workhold.drawing.legend import draw_legend
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.panel import Column, draw_legend, draw_peg_table, draw_settings, draw_title
+from workhold.drawing.panel import Column, draw_peg_table, draw_settings, draw_title
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.plates import most_holes
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
@@ -92,4 +93,4 @@ def draw_panel(
         column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)
     column.rule()
     room = Box(panel.x0, column.y, panel.x1, min(panel.y1, column.y + HIGHEST_INSET))
-    draw_inset(group, room, workpiece, fixture)
+    draw_inset(group, room, workpiece, fixture, bench.toolkit)

@@ -10,6 +10,7 @@ from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
 from workhold.model.part_zero import hole_centers
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_inset", "draw_zero"]
@@ -20,7 +21,9 @@ LOWEST = 90.0
 NUMBER = 10.0
 
 
-def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, zero: Point | None = None) -> None:
+def draw_inset(
+    scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit, zero: Point | None = None
+) -> None:
     """Draw the unturned part with its touched faces and contacts into a page box.
 
     Parameters
@@ -39,7 +42,7 @@ def draw_inset(scene: Scene, box: Box, workpiece: Workpiece, fixture: Fixture, z
     for face in dict.fromkeys(peg.face for peg in fixture.pegs if peg.beside is None):
         group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
     group.path(d, BLACK, 1.4)
-    for point in contacts(workpiece, fixture):
+    for point in contacts(workpiece, fixture, toolkit):
         group.circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
     if zero is not None:
         number_holes(group, view, workpiece)
@@ -71,11 +74,10 @@ def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
         scene.path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
 
 
-def contacts(workpiece: Workpiece, fixture: Fixture) -> list[Point]:
+def contacts(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> list[Point]:
     """The contact points in the workpiece's own frame, mm."""
     back = fixture.pose.inverse
-    points = []
-    for peg in fixture.pegs:
-        center = back.apply(peg.x, peg.y)
-        points.append(center if peg.is_on_wall else contact_of(center, face_of(workpiece, peg.face))[0])
-    return points
+    return [
+        contact_of(toolkit.carrier(peg.carrier).contact, back.apply(peg.x, peg.y), face_of(workpiece, peg.face))[0]
+        for peg in fixture.pegs
+    ]

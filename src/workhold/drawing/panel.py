@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
-from workhold.drawing.clamps import block_arrow, draw_sign
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.plates import draw_wall
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.holes import hole_name
-from workhold.model.setting import settings_of
-from workhold.model.shown import ShownWall
+from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.model.carrier import Carrier
+from workhold.model.fixture import Fixture
+from workhold.model.setting import contact_names, settings_of
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Arrangement, Carrier, Toolkit
+from workhold.model.toolkit import Arrangement, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -23,10 +19,8 @@ __all__ = [
     "NUMBERS",
     "Column",
     "arrangement_words",
-    "clamp_place",
     "closure_margin",
     "diameter_words",
-    "draw_legend",
     "draw_peg_table",
     "draw_settings",
     "draw_title",
@@ -138,14 +132,10 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     'Three locators, two clamps push to the left and downward'
     """
     counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
-    if arrangement.direction is not None:
-        standing, noun = plural(counts[0], carriers[0].peg, NUMBERS).capitalize(), toolkit.moving.noun
-        clamps = sum(toolkit.carriers[number].on is not None for number in arrangement.carriers)
-        if toolkit.wall is not None:
-            standing = f"{toolkit.wall.noun.capitalize()} and {carriers[0].peg}"
-        if clamps == 1:
-            return f"{standing}, the {noun} pushes {arrangement.towards}"
-        return f"{standing}, {plural(clamps, noun, NUMBERS)} push {arrangement.towards}"
+    clamps, noun = len(arrangement.directions), toolkit.moving.noun
+    if clamps:
+        pushing = f"the {noun} pushes" if clamps == 1 else f"{plural(clamps, noun, NUMBERS)} push"
+        return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.towards}"
     if len(counts) > 1 and len(set(counts)) == 1:
         return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
     words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
@@ -185,43 +175,38 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, settings = toolkit.carriers[0], settings_of(fixture, toolkit)
+    first, settings, several = toolkit.carriers[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
     for setting in settings:
-        column.words(setting.title[0].upper() + setting.title[1:], 13, fill=GREY, gap=0.8)
-        column.words(lengths.words(setting.length), 32 if len(settings) == 1 else 22, bold=True, gap=0.4)
+        column.words(setting.caption, 13, fill=GREY, gap=0.8)
+        column.words(lengths.words(setting.length), 22 if several else 32, bold=True, gap=0.4)
         if setting.tip is not None:
-            label, place = clamp_place(setting.tip, setting.carrier)
-            column.fact(label, f"{place}, pushes {setting.carrier.towards}" if len(settings) > 1 else place)
-    if fixture.pair is not None:
+            pushing = f", pushes {setting.carrier.towards}" if several else ""
+            column.fact(setting.label, f"{setting.place}{pushing}")
+    if several:
         column.paragraph(order_words(fixture), 13)
         column.y += 3
         column.fact("Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°")
-    elif moving.on is not None:
+    elif moving.towards:
         column.fact(f"{moving.noun.capitalize()} pushes", moving.towards)
     column.fact("Part turned by θ", f"{fixture.pose.theta_deg:.3f}°")
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()
     pitch = f"pitch {lengths.short_number(first.pitch[0])} × {lengths.short(first.pitch[1])}"
-    if moving.on is None:
+    if len(toolkit.plates) > 1:
         column.fact(f"Each {first.noun}", f"{plural(first.column_count, 'column')}, {pitch}")
     else:
         column.fact(first.title.capitalize(), f"{holes_words(first)}, {pitch}")
+    if toolkit.tips:
         column.fact(f"Tip of the {moving.noun}", diameter_words(moving, lengths))
     column.fact(f"{first.peg.capitalize()}s", diameter_words(first, lengths))
-    if toolkit.wall is not None:
-        column.fact(f"Row 1 from the {toolkit.wall.noun}", lengths.words(first.offset[1]))
+    if toolkit.datum.edge is not None:
+        column.fact(f"Row 1 from {toolkit.datum.y}", lengths.words(toolkit.datum.edge))
     if offset := offset_words(toolkit, lengths):
         column.fact(f"{moving.letter} rows over {first.letter} rows", offset)
     column.rule()
-
-
-def clamp_place(tip: Peg, clamp: Carrier) -> tuple[str, str]:
-    """Where a clamp goes: what is told, and the hole or the line."""
-    name = clamp.place_name(tip.column, tip.row).removeprefix(f"{clamp.noun} ")
-    return f"{clamp.noun.capitalize()} {'bolted in' if clamp.has_a_hole else 'along'}", name
 
 
 def holes_words(carrier: Carrier) -> str:
@@ -245,80 +230,19 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write the pegs: hole, face, place and force."""
     first, rows = toolkit.carriers[0], []
-    for peg in fixture.pegs:
+    for peg, name in zip(fixture.pegs, contact_names(fixture, toolkit), strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
-        named = peg.hole
-        if carrier.on is not None and fixture.pair is None:
-            named = carrier.noun
-        elif not carrier.has_a_hole:
-            named = clamp_place(peg, carrier)[1]
+        named = name.removeprefix(f"{carrier.noun} ") if carrier.measure == "tip" else name
         rows.append([named, peg.touched, lengths.number(peg.x), lengths.number(peg.y), force])
     where = "Peg in" if first.letter else "In hole"
     column.table([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], rows, TABLE)
     column.y += 2
-    origin = hole_name(first.name, 0, 0)
-    away = f"x, y: {pegs_words(toolkit)} centre, from the centre of hole {origin}."
-    if toolkit.wall is not None:
-        away = f"x from column A, y from the {toolkit.wall.noun}, to centres."
-    column.words(away, 11, fill=GREY)
-    of = "both clamps' force" if fixture.pair else "clamping force"
+    column.words(toolkit.datum.centres(pegs_words(toolkit)), 11, fill=GREY)
+    of = "both clamps' force" if len(fixture.travels) > 1 else "clamping force"
     column.words(f"Force: on the part, per unit of {of}.", 11, fill=GREY)
     column.rule()
 
 
 def pegs_words(toolkit: Toolkit) -> str:
     """What its pegs are called, such as "peg" or "locator or clamp"."""
-    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers if not carrier.is_wall))
-
-
-def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
-    """Explain the signs; ``fill`` is the colour of the words."""
-    first = toolkit.carriers[0]
-    named = f"{first.noun}, column, row" if first.letter else "column, row"
-
-    def peg(scene: Scene, x: float, y: float) -> None:
-        scene.circle((x, y), 7, PEG_FILL, BLACK, 1.2)
-
-    def hole(scene: Scene, x: float, y: float) -> None:
-        scene.circle((x, y), 7, "#ffffff", GREY, 0.9)
-
-    def clamp(scene: Scene, x: float, y: float) -> None:
-        draw_sign(scene, (x, y))
-
-    def push(scene: Scene, x: float, y: float) -> None:
-        block_arrow(scene, (x, y), (-1.0, 0.0), 0.55)
-
-    def force(scene: Scene, x: float, y: float) -> None:
-        scene.circle((x - 14, y), 2.8, ARROW)
-        scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
-
-    def face(scene: Scene, x: float, y: float) -> None:
-        scene.line([(x - 15, y), (x + 16, y)], TOUCHED, 8)
-        scene.line([(x - 15, y), (x + 16, y)], BLACK, 2.2)
-
-    def line(scene: Scene, x: float, y: float) -> None:
-        scene.line([(x - 15, y), (x + 16, y)], BLACK, 1.0, stroke_dasharray="7 4")
-
-    def wall(scene: Scene, x: float, y: float) -> None:
-        bar = Box(x - 15, -y - 6, x + 16, -y + 3)
-        draw_wall(scene, ShownWall(first, bar, (bar.x0, bar.x1)), View(1.0, 0.0, 0.0))
-
-    signs = [(peg, f"{first.peg} to place, with its hole: {named}"), (hole, "hole, left empty")]
-    if toolkit.carriers[-1].on is not None:
-        has_a_hole = toolkit.carriers[-1].has_a_hole
-        signs.append(
-            (clamp, "clamp: bolt, body and tip") if has_a_hole else (line, "line of holes that the clamp is on")
-        )
-        signs.append((push, "which way the clamp pushes"))
-    if toolkit.wall is not None:
-        signs.append((wall, f"{toolkit.wall.noun} that the part lies flush on"))
-    signs += [
-        (force, f"force of the {pegs_words(toolkit)} on the part, longer if larger"),
-        (face, "face touched, with its number"),
-    ]
-    for draw, words in signs:
-        y = column.y + 8
-        draw(column.scene, column.x + 16, y)
-        size = min(11.5, 11.5 * (column.width - 44) / text_width(words, 11.5))
-        column.scene.text((column.x + 44, y), words, size, fill=fill)
-        column.y += 21
+    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers if carrier.contact.is_placed))

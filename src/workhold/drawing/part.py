@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil, pi
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.drawing.scene import View, number
 from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -73,8 +74,26 @@ def face_of(workpiece: Workpiece, number: int) -> Segment:
     return next(face.segment for face in workpiece.faces if number in face.segments)
 
 
-def contact_of(center: Point, face: Segment) -> tuple[Point, Point]:
-    """Where a peg about a centre touches a face, and the outward unit normal there, all in one frame, mm."""
+def contact_of(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
+    """Where a contact of a kind, about a centre, touches a face, and the outward unit normal there, all in one frame, mm."""
+    return CONTACTS[kind](center, face)
+
+
+def wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """The contact of a part with a wall below it, where its end is."""
+    return center, (0.0, -1.0)
+
+
+def pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """The contact of a pin about a centre with a face."""
     half = face.half_extent
     parameter = max(-half, min(half, face.parameter(center)))
     return face.at(parameter), face.normal(parameter)
+
+
+CONTACTS: Mapping[ContactKind, Callable[[Point, Segment], tuple[Point, Point]]] = {
+    ROUND_PIN: pin_contact,
+    FLAT_PIN: pin_contact,
+    CLAMP_TIP: pin_contact,
+    WALL_END: wall_contact,
+}

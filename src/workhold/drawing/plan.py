@@ -261,7 +261,7 @@ def draw_labels(
         placer.avoid_box(box)
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
-    labelled_pegs, pegs = bench.round_pegs, bench.fixture.pegs
+    labelled_pegs, pegs = bench.placed, bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
     direction = -radians(bench.fixture.pose.theta_deg) / 2
     places = placer.place(
@@ -302,8 +302,8 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
         placer.avoid_line(view(low), view(high), 0.5)
     for clamp in bench.shown.clamps:
         avoid_clamp(placer, clamp, view)
-    if bench.shown.wall is not None:
-        placer.avoid_box(view.box(bench.shown.wall.bar))
+    for wall in bench.shown.walls:
+        placer.avoid_box(view.box(wall.bar))
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from workhold.drawing.scene import GREY, Scene, View
+from workhold.drawing.scene import GREY, Box, Scene, View
 from workhold.geometry.segment import Point
-from workhold.model.shown import Shown, ShownCarrier, ShownWall, Side
+from workhold.model.shown import Shown, ShownCarrier, Side
 
 __all__ = ["SLIDING", "draw_holes", "draw_plate", "draw_wall", "labelled", "most_holes"]
 
@@ -39,9 +39,9 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
         scene.line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
 
 
-def draw_wall(scene: Scene, wall: ShownWall, view: View, weight: float = 1.0) -> None:
-    """Draw a wall: a bar, hatched below the line that the part lies on."""
-    box = view.box(wall.bar)
+def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0) -> None:
+    """Draw a wall, a bar in mm: hatched below the line that the part lies on."""
+    box = view.box(bar)
     scene.rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)
     for k in range(1, int((box.width + high) / step) + 1):

@@ -94,9 +94,9 @@ def result_details(
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
     fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
     told, not_seated = result[rank - 1].seating if seating is not False else None, ""
-    if seating is None and fixture.pair is not None:
+    if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)
-    put_in = by_hand(fixture, workpiece, toolkit) if seating and fixture.pair is not None else None
+    put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
     if seating and told is None and put_in is None:
         try:
             told = Solver(workpiece, toolkit).of(fixture)

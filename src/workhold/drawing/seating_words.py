@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import asin, ceil, degrees, floor, inf, log10
 
 from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
+from workhold.model.carrier import Measure
 from workhold.model.fixture import Fixture
 from workhold.model.seating import CLOSE_READING, DRY_STEEL, Seat, Seating
 from workhold.model.toolkit import Toolkit
@@ -20,6 +21,9 @@ __all__ = ["SeatingWords", "down"]
 
 # More than this is told without a bound, in degrees.
 ANY_TURN = 180.0
+# Where what moves ends, by what is set on it.
+CLAMP_STOPS, JAWS_STOP = "the clamp goes as far as it can", "the jaws meet their stop"
+STOPPED: Mapping[Measure, str] = {"opening": JAWS_STOP, "stroke": CLAMP_STOPS, "tip": CLAMP_STOPS}
 
 
 def down(value: float, digits: int = 2) -> str:
@@ -173,7 +177,7 @@ class SeatingWords:
 
     def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
         """What a closing ended in, one of ``seating.playing.ENDINGS``, with what is read then."""
-        read, clamp = self.reads(self.gauge.at(travelled)), self.gauge.carrier.on is not None
+        read, stop = self.reads(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
         if seat is not None and ending == "right":
             return f"It comes home: {read}."
         if seat is not None and ending == "same place":
@@ -184,10 +188,9 @@ class SeatingWords:
             off = self.difference(seat)
             tells = "as when it is right" if off == "the same" else f"{off} than when it is right"
             return f"It comes to rest in a wrong place{kind}: {read}, {tells}."
-        stopped = "the clamp goes as far as it can" if clamp else "the jaws meet their stop"
         return {
-            "stop": f"The part lies loose beside the pegs: {stopped}, {read}.",
-            "outside": f"The part slips out: {stopped}, {read}.",
+            "stop": f"The part lies loose beside the pegs: {stop}, {read}.",
+            "outside": f"The part slips out: {stop}, {read}.",
             "elsewhere": f"It comes to rest where a nudge moves it on: {read}.",
         }.get(ending, f"The way could not be followed to its end; the last reading is {read}.")
 

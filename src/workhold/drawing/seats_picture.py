@@ -78,7 +78,8 @@ class Placed:
     pegs : places, radii, and whether each touches.
     reading : what is read there, and in the fixture's own pose.
     extent : of all of it.
-    on_wall : whether there is a fence, along x at y = 0.
+    walls : how many straight walls there are, along x at y = 0.
+    touching : how the part lies in the fixture, in two words.
     """
 
     def __init__(
@@ -88,10 +89,11 @@ class Placed:
         pegs: list[tuple[tuple[float, float], float, bool]],
         reading: tuple[float, float],
         extent: Box,
-        on_wall: bool,
+        walls: int,
+        touching: str,
     ) -> None:
         self.seat, self.loops, self.pegs, self.reading, self.extent = seat, loops, pegs, reading, extent
-        self.on_wall = on_wall
+        self.walls, self.touching = walls, touching
 
     @classmethod
     def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
@@ -102,23 +104,24 @@ class Placed:
         pegs = [
             ((peg.x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching)
             for k, peg in enumerate(gauge.pegs(seat.jaw_separation))
-            if not peg.is_on_wall
+            if toolkit.carrier(peg.carrier).contact.is_placed
         ]
         reading = gauge.at(seat.jaw_separation), gauge.setting.length
         x0, y0, x1, y1 = lying.bounds
         boxes = [(x0, y0, x1, y1), *((x - r, y - r, x + r, y + r) for (x, y), r, _ in pegs)]
-        if toolkit.wall is not None:
-            boxes.append((x0, -WALL, x1, 0.0))
+        walls = len(toolkit.ends_on_walls)
+        boxes += [(x0, -WALL, x1, 0.0)] * walls
         lows, highs = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
         extent = Box(
             *(min(ends) for ends in zip(*lows, strict=True)), *(max(ends) for ends in zip(*highs, strict=True))
         )
-        return cls(seat, [list(loop) for loop in lying.loop_segments], pegs, reading, extent, toolkit.wall is not None)
+        loops = [list(loop) for loop in lying.loop_segments]
+        return cls(seat, loops, pegs, reading, extent, walls, toolkit.setup_words.touching)
 
 
 def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
     """Draw the part as it lies and the pegs, those that touch filled; ``weight`` is the width of lines in page units."""
-    if placed.on_wall:
+    for _ in range(placed.walls):
         x0, x1 = placed.extent.x0, placed.extent.x1
         scene.polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
     fill = OVER_FILL if placed.seat.mirrored else PART_FILL
@@ -137,8 +140,7 @@ def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, 
     words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
     scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
     scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(reading)}", 13, "end", fill=ARROW)
-    four = "flush" if placed.on_wall else "four pegs"
-    kind = seat.kind if seat.kind != "fixture" else four
+    kind = seat.kind if seat.kind != "fixture" else placed.touching
     scene.text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
     if not seat.is_own:
         more = "more" if reading >= own else "less"

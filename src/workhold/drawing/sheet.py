@@ -63,9 +63,8 @@ def draw_sheet(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details
     room = arrangement.plan
     view = View.fitting(extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
     marks = [(zero, "X0 Y0")] if sheet.zero_shown else []
-    origin = sheet.origin
-    if sheet.origin_shown and all(peg.hole != origin for peg in fixture.pegs):
-        marks.append(((0.0, 0.0), f"{origin} (0, 0)" if toolkit.wall is None else "(0, 0)"))
+    if sheet.origin_shown and all(peg.hole != sheet.datum.name for peg in fixture.pegs):
+        marks.append(((0.0, 0.0), sheet.datum.mark))
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ")
     words = f", scale {arrangement.scale.name}"
     if not most_holes(view, bench.shown):

@@ -116,7 +116,8 @@ def cautions_of(
         found.append(Caution("closure", f"Weak closure: {words}."))
     largest = max(fixture.pegs, key=lambda peg: peg.force)
     if is_strong(largest.force):
-        pushers = f"the {toolkit.moving.pushers}" if fixture.pair is None else f"both {toolkit.moving.noun}s together"
+        alone, moving = len(fixture.travels) == 1, toolkit.moving
+        pushers = f"the {moving.pushers}" if alone else f"both {moving.noun}s together"
         words = f"{largest.hole} pushes {largest.force:.1f} times as hard as {pushers}: tighten gently"
         found.append(Caution("amplification", f"{words}, it may mark {largest.touching}."))
     if is_astray(error, off):
@@ -135,7 +136,7 @@ def cautions_of(
         told = SeatingWords(details.seating, fixture, toolkit, lengths)
         return found + [Caution(kind, sentence) for kind, sentence in told.cautions()]
     if details.others:
-        holes = "four holes" if fixture.direction is None else "holes"
+        holes = "holes" if toolkit.tips else "four holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"
         found.append(
             Caution(

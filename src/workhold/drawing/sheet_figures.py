@@ -16,6 +16,7 @@ from workhold.model.quality import (
     LOCATION_ERROR,
     WRENCH_RADIUS,
 )
+from workhold.model.setting import contact_names
 from workhold.statics.jaw import jaw_words
 
 __all__ = ["write_loads", "write_quality"]
@@ -76,14 +77,8 @@ def write_loads(column: Column, sheet: Sheet) -> None:
     heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
     friction = [] if details.friction is None else [f"µ {details.friction:g}"]
-    several = sheet.fixture.pair is not None
-    names = [
-        moving.noun
-        if sheet.toolkit.carrier(peg.carrier).on and not several
-        else peg.hole.removeprefix(f"{moving.noun} ")
-        for peg in sheet.fixture.pegs
-    ]
-    header = ["Load", "needs" if moving.on else moving.pushers, *friction, *names]
+    names = [name.removeprefix(f"{moving.noun} ") for name in contact_names(sheet.fixture, sheet.toolkit)]
+    header = ["Load", "needs" if sheet.toolkit.tips else moving.pushers, *friction, *names]
     rows = []
     for number, case in cases[:MOST_LOADS]:
         name = shortened(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
@@ -101,7 +96,7 @@ def write_loads(column: Column, sheet: Sheet) -> None:
     what = jaw_words(cases[0][1].jaw_stiffness, sheet.toolkit)
     what = f"the {moving.noun} force below which a peg lets go in {what}"
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
-    if several:
+    if not sheet.is_closed_at_once:
         column.paragraph(f"The {moving.noun} force is that of both {moving.noun}s added up, in the ratio told.", NOTE)
     if details.friction is not None:
         column.paragraph(

@@ -51,7 +51,7 @@ def write_part(column: Column, sheet: Sheet) -> None:
     height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
     column.y += 10
     box = Box(column.x, column.y, column.x + column.width, column.y + height)
-    draw_inset(column.scene, box, sheet.workpiece, sheet.fixture, sheet.zero.point)
+    draw_inset(column.scene, box, sheet.workpiece, sheet.fixture, sheet.toolkit, sheet.zero.point)
     column.y += height
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from attrs import frozen
 
@@ -15,10 +15,12 @@ from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution
 from workhold.geometry.segment import Point
+from workhold.model.contact_kind import FLAT_PIN
 from workhold.model.dowel import fit_words
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.holes import hole_name
 from workhold.model.part_zero import PartZero, part_zero
+from workhold.model.setting import Setting, contact_names, settings_of
+from workhold.model.setup_words import Datum
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
@@ -27,7 +29,9 @@ __all__ = [
     "BODY",
     "NOTE",
     "Block",
+    "MovingBlocks",
     "Sheet",
+    "Writer",
     "fact_or_field",
     "heading",
     "height_of",
@@ -82,25 +86,38 @@ class Sheet:
         return None if told is None else SeatingWords(told, self.fixture, self.toolkit, self.lengths)
 
     @property
-    def origin(self) -> str:
-        """The name of the hole that places are told from; with a fence that is where it meets column A."""
-        wall = self.toolkit.wall
-        return hole_name(self.toolkit.carriers[0].name, 0, 0) if wall is None else f"column A at the {wall.noun}"
+    def datum(self) -> Datum:
+        """What places are measured from."""
+        return self.toolkit.datum
 
     @property
-    def origin_words(self) -> str:
-        """The point that places are told from, in words."""
-        return f"the centre of hole {self.origin}" if self.toolkit.wall is None else self.origin
+    def is_closed_at_once(self) -> bool:
+        """Whether one thing is set and tightened, rather than two clamps in turn."""
+        return len(self.fixture.travels) == 1
 
     @property
-    def from_x(self) -> str:
-        """What x is told from."""
-        return f"hole {self.origin}" if self.toolkit.wall is None else "column A"
+    def settings(self) -> tuple[Setting, ...]:
+        """What is set on each thing that moves."""
+        return settings_of(self.fixture, self.toolkit)
 
-    @property
-    def from_y(self) -> str:
-        """What y is told from."""
-        return f"hole {self.origin}" if self.toolkit.wall is None else f"the {self.toolkit.wall.noun}"
+
+Writer = Callable[[Column, Sheet], None]
+
+
+@frozen
+class MovingBlocks:
+    """What a sheet says of things that move.
+
+    Parameters
+    ----------
+    settings : the blocks about the lengths to set.
+    steps : what to do, one or two sentences each, up to the machine's zero.
+    counting : the block about how holes are counted.
+    """
+
+    settings: Callable[[Sheet], list[Writer]]
+    steps: Callable[[Sheet], list[str]]
+    counting: Writer
 
 
 def height_of(block: Block, width: float) -> float:
@@ -130,16 +147,16 @@ def fact_or_field(column: Column, name: str, value: str | None) -> None:
     column.y += 0.62 * HEADING
 
 
-def peg_rows(sheet: Sheet, names: Sequence[str]) -> tuple[list[str], list[list[str]], str]:
-    """The table of the pegs under some names: its header, its rows, and what the forces in it are, up to "of"."""
+def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
+    """The table of the pegs: its header, its rows, and what the forces in it are, up to "of"."""
     force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.number
     per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
-    flats = sheet.toolkit.has_flats
+    flats = FLAT_PIN in sheet.toolkit.contacts
     header = ["Hole", "face", *["flat"] * flats, f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
     if force is not None:
         header.append(f"at {unit.force_words(force)}")
     rows = []
-    for name, peg in zip(names, sheet.fixture.pegs, strict=True):
+    for name, peg in zip(contact_names(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
         looks = [looks_words(peg)] * flats
         row = [name, peg.touched, *looks, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])

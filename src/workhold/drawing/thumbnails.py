@@ -11,7 +11,7 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import closure_margin, plural
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.errors import InputError
-from workhold.listing.alike import Entries
+from workhold.listing.near_duplicates import Entries
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
@@ -126,9 +126,7 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, len
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
     fixture, width = bench.fixture, cell.width - 20
-    kind = (
-        f"Type {fixture.type}" if fixture.direction is None else f"{fixture.type} {fixture.direction}".replace("-", "−")
-    )
+    kind = bench.toolkit.arrangement(fixture.type, fixture.direction).short_title
     name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
     group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)

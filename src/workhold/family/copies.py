@@ -26,7 +26,6 @@ from workhold.family.covering import ROUNDING, load_solver
 from workhold.geometry.segment import Line
 from workhold.model.clamp import shown_clamps
 from workhold.model.fixture import Fixture
-from workhold.model.plate import Plate
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
@@ -83,7 +82,7 @@ def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodie
                 count = max(1, ceil(2 * placed.half_sweep / max(turn, pi / 720)))
             ends = [placed.at(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
             chords += list(pairwise(ends))
-    locators = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).on is None and not peg.is_on_wall]
+    locators = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).has_lattice]
     clamps = list(shown_clamps(fixture, toolkit))
     cores = [((peg.x, peg.y), (peg.x, peg.y)) for peg in locators]
     cores += [(clamp.back, (clamp.tip.x, clamp.tip.y)) for clamp in clamps]
@@ -154,19 +153,15 @@ def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> li
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
-        if carrier.is_wall:
-            continue
-        if carrier.on is None or carrier.has_a_hole or not carrier.is_along_x:
-            used_columns.append(peg.column)
-        if carrier.on is None or carrier.has_a_hole or carrier.is_along_x:
-            used_rows.append(peg.row)
+        in_column, in_row = toolkit.carrier(peg.carrier).counted
+        used_columns += [peg.column] * in_column
+        used_rows += [peg.row] * in_row
     if max(used_columns) - min(used_columns) >= columns or max(used_rows) - min(used_rows) >= rows:
         raise InputError(
             f"a plate of {columns} × {rows} holes does not hold this fixture once: it takes "
             f"{max(used_columns) - min(used_columns) + 1} columns and {max(used_rows) - min(used_rows) + 1} rows."
         )
-    upward = range(-min(used_rows), rows - max(used_rows)) if toolkit.wall is None else range(1)
+    upward = range(1) if toolkit.datum.fixes_rows else range(-min(used_rows), rows - max(used_rows))
     return [(i, j) for j in upward for i in range(-min(used_columns), columns - max(used_columns))]
 
 
@@ -192,8 +187,11 @@ def packing_of(
     InputError
         For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without SciPy.
     """
-    if not isinstance(toolkit, Plate):
-        raise InputError("a vise holds one part: its jaw presses several copies unlike; take a plate or a fence.")
+    if len(toolkit.plates) > 1:
+        raise InputError(
+            f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take a plate or a "
+            "fence."
+        )
     places = places_on(fixture, toolkit, columns, rows)
     spread = (
         max(i for i, _ in places) - min(i for i, _ in places),

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import reduce
 
-from attrs import evolve
-
 from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
 from workhold.drawing.clamps import draw_clamp, draw_push
 from workhold.drawing.dimensions import scale_bar
@@ -49,10 +47,8 @@ def draw_copies(
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
     extent = reduce(Box.union, (box for bench in benches for box in taken_up(bench)), holes)
-    wall = benches[0].shown.wall
-    if wall is not None:
-        wall = evolve(wall, bar=Box(holes.x0, wall.bar.y0, holes.x1, wall.bar.y1))
-        extent = extent.union(wall.bar)
+    walls = [Box(holes.x0, wall.bar.y0, holes.x1, wall.bar.y1) for wall in benches[0].shown.walls]
+    extent = reduce(Box.union, walls, extent)
     page = LANDSCAPE if extent.width >= 0.8 * extent.height else PORTRAIT
     count = "1 copy" if len(copies) == 1 else f"{len(copies)} copies"
     heading = shortened(f"{workpiece.name}: {count}", 26, page[0] - 2 * EDGE, bold=True)
@@ -61,7 +57,7 @@ def draw_copies(
     scene.text((EDGE, EDGE + 42), f"On a plate of {columns} columns and {rows} rows of holes.", 15, fill=GREY)
     view = View.fitting(extent, Box(EDGE + NAMES, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER - NAMES))
     draw_whole_plate(scene, holes, plate, size, view)
-    if wall is not None:
+    for wall in walls:
         draw_wall(scene.group("wall"), wall, view)
     for number, bench in enumerate(benches, 1):
         group = scene.group("copy")

@@ -168,7 +168,7 @@ def family_of(
             progress(SEARCHES * (place + fraction) / len(asked), found + count)
 
         # A plan is made of all fixtures: of two clamps every pair counts.
-        query = evolve(one.query, best=None, listing="all" if one.query.toolkit.needs_pairs else None)
+        query = evolve(one.query, best=None, listing=None if one.query.toolkit.closes_at_once else "all")
         result = answer(query, threads=threads, progress=share)
         found += len(result)
         member = member_of(one.name, result, thresholds, unfit, one.path, one.digest, one.zero, same_zero)

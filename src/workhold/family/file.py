@@ -16,6 +16,7 @@ from workhold.family.family import Family
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degrees
 from workhold.files.result.writer import toolkit_fields
+from workhold.model.contact_kind import CLAMP_TIP
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setting import settings_of
 from workhold.model.toolkit import Toolkit
@@ -82,8 +83,8 @@ def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict
     return {
         "pattern": {
             "type": fixture.type,
-            **({} if fixture.direction is None else {"direction": fixture.direction}),
-            "pegs": [peg_entry(peg, toolkit) for peg in fixture.pegs if not peg.is_on_wall],
+            **({"direction": fixture.direction} if toolkit.tips else {}),
+            "pegs": [peg_entry(peg, toolkit) for peg in fixture.placed],
         },
         "pegs_to_place": setup.moved,
         "parts": [holding_entry(one, toolkit, numbers[id(one.member)]) for one in setup.holdings],
@@ -92,14 +93,12 @@ def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict
 
 def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
     """Where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
-    carrier = toolkit.carrier(peg.carrier)
-    if toolkit.moving.on is None:
-        return {"jaw": carrier.name, "column": peg.column, "row": peg.row}
-    if carrier.on is None:
-        return {"role": "locator", "column": peg.column, "row": peg.row}
-    line = {"row": peg.row} if carrier.is_along_x else {"column": peg.column}
-    hole = [peg.column, peg.row] if carrier.has_a_hole else None
-    return {"role": "clamp", "direction": carrier.name.rpartition(" ")[2], **line, "hole": hole}
+    carrier, place = toolkit.carrier(peg.carrier), {"column": peg.column, "row": peg.row}
+    key, name = carrier.written_as
+    if carrier.contact is not CLAMP_TIP:
+        return {key: name, **place}
+    hole = [*place.values()] if carrier.measure == "stroke" else None
+    return {key: name, "direction": carrier.direction, carrier.line: place[carrier.line], "hole": hole}
 
 
 def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:

@@ -12,10 +12,9 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.family.patterns import column_groups, counted, half_turn
+from workhold.family.patterns import column_groups, half_turn
 from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
 
 __all__ = ["NOTHING", "Hole", "holes_of", "moved_onto", "shifted", "turned"]
 
@@ -30,13 +29,13 @@ def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: 
     ``family.patterns.column_groups``), and rows; the part moves with the first carrier."""
     carriers = toolkit.peg_carriers(one.arrangement)[0]
     groups, pitch = column_groups(toolkit), toolkit.carriers[0].pitch
-    counts = np.array([counted(toolkit.carriers[number]) for number in carriers])
+    counts = np.array([toolkit.carriers[number].counted for number in carriers])
     steps = np.array([columns.get(groups[number], 0) for number in carriers])
     move = np.array([columns.get(0, 0) * pitch[0], rows * pitch[1]])
     column = one.column + np.where(counts[:, 0], steps, 0).astype(np.int32)
     row = one.row + np.where(counts[:, 1], rows, 0).astype(np.int32)
     moved = evolve(one, column=column, row=row, position=one.position + move)
-    if isinstance(toolkit, Vise):
+    if not toolkit.tips:
         return evolve(moved, jaw_separation=one.jaw_separation + (columns.get(0, 0) - columns.get(1, 0)) * pitch[0])
     return with_tips(moved, toolkit, tips_of(one, toolkit) + move)
 
@@ -52,16 +51,17 @@ def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
     places = half_turn(toolkit, number)
     assert places is not None
     carriers, pitch = np.array(toolkit.arrangements[number].carriers), np.array(toolkit.carriers[0].pitch)
-    in_column, in_row = np.array([counted(toolkit.carriers[number]) for number in carriers]).T
+    in_column, in_row = np.array([toolkit.carriers[number].counted for number in carriers]).T
     rows = table.row[:, in_row]
     ends = rows.min(axis=1) + rows.max(axis=1)
-    if isinstance(toolkit, Vise):
-        last = np.full(len(table), toolkit.columns - 1)
-        opening = np.stack([table.jaw_separation, np.zeros(len(table))], axis=1)
-        middle = np.stack([2 * last, ends], axis=1) * pitch + opening + np.array([0.0, toolkit.row_offset])
-    else:
+    moving = toolkit.moving
+    if toolkit.tips:
         last = table.column[:, in_column].max(axis=1)
         middle = np.stack([last, ends], axis=1) * pitch
+    else:
+        last = np.full(len(table), moving.column_count - 1)
+        opening = np.stack([table.jaw_separation, np.zeros(len(table))], axis=1)
+        middle = np.stack([2 * last, ends], axis=1) * pitch + opening + np.array([0.0, moving.offset[1]])
     column = np.where(in_column, last[:, None] - table.column, 0)
     row = np.where(in_row, ends[:, None] - table.row, 0)
     order = np.lexsort((row, column, np.broadcast_to(np.array(places)[carriers], row.shape)), axis=-1)
@@ -79,7 +79,7 @@ def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
         position=middle - table.position,
         force=force,
     )
-    if isinstance(toolkit, Vise):
+    if not toolkit.tips:
         return out
     return with_tips(out, toolkit, (middle[:, None] - tips_of(table, toolkit))[:, ::-1])
 
@@ -110,7 +110,7 @@ def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
     for number, column, row in zip(
         toolkit.peg_carriers(one.arrangement)[0].tolist(), one.column[0].tolist(), one.row[0].tolist(), strict=True
     ):
-        in_column, in_row = counted(toolkit.carriers[number])
+        in_column, in_row = toolkit.carriers[number].counted
         if in_column or in_row:
             out.append((number, column if in_column else NOTHING, row if in_row else NOTHING))
     return sorted(out)
@@ -129,9 +129,10 @@ def moved_onto(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> Fix
     moved = shifted(one, toolkit, steps, rows)
     if holes_of(moved, toolkit) != theirs:
         return None
-    if isinstance(toolkit, Vise):
-        opening = float(moved.jaw_separation[0])
-        most = np.inf if toolkit.max_opening is None else toolkit.max_opening
-        if not toolkit.min_gap - GAP_SLACK <= opening <= most + GAP_SLACK:
-            return None
+    travel = toolkit.moving.travel
+    assert travel is not None
+    most = np.inf if travel.most is None else travel.most
+    # A clamp keeps its stroke, but jaws now stand nearer or farther apart.
+    if toolkit.moving.has_lattice and not travel.least - GAP_SLACK <= moved.jaw_separation[0] <= most + GAP_SLACK:
+        return None
     return moved

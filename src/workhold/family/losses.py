@@ -17,12 +17,11 @@ from workhold.model.result import FixtureTable
 from workhold.model.tolerance import Tolerance
 from workhold.statics.judging import unfit
 
-__all__ = ["FAMILY_RANKING", "PAIR_FAMILY_RANKING", "Threshold", "loss_text", "losses", "may_be_used", "threshold"]
+__all__ = ["RANKINGS", "Threshold", "loss_text", "losses", "may_be_used", "threshold"]
 
-# A family is asked for what it loses in location; after that what a machinist looks at counts.
+# A family is asked for what it loses in location; after that what a machinist looks at counts, by how many things move.
 LOCATION = "location_error"
-FAMILY_RANKING = (LOCATION, *DEFAULT_RANKING)
-PAIR_FAMILY_RANKING = (LOCATION, *PAIR_RANKING)
+RANKINGS = {1: (LOCATION, *DEFAULT_RANKING), 2: (LOCATION, *PAIR_RANKING)}
 # Losses are told apart to so many decimals.
 LOSS_DECIMALS = 9
 

@@ -22,7 +22,6 @@ from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.quality import FIGURES, figure_number
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
-from workhold.model.vise import Vise
 
 __all__ = ["Member", "member_of"]
 
@@ -134,16 +133,17 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
     nothing forbids it: a range of angles, or holes that are blocked; and the place (N,) of each in the list."""
     toolkit = query.toolkit
     tables, numbers = [table], [np.arange(len(table))]
-    blocked = isinstance(toolkit, Vise) and toolkit.blocked
+    blocked = any(plate.blocked for plate in toolkit.plates)
     for arrangement in range(len(toolkit.arrangements)):
-        if blocked or half_turn(toolkit, arrangement) is None:
+        places = half_turn(toolkit, arrangement)
+        if blocked or places is None:
             continue
         kind = table.arrangement == arrangement
         number = np.flatnonzero(kind & at_angle(np.degrees(table.theta) + 180.0, query))
         if len(number):
             after = turned(table.take(number), toolkit)
-            # Another jaw stands still, which changes the location error; the locators of a plate stay what they are.
-            tables.append(measured(after, Problem.of(query)) if isinstance(toolkit, Vise) else after)
+            # Where another jaw stands still the location error changes; the locators of a plate stay what they are.
+            tables.append(after if places[0] == 0 else measured(after, Problem.of(query)))
             numbers.append(number)
     return FixtureTable.joined(tables), np.concatenate(numbers)
 

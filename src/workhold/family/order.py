@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from workhold.family.holding import NOTHING
 from workhold.model.toolkit import Toolkit
-from workhold.model.vise import Vise
 
 __all__ = ["MOST_EXACT", "Freedom", "Step", "best_order", "freedom_of"]
 
@@ -56,10 +55,11 @@ class Step:
 
 def freedom_of(toolkit: Toolkit) -> Freedom:
     """Which ways set-ups of a toolkit may be moved: where it has no end."""
-    if isinstance(toolkit, Vise):
-        return Freedom(False, toolkit.rows is None and not toolkit.blocked)
-    first = toolkit.carriers[0]
-    return Freedom(first.columns is None, first.rows is None and toolkit.wall is None)
+    plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
+    return Freedom(
+        columns=all(plate.columns is None for plate in plates),
+        rows=not is_counted and all(plate.rows is None and not plate.blocked for plate in plates),
+    )
 
 
 def moved(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, int]]:

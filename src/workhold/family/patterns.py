@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import packed
 from workhold.model.part_zero import PartZero
-from workhold.model.plate import turned_half
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Carrier, Toolkit
-from workhold.model.vise import Vise
+from workhold.model.toolkit import Toolkit
 
-__all__ = ["column_groups", "counted", "half_turn", "pattern_words", "zero_words"]
+__all__ = ["column_groups", "half_turn", "pattern_words", "zero_words"]
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -29,31 +27,16 @@ BEYOND = 1 << 40
 
 def column_groups(toolkit: Toolkit) -> list[int]:
     """For each carrier the number of those whose columns it shares: a jaw that slides has its own."""
-    jaws = isinstance(toolkit, Vise)
-    return [number if jaws else 0 for number in range(len(toolkit.carriers))]
-
-
-def counted(carrier: Carrier) -> tuple[bool, bool]:
-    """Whether columns tell anything about what stands on a carrier, and whether rows do."""
-    if carrier.is_wall:
-        return False, False
-    if carrier.has_a_hole:
-        return True, True
-    return not carrier.is_along_x, carrier.is_along_x
+    slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
+    return [number if own else 0 for number, own in enumerate(slides)]
 
 
 def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
     """For each carrier the one whose place it takes after half a turn of everything, where that turn leaves an arrangement
     as it is; None where it does not."""
-    carriers, one = toolkit.carriers, toolkit.arrangements[arrangement]
-    if toolkit.wall is not None:
+    places, one = toolkit.half_turned, toolkit.arrangements[arrangement]
+    if places is None:
         return None
-    if isinstance(toolkit, Vise):
-        places: tuple[int, ...] = (1, 0)
-    else:
-        names = [carrier.name for carrier in carriers]
-        ahead = [names[0], *(f"clamp {turned_half(name.removeprefix('clamp '))}" for name in names[1:])]
-        places = tuple(names.index(name) if name in names else -1 for name in ahead)
     known = all(place >= 0 or not count for place, count in zip(places, one.pegs, strict=True))
     if not known or any(one.pegs[place] != count for place, count in zip(places, one.pegs, strict=True) if count):
         return None
@@ -63,13 +46,13 @@ def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
 def pattern_words(table: FixtureTable, toolkit: Toolkit) -> IntArray:
     """The patterns (N, W) of fixtures as they stand; their lexicographic order is that of identities."""
     carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
-    counts = np.array([counted(one) for one in toolkit.carriers])[carriers]
+    counts = np.array([one.counted for one in toolkit.carriers])[carriers]
     groups = np.array(column_groups(toolkit))[carriers]
     column, row = table.column.astype(np.int64), table.row.astype(np.int64)
     for group in range(int(groups.max(initial=0)) + 1):
         inside = counts[:, :, 0] & (groups == group)
         column = np.where(groups == group, column - least(column, inside), column)
-    if toolkit.wall is None:
+    if not toolkit.datum.fixes_rows:
         row = row - least(row, counts[:, :, 1])
     column, row = np.where(counts[:, :, 0], column, 0), np.where(counts[:, :, 1], row, 0)
     order = np.argsort((carriers << 40) + (column << 20) + row, axis=1, kind="stable")
@@ -90,11 +73,11 @@ def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArra
     They are the same for fixtures of one pattern in which parts have their zeros at one place and are turned alike.
     """
     carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
-    counts = np.array([counted(one) for one in toolkit.carriers])[carriers]
+    counts = np.array([one.counted for one in toolkit.carriers])[carriers]
     still = np.array(column_groups(toolkit))[carriers] == 0
     pitch = toolkit.carriers[0].pitch
     column = least(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
-    row = least(table.row.astype(np.int64), counts[:, :, 1])[:, 0] if toolkit.wall is None else 0
+    row = 0 if toolkit.datum.fixes_rows else least(table.row.astype(np.int64), counts[:, :, 1])[:, 0]
     x, y = rotated(zero.point[0], zero.point[1], table.theta)
     degrees = np.degrees(table.theta) + SAME_TURN / 2
     places = [

@@ -22,9 +22,8 @@ from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.family.losses import loss_text
 from workhold.family.plan import Holding, Plan, SetUp
-from workhold.model.holes import hole_name
 from workhold.model.quality import Figure
-from workhold.model.setting import Setting, settings_of
+from workhold.model.setting import settings_of
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
@@ -104,7 +103,7 @@ def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) ->
 
 def holes_of(setup: SetUp) -> list[str]:
     """The names of the holes of a set-up, and of the lines of its clamps."""
-    return [peg.hole for peg in setup.standing.fixture.pegs if not peg.is_on_wall]
+    return [peg.hole for peg in setup.standing.fixture.placed]
 
 
 def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
@@ -174,16 +173,10 @@ def table_head(one: Holding, titles: Titles) -> list[str]:
     sign, of = titles.lengths.sign, titles.figure.unit
     settings = settings_of(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
-    lengths = [f"{name} {sign}" for name in (*map(setting_name, settings), "X0 at x", "Y0 at y")]
+    lengths = [
+        f"{name} {sign}" for name in (*(f"{one.place} {one.sign}".strip() for one in settings), "X0 at x", "Y0 at y")
+    ]
     return ["part", *lengths, "turned θ", f"{titles.figure.words} {unit}".strip(), "loss", "fixture"]
-
-
-def setting_name(setting: Setting) -> str:
-    """What a length to set is called over a column: with the place of its clamp, where it is a clamp's."""
-    if setting.tip is None:
-        return setting.sign
-    place = setting.carrier.place_name(setting.tip.column, setting.tip.row)
-    return f"{place.removeprefix(setting.carrier.noun).strip()} {setting.sign}"
 
 
 def table_row(one: Holding, titles: Titles) -> list[str]:
@@ -206,12 +199,13 @@ def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
     """What stands below the table: what signs mean, what is a part's zero, and whose pegs stand in other columns."""
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
-    origin, wall = hole_name(toolkit.carriers[0].name, 0, 0), toolkit.wall
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
-    start = f"hole {origin}" if wall is None else f"column A and the {wall.noun}"
-    yield f"X0 Y0 is {first}, x and y from {start}, θ counter-clockwise. Fixture: its number in the part's list."
+    yield (
+        f"X0 Y0 is {first}, x and y from {toolkit.datum.start}, θ counter-clockwise. Fixture: its number in the part's "
+        "list."
+    )
     if any(one.turned for one in holdings):
-        swapped = ", which swaps the jaws" if toolkit.moving.on is None else ""
+        swapped = f", which swaps the {toolkit.moving.noun}s" if len(toolkit.plates) > 1 else ""
         yield f"′: that fixture after half a turn of everything{swapped}."
     for one in holdings:
         if not one.in_place:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
+from workhold.model.contact_kind import FLAT_PIN
 from workhold.model.fixture import Fixture
 from workhold.model.holes import column_letters
 from workhold.model.toolkit import Toolkit
@@ -27,15 +28,16 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
     """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow((*HEADER, *["flat_deg"] * toolkit.has_flats))
+    flats = FLAT_PIN in toolkit.contacts
+    writer.writerow((*HEADER, *["flat_deg"] * flats))
     carriers = {carrier.name: carrier for carrier in toolkit.carriers}
     for peg in fixture.pegs:
         carrier = carriers[peg.carrier]
-        if carrier.on is not None or carrier.is_wall:
+        if not carrier.has_lattice:
             continue
         sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
         long = "" if length is None else unit.figure(length)
         place = (peg.hole, plain(carrier.title), column_letters(peg.column), peg.row + 1)
-        looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * toolkit.has_flats
+        looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * flats
         writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face, *looks))
     return stream.getvalue()

@@ -72,6 +72,22 @@ class Label:
 
 
 @frozen
+class Lifted:
+    """How a limit that a field sets is lifted.
+
+    Parameters
+    ----------
+    rule : what it asks, in a few words, such as "rows of holes".
+    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
+    words : the toolkit without it, in words that follow its name.
+    """
+
+    rule: str
+    bounds: Literal["bodies", "travel", "holes"]
+    words: str
+
+
+@frozen
 class ToolkitField:
     """A field of a toolkit.
 
@@ -89,7 +105,13 @@ class ToolkitField:
     most : the largest count that a server takes; None for no limit of its own.
     figure : what it is called among the figures of a toolkit; empty where these tell it in another way.
     unset : what stands there for a value of None; where it is empty, a default is no figure.
-    follows : the field whose value is the default of this one, with which it is no figure.
+    follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in x.
+    is_always_shown : whether it is a figure also where it has the value that it follows.
+    at_least, below : the field whose value is the least of this one, and the sentence for what is below, with "{value}"
+        and "{least}".
+    allowed : the only counts that there are; empty where all are.
+    lifted : how the limit that it sets is lifted, for which its default stands; None where it sets none.
+    carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is called.
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
     """
@@ -108,6 +130,13 @@ class ToolkitField:
     figure: str = field(default="", kw_only=True)
     unset: str = field(default="", kw_only=True)
     follows: str = field(default="", kw_only=True)
+    is_always_shown: bool = field(default=False, kw_only=True)
+    at_least: str = field(default="", kw_only=True)
+    below: str = field(default="", kw_only=True)
+    allowed: tuple[int, ...] = field(default=(), kw_only=True)
+    lifted: Lifted | None = field(default=None, kw_only=True)
+    carriers: tuple[str, ...] = field(default=(), kw_only=True)
+    carrier_noun: str = field(default="", kw_only=True)
     section: str = field(default=TOOLKIT_SECTION, kw_only=True)
     word: str = field(default="", kw_only=True)
 
@@ -115,6 +144,11 @@ class ToolkitField:
     def option(self) -> str:
         """The command line's option."""
         return f"--{(self.word or self.name).replace('_', '-')}"
+
+    @property
+    def words(self) -> str:
+        """Its name in sentences."""
+        return self.name.replace("_", " ")
 
     @property
     def is_required(self) -> bool:
@@ -201,6 +235,9 @@ BODY_RADIUS = ToolkitField(
     (Label("Shoulder radius", "peg radius"),),
     figure="radius of the pegs' bodies",
     follows="peg_radius",
+    at_least="peg_radius",
+    below="body radius {value:g} is not one of a peg of radius {least:g}: give that or more, in mm.",
+    lifted=Lifted("bodies that would overlap", "bodies", "with pegs without a shoulder"),
     least="0",
     belongs_to="jaws",
 )
@@ -219,6 +256,7 @@ ROWS = ToolkitField(
     "N",
     "Rows of holes; as many as needed if not given.",
     (Label("Rows a jaw", "as needed"),),
+    lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
     most=100_000,
 )
 BLOCKED = ToolkitField(
@@ -230,6 +268,9 @@ BLOCKED = ToolkitField(
     default=(),
     figure="blocked",
     entry='write a list of holes and columns by name, such as ["L-B3", "R-A"]',
+    carriers=("left", "right"),
+    carrier_noun="jaw",
+    lifted=Lifted("blocked holes", "holes", "with no hole blocked"),
     belongs_to="jaws",
 )
 MIN_GAP = ToolkitField(
@@ -239,6 +280,8 @@ MIN_GAP = ToolkitField(
     "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
     (Label("Smallest gap", "pitch x"),),
     figure="smallest gap between left and right pegs",
+    follows="pitch",
+    is_always_shown=True,
     least="0",
     belongs_to="jaws",
 )
@@ -250,6 +293,9 @@ MAX_OPENING = ToolkitField(
     (Label("Largest opening", "no limit"),),
     figure="largest opening",
     unset="no limit",
+    at_least="min_gap",
+    below="max opening {value:g} is below the min gap {least:g}: no opening is left.",
+    lifted=Lifted("largest opening", "travel", "with a larger opening"),
     belongs_to="jaws",
 )
 ROW_OFFSET = ToolkitField(
@@ -272,6 +318,7 @@ CLAMPS = ToolkitField(
     default=1,
     figure="clamps, needed together",
     entry="write 1 or 2",
+    allowed=(1, 2),
     belongs_to="clamp beside its jaws",
     most=2,
     section=CLAMPS_SECTION,
@@ -283,6 +330,8 @@ CLAMP_RADIUS = ToolkitField(
     "Radius of the clamp's round tip; the peg radius if not given.",
     (Label("Clamp tip radius", "as a locator"),),
     figure="radius of the clamp's tip",
+    follows="peg_radius",
+    is_always_shown=True,
     least="0",
     belongs_to="clamp beside its jaws",
     section=CLAMPS_SECTION,
@@ -296,6 +345,7 @@ TRAVEL = ToolkitField(
     (Label("Stroke", "any"),),
     figure="from the clamp's hole to its tip",
     unset="any",
+    lifted=Lifted("stroke of the clamp", "travel", "with a clamp of any stroke"),
     entry="write the least and the most from the clamp's hole to its tip, such as [10, 35]",
     least="0",
     belongs_to="clamp beside its jaws",
@@ -328,6 +378,9 @@ WALL_OFFSET = ToolkitField(
     default=REQUIRED,
     entry="write the distance from the fence to the first row of holes",
     missing="distance from the first row of holes",
+    at_least="peg_radius",
+    below="wall offset {value:g} is less than the peg radius {least:g}: a locator in the first row would stand in the "
+    "fence; give the distance from the fence to the first row of holes, in mm.",
     belongs_to="wall",
     section=CLAMPS_SECTION,
 )
@@ -352,7 +405,11 @@ OPTIONS = (
 )
 ON_A_PLATE = (
     PITCH,
-    COLUMNS.shown(Label("Columns", "as needed", is_usual=True), default=None),
+    COLUMNS.shown(
+        Label("Columns", "as needed", is_usual=True),
+        default=None,
+        lifted=Lifted("columns of holes", "holes", "with as many columns as needed"),
+    ),
     ROWS.shown(Label("Rows", "as needed", is_usual=True)),
     PEG_RADIUS.shown(Label("Locator radius", is_usual=True)),
 )

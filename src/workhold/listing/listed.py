@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.listing.best import BestFixtures
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.gathering import Gathering
+from workhold.listing.collector import ResultCollector
 from workhold.model.notes import best_note, undecided_note
 from workhold.model.proof import Proof
 from workhold.model.result import FixtureTable, Result
 from workhold.proof.deciding import Account
 
-__all__ = ["MEASURED", "Work", "best_result", "gathered_result", "listed_result", "result_of", "stage"]
+__all__ = ["MEASURED", "Work", "best_result", "collected_result", "listed_result", "result_of", "stage"]
 
 
 # The parts of the work after the search, as progress tells it, when all is decided and when all is measured.
@@ -71,28 +71,28 @@ def listed_result(
     threads : how many threads share the deciding.
     """
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        gathering = Gathering(problem, pool, 2 * threads, cancel)
-        with gathering.given_up_on_errors():
+        collector = ResultCollector(problem, pool, 2 * threads, cancel)
+        with collector.given_up_on_errors():
             for array in records:
-                gathering.take(array)
-            result = gathered_result(gathering, work, stage(progress, 0.0, MEASURED))
-            result = with_table(result, gathering, stage(progress, MEASURED, 1.0))
+                collector.take(array)
+            result = collected_result(collector, work, stage(progress, 0.0, MEASURED))
+            result = with_table(result, collector, stage(progress, MEASURED, 1.0))
     return evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
-def gathered_result(gathering: Gathering, work: Work, progress: Progress | None = None) -> Result:
-    """The result of what a gathering was given, without its fixtures; those it hands over.
+def collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
+    """The result of what a collector was given, without its fixtures; those it hands over.
 
     Parameters
     ----------
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     """
-    account = gathering.finish_deciding(stage(progress, 0.0, DECIDED))
-    whole = gathering.measure(stage(progress, DECIDED, 1.0))
-    query = gathering.problem.query
+    account = collector.finish_deciding(stage(progress, 0.0, DECIDED))
+    whole = collector.measure(stage(progress, DECIDED, 1.0))
+    query = collector.problem.query
     names = [one.name for one in query.toolkit.arrangements]
     found, distinct = (
-        dict(zip(names, counts.tolist(), strict=True)) for counts in (gathering.found, gathering.distinct)
+        dict(zip(names, counts.tolist(), strict=True)) for counts in (collector.found, collector.distinct)
     )
     return Result(
         query=query,
@@ -106,9 +106,9 @@ def gathered_result(gathering: Gathering, work: Work, progress: Progress | None 
     )
 
 
-def with_table(result: Result, gathering: Gathering, progress: Progress | None = None) -> Result:
-    """The result of what a gathering was given, with its fixtures."""
-    tables, listed = list(gathering.tables(progress)), gathering.listed
+def with_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
+    """The result of what a collector was given, with its fixtures."""
+    tables, listed = list(collector.tables(progress)), collector.listed
     # If somebody asked to stop since, millions are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
     table = FixtureTable.joined(tables[:enough]).take(slice(listed))
@@ -131,9 +131,9 @@ def best_result(kept: BestFixtures, work: Work) -> Result:
 def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work) -> Result:
     """The result of fixtures that are decided."""
     with ThreadPoolExecutor(max_workers=1) as pool:
-        gathering = Gathering(problem, pool, 1)
-        gathering.add(candidates, account)
-        return with_table(gathered_result(gathering, work), gathering)
+        collector = ResultCollector(problem, pool, 1)
+        collector.add(candidates, account)
+        return with_table(collected_result(collector, work), collector)
 
 
 def proof_of(account: Account, work: Work) -> Proof:

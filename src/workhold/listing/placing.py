@@ -2,7 +2,8 @@
 
 Pegs stand in the columns nearest to those of the other carrier, moved outward only as far as the largest travel or a blocked
 hole demands, first the standing ones, then the moving ones. Rows are shifted so that the lowest is 0, or centred where the
-carriers have an end; a blocked hole shifts them no farther than it must. All this is in the frame of the search; the way
+carriers have an end; a blocked hole shifts them no farther than it must. A clamp on a plate of locators is
+bolted in a hole of its line instead (``listing.clamp_placement``). All this is in the frame of the search; the way
 back to the toolkit's own is the last step.
 """
 
@@ -17,18 +18,21 @@ from numpy.typing import NDArray
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_SLACK, GAP_SLACK
+from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.on_plate import bolted, placed_on_plate
-from workhold.listing.written_out import written_out
-from workhold.model.result import FixtureTable
+from workhold.listing.clamp_placement import ClampPlacement, last_holes
+from workhold.model.result import FixtureTable, unknown_quality
 from workhold.proof.deciding import is_standing
 from workhold.rowwise import largest, smallest
 
-__all__ = ["Arranged", "arranged", "placeable", "placed"]
+__all__ = ["Arranged", "arranged", "at_angle", "clamp_placement", "placeable", "placed"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+# Of candidates on a plate with a clamp.
+LOCATORS, TIP = slice(0, 3), 3
 
 
 @define(frozen=True, eq=False)
@@ -217,18 +221,41 @@ def in_blocked(column: IntArray, row: IntArray, standing: BoolArray, frame: Fram
     return np.asarray(hit.any(axis=1))
 
 
+def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
+    """Where the clamps of candidates on a plate may be bolted; columns count from the locators' first."""
+    frame = problem.frame
+    pitch_x, pitch_y = frame.lattice[:2]
+    last_column, last_row = last_holes(frame.toolkit.carriers[0])[:: -1 if frame.quarters % 2 else 1]
+    last = c.column[:, LOCATORS].max(axis=1, initial=0)
+    along = last * pitch_x + c.gap
+    return ClampPlacement(
+        frame.moving,
+        axis=0,
+        back=1,
+        tip=np.stack([along, c.row[:, TIP] * pitch_y], axis=1),
+        locators=np.stack([c.column[:, LOCATORS] * pitch_x, c.row[:, LOCATORS] * pitch_y], axis=2),
+        place=along,
+        pitch=pitch_x,
+        first=last - last_column,
+        last=np.full(len(last), last_column),
+        fits=(c.row.max(axis=1, initial=0) <= last_row) & (last <= last_column),
+        seen=c.point[:, TIP],
+        theta=c.theta,
+    )
+
+
 def placeable(c: Candidates, problem: Problem) -> BoolArray:
     """Which candidates (N,) have a place in the toolkit."""
     if problem.frame.moving.on is None:
         return arranged(c, problem).fits
-    fits = bolted(c, problem).fits
+    _, fits = clamp_placement(c, problem).nearest(problem)
     return np.asarray(fits & at_angle(c.theta, problem.restrictions.angles, problem.frame))
 
 
 def placed(c: Candidates, problem: Problem) -> FixtureTable:
     """Write candidates that fit out as holes of the toolkit; of their quality only the closure margin is known yet."""
     if problem.frame.moving.on is not None:
-        return placed_on_plate(c, problem)
+        return placed_with_clamp(c, problem)
     frame = problem.frame
     found = arranged(c, problem)
     c = found.candidates
@@ -239,4 +266,43 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
         c.column + np.where(standing, first[:, None], found.moving[:, None]),
         c.row + found.lift[:, None],
     )
-    return written_out(c, problem, column, row, found.travel(frame))
+    return table_of(c, problem, column, row, found.travel(frame))
+
+
+def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
+    """Write candidates that fit out as holes of a plate and of the clamp that is bolted on it."""
+    frame, placement = problem.frame, clamp_placement(c, problem)
+    hole, _ = placement.nearest(problem)
+    column = np.concatenate([c.column[:, LOCATORS], hole[:, None]], axis=1)
+    column, row = (
+        numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30) for numbers in frame.step_back(column, c.row)
+    )
+    travelled = placement.place - hole * frame.lattice.pitch_x
+    clamp = frame.toolkit.moving
+    if not clamp.has_a_hole:
+        # The tip is counted from the first column, or row, of the plate.
+        across, along = frame.toolkit.moving_axis
+        x, y = clamp.place(column[:, TIP], row[:, TIP])
+        travelled += x * across + y * along
+        (column if clamp.is_along_x else row)[:, TIP] = 0
+    return table_of(c, problem, column, row, travelled)
+
+
+def table_of(c: Candidates, problem: Problem, column: IntArray, row: IntArray, travel: Array) -> FixtureTable:
+    """The table of candidates in holes of the toolkit, columns and rows (N, 4), with a travel (N,) in mm."""
+    frame = problem.frame
+    theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)
+    anchor = c.point[:, 0] + np.asarray(problem.workpiece.center)
+    anchor = np.stack(rotated(anchor[:, 0], anchor[:, 1], theta), axis=1)
+    hole = frame.toolkit.carriers[0].place(column[:, 0], row[:, 0])
+    return FixtureTable(
+        arrangement=frame.toolkit.arrangement_numbers(c.standing).astype(np.int8),
+        column=column.astype(np.int32),
+        row=row.astype(np.int32),
+        face=problem.faces.astype(np.int32).take(c.feature),
+        theta=theta,
+        position=np.stack(hole, axis=1) - anchor,
+        jaw_separation=travel,
+        force=c.force,
+        quality=unknown_quality(smallest(c.null)),
+    )

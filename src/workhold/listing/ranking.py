@@ -16,24 +16,37 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
-from workhold.model.quality import CLOSURE_MARGIN, RANKED, ranked_number
+from workhold.model.quality import CLAMP_FREEDOM, CLOSURE_MARGIN, RANKED, ranked_number
+from workhold.model.query import Query
 from workhold.model.result import FixtureTable
 from workhold.model.tolerance import Tolerance
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of
 
-__all__ = ["best_marked", "figure_keys", "measured", "rank"]
+__all__ = ["best_marked", "figure_keys", "measured", "measured_as", "rank"]
 
 COARSE_DIGITS = 2
 
 
-def measured(table: FixtureTable, problem: Problem, threads: int = 1) -> FixtureTable:
-    """A table with all its figures of quality; the closure margin is that of its null vectors, to the last digit."""
-    part, toolkit, query = problem.workpiece, problem.toolkit, problem.query
-    touched = Touched.of(part, toolkit, problem.loci, problem.wrench_length)
-    quality = quality_of(table, part, toolkit, query.tolerance, query.loads, threads, touched, query.jaw_force)
-    quality[:, CLOSURE_MARGIN] = table.quality[:, CLOSURE_MARGIN]
+def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
+    """A table of fixtures of a problem with all its figures of quality."""
+    touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
+    return measured_as(table, problem.query, touched)
+
+
+def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
+    """A table with all its figures of quality; those of closure are as the search found them, to the last digit."""
+    quality = quality_of(
+        table,
+        query.workpiece,
+        query.toolkit,
+        query.tolerance,
+        query.loads,
+        touched=touched,
+        jaw_force=query.jaw_force,
+    )
+    quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
     return evolve(table, quality=quality)
 
 
@@ -45,7 +58,7 @@ def ranking_keys(
 
 
 def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """The same without regard to what is no fixture for a workshop."""
+    """Numbers (N,) to sort by, as of :func:`ranking_keys`, without regard to what is no fixture for a workshop."""
     keys = []
     for place, key in enumerate(ranking):
         number = ranked_number(key)

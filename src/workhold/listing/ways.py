@@ -8,11 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from attrs import evolve
 
-from workhold.listing.distinct import one_of_each_set, rotations_of
-from workhold.listing.plate_identity import smallest_images
+from workhold.listing.identity import Identity, SetCount
 from workhold.listing.ranking import rank
 from workhold.model.notes import best_note, cut_note, no_fixture_notes, no_place_note, undecided_note
-from workhold.model.plate import Plate
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
@@ -23,7 +21,7 @@ __all__ = ["joined_ways", "summed"]
 def joined_ways(results: Sequence[Result], query: Query) -> Result:
     """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the query."""
     table = joined_tables([result.table for result in results])
-    # Of a search that was stopped no more than the best of a way may be listed: of all then, too. (A fence's come without.)
+    # Of a search that was stopped no more than the best of a way may be listed: of all then, too.
     cut = [] if query.best else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
     most = min(cut, default=query.best)
     ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[:most])
@@ -31,7 +29,9 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
     found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
     if query.best is not None and any(best_note(query.best) in result.notes for result in results):
         # Each way left others out than the best of its own, so of all no more are known than the best.
-        found, distinct = query.toolkit.arrangements_counted(ranked.arrangement), sets_listed(ranked, query)
+        counted = SetCount(Identity(query.toolkit, query.workpiece))
+        counted.add(ranked)
+        found, distinct = counted.by_type(counted.found), counted.by_type(counted.distinct)
     joined = Result(
         query=query,
         table=ranked,
@@ -43,17 +43,6 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
         proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
     )
     return joined.cut_short(len(ranked)) if cut else joined
-
-
-def sets_listed(table: FixtureTable, query: Query) -> dict[str, int]:
-    """How many sets fixtures on a plate form, by type, when those count once that a rotation of the part carries into each
-    other."""
-    assert isinstance(query.toolkit, Plate)
-    rotations = rotations_of(query.workpiece)
-    if len(rotations) == 1:
-        return query.toolkit.arrangements_counted(table.arrangement)
-    key, pose = smallest_images(table, query.toolkit, query.workpiece, rotations, every=True)
-    return query.toolkit.arrangements_counted(table.arrangement[one_of_each_set([*key.T], pose)])
 
 
 def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:

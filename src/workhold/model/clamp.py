@@ -9,8 +9,10 @@ from attrs import frozen
 
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.model.carrier import Carrier
+from workhold.model.contact_kind import CLAMP_TIP
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.toolkit import Toolkit
 
 __all__ = ["ShownClamp", "clamping_direction", "shown_clamps"]
 
@@ -86,9 +88,9 @@ def shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
     for peg in fixture.pegs:
         carrier = toolkit.carrier(peg.carrier)
         clamping = clamping_direction(carrier, toolkit)
-        if carrier.on is not None and clamping is not None:
-            hole = carrier.place(peg.column, peg.row) if carrier.has_a_hole else None
-            yield ShownClamp(carrier, peg, hole, clamping, carrier.pitch[0 if carrier.is_along_x else 1])
+        if carrier.contact is CLAMP_TIP and clamping is not None:
+            hole = carrier.place(peg.column, peg.row) if carrier.measure == "stroke" else None
+            yield ShownClamp(carrier, peg, hole, clamping, carrier.pitch[0 if carrier.line == "row" else 1])
 
 
 def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:

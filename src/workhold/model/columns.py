@@ -7,7 +7,7 @@ import json
 from workhold.archive import Column, Columns
 from workhold.model.quality import FIGURES
 
-__all__ = ["COLUMNS", "HEAD", "PAIR_COLUMNS", "columns_said"]
+__all__ = ["COLUMNS", "COLUMNS_OF", "HEAD", "PAIR_COLUMNS", "columns_said"]
 
 HEAD = "result.json"
 # What each column holds, N fixtures: see docs/columns.md and ``model.result.FixtureTable``.
@@ -31,6 +31,8 @@ PAIR_COLUMNS = COLUMNS | {
     "force": Column("<f8", (5, 2)),
     "pairs": Column("<i4"),
 }
+# By how many things move in a fixture.
+COLUMNS_OF = {1: COLUMNS, 2: PAIR_COLUMNS}
 
 
 def columns_said(head: str) -> Columns:

@@ -8,24 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from math import isfinite
 from typing import ClassVar
 
-from attrs import field, frozen
-
-from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
-from workhold.limits import refuse_long
+from workhold.fixels.fields import TABLES, Table
 from workhold.model.fixture import WALL
+from workhold.model.making import made_from_table
 from workhold.model.plate import Plate
-from workhold.model.real import real
+from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.model.units import Unit
 
 __all__ = ["Fence"]
 
 
-@frozen
+@made_from_table
 class Fence(Plate):
     """A plate with a straight fence along x at y = 0: the part lies flush against it, above it.
 
@@ -51,6 +48,7 @@ class Fence(Plate):
     """
 
     kind: ClassVar[str] = "edge"
+    table: ClassVar[Table] = TABLES["edge"]
     noun: ClassVar[str] = "fence"
     wording: ClassVar[Wording] = Wording(
         two="fence and locator",
@@ -71,17 +69,19 @@ class Fence(Plate):
             "and locator.",
         ),
     )
+    setup_words: ClassVar[SetupWords] = SetupWords(
+        standing="Fence and locator",
+        located_by="Fence and locator",
+        put=(
+            "Fix the fence along the rows, its edge {edge} from the centres of row 1, and put the {peg} in {holes} of the "
+            "{plate}."
+        ),
+        against="flush on the fence and against the {peg}",
+        touching="flush",
+        resting="flush on the fence",
+    )
 
-    wall_offset: float = field(kw_only=True, converter=real)
-
-    def __attrs_post_init__(self) -> None:
-        super().__attrs_post_init__()
-        if not (isfinite(self.wall_offset) and self.wall_offset >= self.peg_radius):
-            raise InputError(
-                f"wall offset {self.wall_offset:g} is less than the peg radius {self.peg_radius:g}: a locator in the first "
-                "row would stand in the fence; give the distance from the fence to the first row of holes, in mm."
-            )
-        refuse_long("wall offset", self.wall_offset)
+    wall_offset: float
 
     @property
     def usual_directions(self) -> tuple[str, ...]:
@@ -115,6 +115,22 @@ class Fence(Plate):
             Arrangement("edge2", (1, 2, *(pair.count(name) for name in names)), " ".join(pair))
             for pair in self.directions
         )
+
+    @property
+    def law(self) -> str:
+        """That of a fence, with however many clamps."""
+        return "fence"
+
+    @property
+    def datum(self) -> Datum:
+        """Where column A meets the fence."""
+        plate, wall, *_ = self.carriers
+        return Datum.at_wall(wall, plate)
+
+    @property
+    def half_turned(self) -> None:
+        """The fence stays at its side."""
+        return None
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp in all directions, and half the pitch."""

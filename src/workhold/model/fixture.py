@@ -12,7 +12,7 @@ from attrs import field, frozen
 from workhold.errors import InputError
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.holes import hole_name
 
 __all__ = ["WALL", "Fixture", "Listed", "Pair", "Peg", "Pose"]
@@ -209,6 +209,16 @@ class Fixture:
         return None if self.listed is None else str(self.draw())
 
     @property
+    def travels(self) -> tuple[float, ...]:
+        """How far each thing that moves has travelled, in mm: the jaw, or the clamps in their order."""
+        return (self.jaw_separation,) if self.pair is None else self.pair.travels
+
+    @property
+    def placed(self) -> tuple[Peg, ...]:
+        """The pegs and clamps that stand in places of their own; the ends of a contact with a wall do not."""
+        return tuple(peg for peg in self.pegs if not peg.is_on_wall)
+
+    @property
     def figures(self) -> dict[str, float]:
         """The figures of quality and, where it is told, of seating, whose warnings count as well."""
         if self.seating is None:
@@ -253,7 +263,7 @@ class Fixture:
         >>> "Fixture 1 of" in result[0].draw()
         True
         """
-        picture: str = beyond("fixture_picture")(self, path, title=title, unit=unit)
+        picture: str = delegate("fixture_picture")(self, path, title=title, unit=unit)
         return picture
 
     def save_sheet(
@@ -282,4 +292,4 @@ class Fixture:
         InputError
             For a fixture that is not one of a result, values that cannot be, and when the file cannot be written.
         """
-        beyond("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)
+        delegate("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)

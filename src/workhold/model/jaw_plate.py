@@ -77,7 +77,7 @@ def jaw_plates(
     (Box(x0=-5.0, y0=-5.0, x1=15.0, y1=25.0), ['R-A1', 'R-B1', 'R-A2'])
     """
     plates = []
-    for carrier in (one for one in toolkit.carriers if one.on is None):
+    for carrier in toolkit.plates:
         if carrier.rows is None or carrier.columns is None:
             raise InputError("how many columns and rows of holes the plates have is not given: give both.")
         diameter = 2 * carrier.peg_radius if hole_diameter is None else hole_diameter

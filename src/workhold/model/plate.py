@@ -6,69 +6,24 @@ the forces of both clamps together press it against them, those of neither alone
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
-from itertools import combinations_with_replacement, product
-from math import inf, isfinite, isnan
+from itertools import combinations_with_replacement
+from math import inf
 from typing import Any, ClassVar
 
-from attrs import evolve, field, frozen
+from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
-from workhold.limits import refuse_long
-from workhold.model.flat import Flat, flat_of, resolved_flat
-from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
-from workhold.model.real import real
-from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
+from workhold.fixels.fields import TABLES, Table
+from workhold.model.flat import Flat
+from workhold.model.making import made_from_table, settle
+from workhold.model.setup_words import SetupWords
+from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
 __all__ = ["Plate"]
-
-
-def travel_pair(value: Iterable[float] | None) -> tuple[float, float] | None:
-    """The least and the most that a clamp stretches, or None."""
-    if value is None:
-        return None
-    numbers = tuple(value) if isinstance(value, Iterable) else (value,)
-    if len(numbers) != 2:
-        raise InputError(
-            f"travel {value} is not two lengths: give the least and the most that the clamp stretches, in mm."
-        )
-    return real(numbers[0]), real(numbers[1])
-
-
-def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Directions in the order in which they are listed, or pairs of them; none for None, which the plate resolves."""
-    if value is None:
-        return ()
-    names = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
-    if not names:
-        raise InputError(f"there is no direction for the clamp: choose among {', '.join(DIRECTIONS)}.")
-    if any(isinstance(name, str) for name in names):
-        for name in names:
-            refuse_direction(name)
-        return tuple(name for name in DIRECTIONS if name in names)
-    pairs = [tuple(one) if isinstance(one, Iterable) else (one,) for one in names]
-    for two in pairs:
-        if len(two) != 2:
-            raise InputError(f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y').")
-        for name in two:
-            refuse_direction(name)
-    every = product(DIRECTIONS, repeat=2)
-    return tuple(one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs})
-
-
-def refuse_direction(name: Any) -> None:
-    """Refuse what is no direction of a clamp.
-
-    Raises
-    ------
-    InputError
-        Naming those that are.
-    """
-    if not isinstance(name, str) or name not in DIRECTIONS:
-        raise InputError(f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}.")
 
 
 def turned_half(name: str) -> str:
@@ -76,7 +31,7 @@ def turned_half(name: str) -> str:
     return f"{'-' if name[0] == '+' else '+'}{name[1]}"
 
 
-@frozen
+@made_from_table
 class Plate(Toolkit):
     """A plate with a lattice of holes: three locators anywhere on it, and clamps on rows and columns of holes.
 
@@ -110,6 +65,7 @@ class Plate(Toolkit):
     """
 
     kind: ClassVar[str] = "translating-clamp"
+    table: ClassVar[Table] = TABLES["translating-clamp"]
     noun: ClassVar[str] = "plate"
     locked: ClassVar[str] = "a screw clamp,"
     clamping: ClassVar[int] = 1
@@ -123,36 +79,27 @@ class Plate(Toolkit):
         backwards="the clamp pulls, not when it pushes",
         holes="holes that the plate does not have",
     )
+    setup_words: ClassVar[SetupWords] = SetupWords(
+        standing="Locators",
+        located_by="Three locators",
+        put="Put {peg}s in {holes} of the {plate}.",
+        against="against all {count} {peg}s",
+        touching="four pegs",
+    )
 
-    pitch: tuple[float, float] = field(converter=pair)
-    peg_radius: float = field(converter=real)
-    columns: int | None = field(default=None, converter=whole)
-    rows: int | None = field(default=None, converter=whole)
-    clamp_radius: float = field(default=None, converter=optional_length)
-    travel: tuple[float, float] | None = field(default=None, converter=travel_pair)
-    directions: tuple[Any, ...] = field(default=None, converter=direction_names)
-    clamps: int = field(default=1, converter=whole)
-    flat: Flat | None = field(default=None, converter=flat_of, kw_only=True)
+    pitch: tuple[float, float]
+    peg_radius: float
+    columns: int | None
+    rows: int | None
+    clamp_radius: float
+    travel: tuple[float, float] | None
+    directions: tuple[Any, ...]
+    clamps: int
+    flat: Flat | None
 
     def __attrs_post_init__(self) -> None:
-        if self.clamps not in (1, 2):
-            raise InputError(f"clamps {self.clamps} cannot be: a plate has 1 or 2.")
-        if isnan(self.clamp_radius):
-            object.__setattr__(self, "clamp_radius", self.peg_radius)
-        refuse_lattice(self.pitch, self.columns, self.rows, self.peg_radius, self.noun, "locator")
-        if not (isfinite(self.clamp_radius) and self.clamp_radius >= 0):
-            raise InputError(f"clamp radius {self.clamp_radius} is not a length: give 0 or more, in mm.")
-        if self.travel is not None and not 0 <= self.travel[0] <= self.travel[1] < inf:
-            raise InputError(
-                f"travel {self.travel[0]:g} to {self.travel[1]:g} is none that a clamp has: give the least and the most "
-                "from its hole to its tip, in mm."
-            )
+        settle(self, noun=self.noun, peg="locator")
         object.__setattr__(self, "directions", self.resolved_directions())
-        object.__setattr__(self, "flat", resolved_flat(self.flat, self.peg_radius))
-        lengths = {"pitch": max(self.pitch), "peg radius": self.peg_radius, "clamp radius": self.clamp_radius}
-        for name, value in (lengths | {"travel": self.travel[1] if self.travel else 0.0}).items():
-            refuse_long(name, value)
-        refuse_many_holes(self.columns, self.rows, self.noun)
 
     @property
     def is_square(self) -> bool:
@@ -236,25 +183,19 @@ class Plate(Toolkit):
     @property
     def ways(self) -> tuple[Plate, ...]:
         """The plate with one clamp in one direction each time."""
-        return tuple(evolve(self, clamps=1, directions=(name,)) for name in self.distinct_directions)
+        return tuple(self.changed({"clamps": 1, "directions": (name,)}) for name in self.distinct_directions)
 
     @property
-    def gap(self) -> None:
-        """Locators may stand on any side of the clamp."""
-        return None
+    def law(self) -> str:
+        """That of one clamp, or of two."""
+        return "plate" if self.clamps == 1 else "two clamps"
 
     @property
-    def limits(self) -> tuple[Limit, ...]:
-        """The clamp's stroke, columns and rows, where there are any."""
-        stroke = Change("with a clamp of any stroke", {"travel": None})
-        columns = Change("with as many columns as needed", {"columns": None})
-        rows = Change("with as many rows as needed", {"rows": None})
-        known = (
-            (self.travel is not None, Limit("stroke of the clamp", "travel", stroke)),
-            (self.columns is not None, Limit("columns of holes", "holes", columns)),
-            (self.rows is not None, Limit("rows of holes", "holes", rows)),
-        )
-        return tuple(limit for there, limit in known if there)
+    def half_turned(self) -> tuple[int, ...] | None:
+        """The plate takes its own place, and each clamp that of the one that pushes the other way."""
+        names = [carrier.name for carrier in self.carriers]
+        ahead = [f"clamp {turned_half(carrier.direction)}" for carrier in self.carriers[1:]]
+        return (0, *(names.index(name) if name in names else -1 for name in ahead))
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""

@@ -11,7 +11,8 @@ from attrs import define, evolve, field, fields
 from numpy.typing import NDArray
 
 from workhold.geometry.segment import Line
-from workhold.model.beyond import beyond
+from workhold.model.contact_kind import WALL_END
+from workhold.model.delegates import delegate
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
 from workhold.model.notes import cut_note, fitted_note
@@ -20,7 +21,7 @@ from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
-from workhold.model.wall import ENDS, ON_WALL
+from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["FixtureTable", "Result", "fixture_at", "flat_angles", "peg_places", "unknown_quality"]
@@ -94,10 +95,15 @@ class FixtureTable:
         return tuple(getattr(self, column.name) for column in fields(FixtureTable))
 
     @property
+    def working_force(self) -> NDArray[np.float64]:
+        """The contact forces (N, P) per unit of clamping force; of two clamps at their working ratio."""
+        return self.force if self.force.ndim == 2 else working_forces(self.force)
+
+    @property
     def null_vector(self) -> NDArray[np.float64]:
         """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them, those of two
         clamps at their working ratio."""
-        forces = self.force if self.force.ndim == 2 else working_forces(self.force)
+        forces = self.working_force
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
@@ -119,9 +125,8 @@ class FixtureTable:
     @classmethod
     def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
         """A table of no fixtures of a toolkit; None is one with four pegs."""
-        count, several = 4, tuple[int, ...]()
-        if toolkit is not None and toolkit.needs_pairs:
-            count, several = toolkit.peg_count, (2,)
+        count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travels)
+        several = (travels,) if travels > 1 else ()
         ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
         return cls(
             arrangement=np.zeros(0, np.int8),
@@ -271,7 +276,7 @@ class Result:
         InputError
             For a result without a fixture, and when the file cannot be written.
         """
-        picture: str = beyond("result_picture")(self, path, unit=unit)
+        picture: str = delegate("result_picture")(self, path, unit=unit)
         return picture
 
     def to_pandas(self) -> Any:
@@ -282,7 +287,7 @@ class Result:
         InputError
             Where pandas is not installed.
         """
-        return beyond("to_pandas")(self)
+        return delegate("to_pandas")(self)
 
     def to_arrow(self) -> Any:
         """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
@@ -292,7 +297,7 @@ class Result:
         InputError
             Where pyarrow is not installed.
         """
-        return beyond("to_arrow")(self)
+        return delegate("to_arrow")(self)
 
 
 def whole_turn_degrees(theta: float) -> float:
@@ -306,9 +311,9 @@ def peg_places(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
     x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
-    if toolkit.wall is not None:
-        x[:, ON_WALL] = workpiece.flush.x(table.theta, table.position)
-        y[:, ON_WALL] = 0.0
+    for ends in toolkit.ends_on_walls:
+        x[:, ends] = workpiece.flush.x(table.theta, table.position)
+        y[:, ends] = 0.0
     return x, y
 
 
@@ -338,16 +343,15 @@ def fixture_at(
     one = table.take(slice(index, index + 1))
     arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
     across, along = peg_places(one, toolkit, workpiece)
-    pairs = one.force.ndim == 3
-    forces = (working_forces(one.force) if pairs else one.force)[0].tolist()
+    forces = one.working_force[0].tolist()
     flats = flat_angles(one, toolkit, workpiece)[0]
     pegs = []
     for k, number in enumerate(arrangement.carriers):
         carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
-        place = None if carrier.on is None else carrier.place_name(column, row)
+        place = None if carrier.has_lattice else carrier.place_name(column, row)
         beside = None
-        if carrier.is_wall:
-            end, flush = k - ON_WALL.start, workpiece.flush
+        if carrier.contact is WALL_END:
+            end, flush = k - arrangement.carriers.index(number), workpiece.flush
             place, beside = f"{carrier.noun} {ENDS[end]}", flush.touching[flush.number(one.theta)[0]][end].beside
         at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
         pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside, flats[k]))
@@ -363,7 +367,7 @@ def fixture_at(
             if not np.isnan(value)
         },
         direction=arrangement.direction,
-        pair=pair_at(one) if pairs else None,
+        pair=pair_at(one) if one.force.ndim == 3 else None,
         listed=listed,
     )
 

@@ -30,10 +30,12 @@ from workhold.geometry.box import Box
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Point
 from workhold.limits import MOST_STEPS
+from workhold.model.carrier import Carrier
 from workhold.model.clamp import ShownClamp, clamping_direction, shown_clamps
+from workhold.model.contact_kind import WALL_END
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setting import Setting, settings_of
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -200,20 +202,24 @@ class Shown:
     clamps : those that are bolted to a plate.
     measured : the lengths to set, one for each thing that moves.
     part : extent of the part in mm.
-    wall : what the part lies flush against; None where there is no wall.
+    walls : what the part lies flush against.
     """
 
     carriers: tuple[ShownCarrier, ...]
     clamps: tuple[ShownClamp, ...]
     measured: tuple[Measured, ...]
     part: Box
-    wall: ShownWall | None = None
+    walls: tuple[ShownWall, ...] = ()
 
     @property
     def extent(self) -> Box:
         """Everything together."""
-        boxes = [*(one.plate for one in self.carriers), *(one.room for one in self.clamps)]
-        return reduce(Box.union, boxes if self.wall is None else [*boxes, self.wall.bar], self.part)
+        boxes = [
+            *(one.plate for one in self.carriers),
+            *(one.room for one in self.clamps),
+            *(one.bar for one in self.walls),
+        ]
+        return reduce(Box.union, boxes, self.part)
 
     @property
     def pitch(self) -> float:
@@ -261,11 +267,11 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
         When part and pegs are so far apart that too many holes would show.
     """
     travelled = fixture.jaw_separation
-    carriers = [carrier for carrier in toolkit.carriers if carrier.on is None and not carrier.is_wall]
+    carriers = toolkit.plates
     clamps = tuple(shown_clamps(fixture, toolkit))
     held = held_box(part, fixture, clamps)
-    reach, on_wall = reach_of(held, fixture, carriers), toolkit.wall is not None
-    ranges = [cells_in_reach(carrier, travelled, reach, held, on_wall) for carrier in carriers]
+    reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.datum.fixes_rows else held.y0
+    ranges = [cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
     gaps = facing_gaps(spans)
     out = []
@@ -295,7 +301,8 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
         )
     measured = tuple(measured_between(out, setting) for setting in settings_of(fixture, toolkit))
     seen = Shown(tuple(out), clamps, measured, part)
-    return seen if toolkit.wall is None else with_wall(seen, fixture, toolkit.wall)
+    walls = [carrier for carrier in toolkit.carriers if carrier.contact is WALL_END]
+    return reduce(lambda before, wall: with_wall(before, fixture, wall), walls, seen)
 
 
 def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
@@ -304,9 +311,9 @@ def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
     around = plate.plate.union(seen.part)
     bar = Box(around.x0, -thick, around.x1, 0.0)
     below = evolve(plate.plate, y0=-thick)
-    left, right = (peg.x for peg in fixture.pegs if peg.is_on_wall)
+    left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
     plate = evolve(plate, plate=below, broken=plate.broken - {"bottom"})
-    return evolve(seen, carriers=(plate,), wall=ShownWall(carrier, bar, (left, right)))
+    return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
 
 
 def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured:
@@ -321,7 +328,7 @@ def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured
     def axis(at: Point, plates: list[Box]) -> Axis:
         first, last = min(plate.x0 for plate in plates), max(plate.x1 for plate in plates)
         low, high = min(plate.y0 for plate in plates), max(plate.y1 for plate in plates)
-        if mover.on is not None:
+        if setting.tip is not None:
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
@@ -349,9 +356,9 @@ def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
     return reach
 
 
-def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Box, on_wall: bool) -> tuple[range, range]:
+def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
     """Columns and rows of a carrier in reach, at least one of each; before the first ones, where there are some, as many as
-    lie under what is held. Rows that are counted from a wall begin there.
+    lie under what is held, from a corner ``held`` in mm on. Rows that are counted from a wall begin there.
 
     Raises
     ------
@@ -359,8 +366,8 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Box, on
         For so many holes that no fixture of a search has them in reach.
     """
     x, y = carrier.place(0, 0, travelled)
-    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held.x0 - x)
-    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, 0.0 if on_wall else held.y0 - y)
+    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x)
+    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, held[1] - y)
     if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
         raise InputError(
             f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to show: check "

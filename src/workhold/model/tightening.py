@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from math import ceil, floor, inf, log10
 
-from workhold.model.fixture import Fixture, Pair
+from workhold.model.fixture import Fixture
 
-__all__ = ["clamp_names", "clamp_shares", "first_clamps", "freedom_words", "order_words"]
+__all__ = ["clamp_names", "clamp_shares", "first_clamps", "freedom_words", "order_words", "second_over_first"]
 
 # Digits of a ratio that is told, rounded so that it lies inside the interval.
 DIGITS = 2
@@ -36,9 +36,16 @@ def first_clamps(fixture: Fixture) -> tuple[str, ...]:
     return tuple(name for name, may in zip(clamp_names(fixture), (low == 0.0, high == inf), strict=True) if may)
 
 
-def clamp_shares(pair: Pair) -> tuple[float, float]:
-    """The part of the clamp force, which is the sum of both, that each clamp has at the working ratio."""
-    ratio = pair.working_ratio
+def second_over_first(fixture: Fixture) -> float:
+    """The second clamp's force over the first's at the working ratio; 0 where one clamp or jaw holds the part."""
+    return 0.0 if fixture.pair is None else fixture.pair.working_ratio
+
+
+def clamp_shares(fixture: Fixture) -> tuple[float, ...]:
+    """The part of the clamp force, of two the sum of both, that each clamp has at the working ratio."""
+    if fixture.pair is None:
+        return (1.0,)
+    ratio = fixture.pair.working_ratio
     return 1.0 / (1.0 + ratio), ratio / (1.0 + ratio)
 
 

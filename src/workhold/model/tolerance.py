@@ -8,7 +8,7 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.dowel import Fit
 from workhold.model.real import real
 
@@ -58,7 +58,7 @@ class Tolerance:
         >>> round(Tolerance.preset("plate-20mm").peg, 6)
         0.0145
         """
-        tolerance: Tolerance = beyond("preset_tolerance")(name)
+        tolerance: Tolerance = delegate("preset_tolerance")(name)
         return tolerance
 
     def with_departure(self, departure: float) -> Tolerance:

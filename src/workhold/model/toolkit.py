@@ -15,8 +15,7 @@ gap rule : the smallest distance along the direction of travel from a peg of the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from math import cos, sin
-from typing import Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from attrs import evolve, frozen
@@ -24,159 +23,21 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.directions import TOWARDS
-from workhold.model.beyond import beyond
-from workhold.model.flat import Flat
-from workhold.model.holes import Holes, column_letters, hole_name, letter_of
+from workhold.fixels.fields import Table, ToolkitField
+from workhold.model.carrier import Carrier, Travel
+from workhold.model.contact_kind import CLAMP_TIP, ContactKind
+from workhold.model.delegates import delegate
+from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.units import Unit
 
-__all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
+__all__ = ["NAMED", "Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
+# The order in which a person would ask for limits to be lifted.
+LIFTED = ("bodies", "travel", "holes")
 # Contacts that fix the pose and the travel of what moves.
 MOST_OF_A_WAY = 4
-
-
-@frozen
-class Travel:
-    """The freedom of a carrier that slides along a line.
-
-    Parameters
-    ----------
-    direction : angle in radians of the line along which travel is counted, from the x axis.
-    least, most : smallest and largest travel in mm; -inf and None where there is none.
-    """
-
-    direction: float
-    least: float
-    most: float | None
-
-    @property
-    def unit(self) -> tuple[float, float]:
-        """The unit vector of the direction; exact along the axes."""
-        return round(cos(self.direction), 15), round(sin(self.direction), 15)
-
-
-@frozen
-class Carrier:
-    """A lattice of holes for pegs.
-
-    Parameters
-    ----------
-    name : such as "left"; its first letter names its holes.
-    pitch : distance in mm between neighbouring columns and rows.
-    columns, rows : of holes, or None for as many as needed.
-    peg_radius : of its pegs in mm.
-    body_radius : of the thickest part of its pegs in mm, below the workpiece.
-    offset : place in mm of the hole in column 0 and row 0 without any travel.
-    blocked : holes and columns that no peg can stand in.
-    travel : how it slides; None when it stands still.
-    noun : what it is called, such as "jaw".
-    peg : what each of its pegs is called, such as "locator".
-    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
-    is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
-    flat : of its pegs, which lies on straight faces; None where they are round.
-    """
-
-    name: str
-    pitch: tuple[float, float]
-    columns: int | None
-    rows: int | None
-    peg_radius: float
-    body_radius: float
-    offset: tuple[float, float] = (0.0, 0.0)
-    blocked: tuple[Holes, ...] = ()
-    travel: Travel | None = None
-    noun: str = "carrier"
-    peg: str = "peg"
-    on: str | None = None
-    is_wall: bool = False
-    flat: Flat | None = None
-
-    @property
-    def least_standoff(self) -> float:
-        """Distance in mm from a face to the centre of a peg that touches it, at least."""
-        return self.peg_radius if self.flat is None else self.flat.distance
-
-    @property
-    def title(self) -> str:
-        """What it is called, such as "left jaw"."""
-        return self.name if self.noun in self.name else f"{self.name} {self.noun}"
-
-    @property
-    def column_count(self) -> int:
-        """The number of columns, of a carrier that has an end; in the frame of a search every one has."""
-        assert self.columns is not None
-        return self.columns
-
-    @property
-    def is_along_x(self) -> bool:
-        """Whether it slides along its rows."""
-        return self.travel is not None and self.travel.unit[0] != 0.0
-
-    @property
-    def towards(self) -> str:
-        """Which way a clamp pushes, in words, on a plan whose y runs up; nothing of what is named for no direction."""
-        return TOWARDS.get(self.name.rpartition(" ")[2], "")
-
-    @property
-    def pushers(self) -> str:
-        """What pushes the part as it moves: such jaws together, or a clamp."""
-        return f"{self.noun}s" if self.on is None else self.noun
-
-    @property
-    def measure(self) -> str:
-        """What is set on it where it moves: the opening of jaws, a clamp's stroke from its hole, or the place of its tip."""
-        return "opening" if self.on is None else "stroke" if self.has_a_hole else "tip"
-
-    @property
-    def has_a_hole(self) -> bool:
-        """Whether what stands on it is in a hole: not so of a clamp of which only the line is told."""
-        return self.on is None or self.travel is None or self.travel.most is not None
-
-    def place_name(self, column: int, row: int) -> str:
-        """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.
-
-        >>> from workhold import Plate
-        >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
-        >>> clamp.place_name(0, 2)
-        'clamp row 3'
-        """
-        if self.is_wall:
-            return self.noun
-        if self.on is None:
-            return hole_name(self.name, column, row)
-        if self.has_a_hole:
-            return f"{self.noun} {hole_name(self.on, column, row)}"
-        return f"{self.noun} row {row + 1}" if self.is_along_x else f"{self.noun} column {column_letters(column)}"
-
-    @property
-    def letter(self) -> str:
-        """What the names of its holes begin with."""
-        return letter_of(self.name)
-
-    def is_blocked(self, column: int, row: int) -> bool:
-        """Whether no peg can stand in a hole."""
-        return not {Holes(self.name, column), Holes(self.name, column, row)}.isdisjoint(self.blocked)
-
-    def place(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
-        """Centre of a hole in mm, or of many: numbers or arrays of them.
-
-        Parameters
-        ----------
-        column, row : of the hole, counted from 0.
-        travelled : how far the carrier has slid, in mm; of no account for one that stands still.
-
-        Examples
-        --------
-        >>> from workhold import Vise
-        >>> right = Vise(pitch=10, columns=2, peg_radius=3).carriers[1]
-        >>> right.place(1, 2, travelled=14.5)
-        (34.5, 20.0)
-        """
-        x, y = self.offset[0] + column * self.pitch[0], self.offset[1] + row * self.pitch[1]
-        if self.travel is None:
-            return x, y
-        along, across = self.travel.unit
-        return x + travelled * along, y + travelled * across
+# The key of a toolkit in a file that names its kind.
+NAMED = "toolkit"
 
 
 @frozen
@@ -195,14 +56,36 @@ class Arrangement:
     direction: str | None = None
 
     @property
+    def directions(self) -> tuple[str, ...]:
+        """In which its clamps push, one for each; none where no clamp pushes."""
+        return tuple((self.direction or "").split())
+
+    @property
     def title(self) -> str:
         """Its name, and the direction where it has one."""
-        return self.name if self.direction is None else f"{self.name} {self.direction}"
+        return " ".join((self.name, *self.directions))
+
+    @property
+    def short_title(self) -> str:
+        """What a fixture of it is called on a small picture, such as "Type I"."""
+        return self.title.replace("-", "\N{MINUS SIGN}") if self.directions else f"Type {self.name}"
+
+    @property
+    def heading(self) -> str:
+        """What a fixture of it is called in a line.
+
+        >>> Arrangement("II", (3, 1)).heading, Arrangement("clamp", (3, 1), "-x").heading
+        ('Type II', 'Clamp \u2212x')
+        """
+        if not self.directions:
+            return f"Type {self.title}"
+        clamps = " ".join(self.directions).replace("-", "\N{MINUS SIGN}")
+        return f"Clamp{'s' * (len(self.directions) > 1)} {clamps}"
 
     @property
     def towards(self) -> str:
         """Its direction, or those of two clamps, in words, on a plan whose y runs up."""
-        return " and ".join(dict.fromkeys(TOWARDS[name] for name in (self.direction or "").split()))
+        return " and ".join(dict.fromkeys(TOWARDS[name] for name in self.directions))
 
     @property
     def carriers(self) -> tuple[int, ...]:
@@ -286,6 +169,8 @@ class Toolkit:
     Attributes
     ----------
     kind : the name of its kind in files.
+    table : its fields.
+    file_key : the key that it has in files: one of its own, or the one under which its kind is named.
     noun : what it is called, such as "vise".
     locked : what it is with a screw that locks what moves, in words that "locked" follows.
     arrangements : what may stand on its carriers.
@@ -294,19 +179,26 @@ class Toolkit:
     symmetries : motions besides the identity that make two fixtures the same.
     carriers : those that stand still first; at most one moves while a pose is sought.
     gap : the gap rule in mm, or None when there is none.
-    limits : its limits, in the order in which a person would ask them.
     wording : what its things are called where it holds nothing.
+    setup_words : what setting it up is called on sheets, pictures and pages.
     """
 
     __slots__ = ()
 
+    if TYPE_CHECKING:
+        # Made from the table of fields, where a type checker does not look.
+        def __init__(self, *args: Any, **fields: Any) -> None: ...
+
     kind: ClassVar[str]
+    table: ClassVar[Table]
+    file_key: ClassVar[str] = NAMED
     noun: ClassVar[str]
     locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
     clamping: ClassVar[int]
     symmetries: ClassVar[tuple[Symmetry, ...]]
     wording: ClassVar[Wording]
+    setup_words: ClassVar[SetupWords]
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
@@ -317,6 +209,54 @@ class Toolkit:
     def ways(self) -> tuple[Toolkit, ...]:
         """The same toolkit with one carrier that moves each time; their arrangements, one after the other, are its own."""
         return (self,)
+
+    @property
+    def law(self) -> str:
+        """The name of the law by which the time of a search grows, see ``batch.estimate``."""
+        raise NotImplementedError
+
+    @property
+    def datum(self) -> Datum:
+        """Where zero lies, and what places are measured from: the first hole of the first plate."""
+        return Datum.at_hole(self.carriers[0])
+
+    @property
+    def plates(self) -> tuple[Carrier, ...]:
+        """The carriers that have a lattice of holes."""
+        return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
+
+    @property
+    def contacts(self) -> frozenset[ContactKind]:
+        """The kinds of contact that it can make with a part."""
+        return frozenset(carrier.contact for carrier in self.carriers)
+
+    @property
+    def tips(self) -> int:
+        """How many clamps hold the part, whose contacts are the last of a fixture."""
+        return sum(self.carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
+
+    @property
+    def travels(self) -> int:
+        """How many things move in one fixture, each with a travel of its own: the jaw, or its clamps."""
+        return max(self.tips, 1)
+
+    @property
+    def closes_at_once(self) -> bool:
+        """Whether one movement closes it, so that the part's way can be followed; two clamps are tightened in turn."""
+        return self.travels == 1
+
+    @property
+    def ends_on_walls(self) -> tuple[slice, ...]:
+        """For each wall, which contacts of a fixture are the ends of the contact with it."""
+        standing = self.arrangements[0].carriers
+        walls = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
+        return tuple(slice(standing.index(one), standing.index(one) + standing.count(one)) for one in walls)
+
+    @property
+    def half_turned(self) -> tuple[int, ...] | None:
+        """For each carrier the one whose place it takes after half a turn of everything, -1 where none does; None where
+        such a turn makes another toolkit of it."""
+        return next((one.carriers for one in self.symmetries if one.half_turns % 2), None)
 
     @property
     def has_flats(self) -> bool:
@@ -340,13 +280,24 @@ class Toolkit:
 
     @property
     def gap(self) -> float | None:
-        """The gap rule in mm."""
-        raise NotImplementedError
+        """The gap rule in mm; None where pegs may stand on any side of what moves."""
+        return None
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """What it could do without."""
-        raise NotImplementedError
+        """The limits that it has and could do without."""
+        limits = []
+        for row in self.table.fields:
+            free = self.followed(row) if row.follows else row.default
+            if row.lifted is not None and getattr(self, row.name) != free:
+                change = Change(row.lifted.words, {row.name: free})
+                limits.append(Limit(row.lifted.rule, row.lifted.bounds, change))
+        return tuple(sorted(limits, key=lambda limit: LIFTED.index(limit.bounds)))
+
+    def followed(self, row: ToolkitField) -> float:
+        """The length in mm that stands for one that is not given; of a pitch that in x."""
+        value = getattr(self, row.follows)
+        return float(value[0] if isinstance(value, tuple) else value)
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Changes to try where it holds nothing, besides lifting its limits; lengths in their words are in a unit."""
@@ -372,7 +323,7 @@ class Toolkit:
         >>> Vise.preset("plate-20mm", columns=2).pitch, Plate.preset("clamp-plate-20mm").clamp_radius
         ((20.0, 20.0), 5.0)
         """
-        given = {**beyond("preset_fields")(cls, name), **changes}
+        given = {**delegate("preset_fields")(cls, name), **changes}
         try:
             return cls(**given)
         except TypeError as error:
@@ -388,10 +339,10 @@ class Toolkit:
         >>> Fence.presets()
         ('fence-20mm',)
         """
-        names: tuple[str, ...] = beyond("preset_names_of")(cls)
+        names: tuple[str, ...] = delegate("preset_names_of")(cls)
         return names
 
-    def changed(self, fields: Mapping[str, Any]) -> Toolkit:
+    def changed(self, fields: Mapping[str, Any]) -> Self:
         """The toolkit with some of its fields changed.
 
         Raises
@@ -401,7 +352,7 @@ class Toolkit:
         """
         return evolve(self, **fields)  # type: ignore[misc]
 
-    def without(self, limits: Iterable[Limit]) -> Toolkit:
+    def without(self, limits: Iterable[Limit]) -> Self:
         """The toolkit without some of its limits."""
         return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from math import isfinite, isnan
+from collections.abc import Iterator
 from typing import ClassVar
 
-from attrs import evolve, field, frozen
-from attrs.converters import optional
+from attrs import evolve
 
-from workhold.errors import InputError
-from workhold.limits import MOST_BLOCKED, refuse_long
-from workhold.model.flat import Flat, flat_of, resolved_flat
-from workhold.model.holes import Holes, holes_named
-from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
-from workhold.model.real import real
-from workhold.model.toolkit import Arrangement, Carrier, Change, Limit, Symmetry, Toolkit, Travel, Wording
+from workhold.fixels.fields import TABLES, Table
+from workhold.model.flat import Flat
+from workhold.model.holes import Holes
+from workhold.model.making import made_from_table, settle
+from workhold.model.setup_words import SetupWords
+from workhold.model.toolkit import NAMED, Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
@@ -32,14 +29,16 @@ WORDING = Wording(
     backwards="the jaws are pressed apart, not when they close",
     holes="holes that the jaws do not have, or too near for the bodies",
 )
+SETUP = SetupWords(
+    standing="Pegs",
+    located_by="Pegs of the {plate}s",
+    put="Put {peg}s in {holes}.",
+    against="",
+    touching="four pegs",
+)
 
 
-def all_holes(holes: Iterable[Holes | str]) -> tuple[Holes, ...]:
-    """Holes as a tuple, where they may be given by name."""
-    return tuple(holes_named(one, JAWS, NOUN) if isinstance(one, str) else one for one in holes)
-
-
-@frozen
+@made_from_table
 class Vise(Toolkit):
     """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
 
@@ -72,49 +71,29 @@ class Vise(Toolkit):
     """
 
     kind: ClassVar[str] = "vise"
+    table: ClassVar[Table] = TABLES["vise"]
+    file_key: ClassVar[str] = "vise"
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
     clamping: ClassVar[int] = 1
     symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
     wording: ClassVar[Wording] = WORDING
+    setup_words: ClassVar[SetupWords] = SETUP
 
-    pitch: tuple[float, float] = field(converter=pair)
-    columns: int = field(converter=whole)
-    peg_radius: float = field(converter=real)
-    rows: int | None = field(default=None, converter=whole)
-    min_gap: float = field(default=None, converter=optional_length)
-    max_opening: float | None = field(default=None, converter=optional(real))
-    row_offset: float = field(default=0.0, converter=real)
-    body_radius: float = field(default=None, converter=optional_length)
-    blocked: tuple[Holes, ...] = field(default=(), converter=all_holes)
-    flat: Flat | None = field(default=None, converter=flat_of, kw_only=True)
+    pitch: tuple[float, float]
+    columns: int
+    peg_radius: float
+    rows: int | None
+    min_gap: float
+    max_opening: float | None
+    row_offset: float
+    body_radius: float
+    blocked: tuple[Holes, ...]
+    flat: Flat | None
 
     def __attrs_post_init__(self) -> None:
-        if isnan(self.min_gap):
-            object.__setattr__(self, "min_gap", self.pitch[0])
-        if isnan(self.body_radius):
-            object.__setattr__(self, "body_radius", self.peg_radius)
-        refuse_lattice(self.pitch, self.columns, self.rows, self.peg_radius, NOUN, "peg")
-        if not (isfinite(self.min_gap) and self.min_gap >= 0):
-            raise InputError(f"min gap {self.min_gap} is not a length: give 0 or more, in mm.")
-        if self.max_opening is not None:
-            if not (isfinite(self.max_opening) and self.max_opening > 0):
-                raise InputError(f"max opening {self.max_opening} is not a positive length: give it in mm.")
-            if self.max_opening < self.min_gap:
-                raise InputError(
-                    f"max opening {self.max_opening:g} is below the min gap {self.min_gap:g}: no opening is left."
-                )
-        if not isfinite(self.row_offset):
-            raise InputError(f"row offset {self.row_offset} is not a length: give it in mm.")
-        if not (isfinite(self.body_radius) and self.body_radius >= self.peg_radius):
-            raise InputError(
-                f"body radius {self.body_radius:g} is not one of a peg of radius {self.peg_radius:g}: give that or more, "
-                "in mm."
-            )
-        object.__setattr__(self, "flat", resolved_flat(self.flat, self.peg_radius))
-        refuse_boundless(self)
-        refuse_blocked(self)
+        settle(self, noun=NOUN, peg="peg")
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
@@ -140,24 +119,14 @@ class Vise(Toolkit):
         return left, right
 
     @property
+    def law(self) -> str:
+        """That of two jaws."""
+        return "vise"
+
+    @property
     def gap(self) -> float:
         """The smallest gap in mm."""
         return self.min_gap
-
-    @property
-    def limits(self) -> tuple[Limit, ...]:
-        """Shoulders, largest opening, rows and blocked holes, where there are any."""
-        shoulder = Change("with pegs without a shoulder", {"body_radius": self.peg_radius})
-        opening = Change("with a larger opening", {"max_opening": None})
-        rows = Change("with as many rows as needed", {"rows": None})
-        blocked = Change("with no hole blocked", {"blocked": ()})
-        known = (
-            (self.body_radius > self.peg_radius, Limit("bodies that would overlap", "bodies", shoulder)),
-            (self.max_opening is not None, Limit("largest opening", "travel", opening)),
-            (self.rows is not None, Limit("rows of holes", "holes", rows)),
-            (bool(self.blocked), Limit("blocked holes", "holes", blocked)),
-        )
-        return tuple(limit for there, limit in known if there)
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """A smaller gap, a column more, rows offset and half the pitch."""
@@ -176,7 +145,7 @@ class Vise(Toolkit):
             yield Change("with half the pitch", {"pitch": half, "min_gap": min(self.min_gap, half[0]), "blocked": ()})
 
 
-@frozen
+@made_from_table
 class OpeningVise(Vise):
     """The vise that clamps by opening: its pegs hold the part from inside its holes, or around a waist.
 
@@ -184,43 +153,6 @@ class OpeningVise(Vise):
     """
 
     kind: ClassVar[str] = "opening-vise"
+    file_key: ClassVar[str] = NAMED
     clamping: ClassVar[int] = -1
     wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")
-
-
-def refuse_boundless(vise: Vise) -> None:
-    """Refuse lengths too large to reckon with, and more holes than can be looked through.
-
-    Raises
-    ------
-    InputError
-        Naming the value and the limit.
-    """
-    lengths = {"pitch": max(vise.pitch), "peg radius": vise.peg_radius, "body radius": vise.body_radius}
-    lengths |= {"min gap": vise.min_gap, "max opening": vise.max_opening or 0.0, "row offset": vise.row_offset}
-    for name, value in lengths.items():
-        refuse_long(name, value)
-    refuse_many_holes(vise.columns, vise.rows, NOUN)
-    if len(vise.blocked) > MOST_BLOCKED:
-        raise InputError(
-            f"{len(vise.blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block whole "
-            "columns, such as L-B."
-        )
-
-
-def refuse_blocked(vise: Vise) -> None:
-    """Refuse blocked holes that the vise does not have, and a jaw without a free hole.
-
-    Raises
-    ------
-    InputError
-        Naming the hole or the jaw.
-    """
-    for holes in vise.blocked:
-        if holes.column >= vise.columns:
-            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.columns} columns.")
-        if vise.rows is not None and holes.row is not None and holes.row >= vise.rows:
-            raise InputError(f"hole {holes.name} is blocked, but each jaw has only {vise.rows} rows.")
-    for jaw in JAWS:
-        if len({holes.column for holes in vise.blocked if holes.carrier == jaw and holes.row is None}) == vise.columns:
-            raise InputError(f"every column of the {jaw} jaw is blocked: leave at least one.")

@@ -32,7 +32,7 @@ from workhold.geometry.loop import (
 )
 from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
-from workhold.model.beyond import beyond
+from workhold.model.delegates import delegate
 from workhold.model.fixture import Pose
 from workhold.model.real import real
 from workhold.model.wall import Flush
@@ -203,7 +203,7 @@ class Workpiece:
         InputError
             For a unit that is not known, and when the file cannot be written.
         """
-        picture: str = beyond("workpiece_picture")(self, path, peg_radius=peg_radius, unit=unit)
+        picture: str = delegate("workpiece_picture")(self, path, peg_radius=peg_radius, unit=unit)
         return picture
 
     @cached_property

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.face import Face
 from workhold.geometry.segment import Arc
+from workhold.model.carrier import Carrier
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
 from workhold.model.proof import Proof
@@ -25,7 +26,7 @@ from workhold.seating.by_hand import by_hand
 
 if TYPE_CHECKING:
     from workhold.files.toolkit.reader import LoadedToolkit
-    from workhold.listing.alike import Entries
+    from workhold.listing.near_duplicates import Entries
     from workhold.search.exploring import Explored
     from workhold.statics.loads import LoadCase, Worst
     from workhold.verification import Verification
@@ -86,7 +87,7 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
             {
                 "hole": peg.hole,
                 "carrier": peg.carrier,
-                "stands_on": "wall" if peg.is_on_wall else toolkit.carrier(peg.carrier).noun,
+                "stands_on": stands_on(toolkit.carrier(peg.carrier)),
                 "column": peg.column,
                 "row": peg.row,
                 "x": peg.x,
@@ -111,10 +112,15 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
     }
 
 
+def stands_on(carrier: Carrier) -> str:
+    """What a contact stands on: a jaw or a plate by its name, a wall whatever it is called."""
+    return carrier.noun if carrier.contact.is_placed else carrier.contact.name
+
+
 def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
     """How the part is put into two clamps, where its result was asked for the seating of so many fixtures."""
     result = None if fixture.listed is None else fixture.listed.result
-    if fixture.pair is None or result is None or rank is None or rank > (result.query.seating or 0):
+    if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
         return {}
     return {"by_hand": by_hand(fixture, result.workpiece, result.toolkit).as_fields()}
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from workhold.errors import InputError
 from workhold.files.result.csv import column_names, seating_values
-from workhold.files.result.writer import fixture_rows
+from workhold.files.result.fixture_lines import fixture_rows
+from workhold.model.contact_kind import FLAT_PIN
 from workhold.model.quality import SEATING_FIGURES
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def columns_of(result: Result) -> dict[str, Any]:
     blocks: list[list[Any]] = []
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
         looks: list[Any] = []
-        if toolkit.has_flats:
+        if FLAT_PIN in toolkit.contacts:
             *before, flats = zip(*rows, strict=True)
             rows, looks = zip(*before, strict=True), list(np.array(flats, np.float64).T)
         numbers = [np.array(column) for column in zip(*rows, strict=True)]

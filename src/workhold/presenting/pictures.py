@@ -11,7 +11,7 @@ from workhold.drawing.render import render
 from workhold.drawing.thumbnails import best_at_a_glance
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.listing.alike import entries
+from workhold.listing.near_duplicates import entries
 from workhold.model.units import unit_named
 
 if TYPE_CHECKING:

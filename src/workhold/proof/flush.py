@@ -152,7 +152,7 @@ def sharp_place(
 
 
 def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
-    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.fence_closure.closure``."""
+    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_closure.closure``."""
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     across, ahead = abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from threading import Event
 
 from attrs import evolve
@@ -14,8 +15,8 @@ from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
 from workhold.limits import thread_count
 from workhold.listing.best import BestFixtures
-from workhold.listing.gathering import Gathering
-from workhold.listing.listed import MEASURED, Work, best_result, gathered_result, listed_result, stage
+from workhold.listing.collector import ResultCollector
+from workhold.listing.listed import MEASURED, Work, best_result, collected_result, listed_result, stage
 from workhold.listing.ways import joined_ways
 from workhold.model.load import Load
 from workhold.model.notes import no_fixture_notes, no_place_note
@@ -27,11 +28,12 @@ from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks
-from workhold.search.clamp_pairs import answer_of_pairs
 from workhold.search.contacts import contacts_of
+from workhold.search.lattice_shares import LatticeShares
 from workhold.search.preview import Preview, Previews
+from workhold.search.seated import Receiver, receive_seated, seated_answer
+from workhold.search.shares import answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
-from workhold.seating.first import Receiver, receive_seated, seated_answer
 
 __all__ = ["Receiver", "answer", "design"]
 
@@ -142,17 +144,14 @@ def answer(
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
         return answer_with_seating(query, workers, progress, cancel, preview, receiver)
-    if query.toolkit.needs_pairs:
-        if query.toolkit.wall is not None:
-            # What searches fences loads ball arithmetic, which no other toolkit needs beforehand.
-            from workhold.search.fence_pairs import answer_of_pairs_on_fence
-
-            return handed_over(answer_of_pairs_on_fence(query, progress, cancel), receiver)
-        return handed_over(answer_of_pairs(query, workers, progress, cancel, preview), receiver)
     if query.toolkit.wall is not None:
-        from workhold.search.fence import answer_on_fence
+        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+        from workhold.search.wall_shares import WallShares
 
-        return handed_over(answer_on_fence(query, progress, cancel), receiver)
+        return handed_over(answer_in_shares(WallShares.of(query, cancel), progress, cancel), receiver)
+    if query.toolkit.needs_pairs:
+        with LatticeShares.of(query, workers, cancel) as shares:
+            return handed_over(answer_in_shares(shares, progress, cancel, preview), receiver)
     ways = query.toolkit.ways
     if len(ways) == 1:
         return answer_of_a_way(query, workers, progress, cancel, preview, receiver)
@@ -172,10 +171,7 @@ def answer_with_seating(
     receiver: Receiver | None,
 ) -> Result:
     """The answer with the seating of the first fixtures, see :func:`answer`."""
-
-    def search(asked: Query, share: Progress | None, receiver: Receiver | None = None) -> Result:
-        return answer(asked, threads=threads, progress=share, cancel=cancel, preview=preview, receiver=receiver)
-
+    search = partial(answer, threads=threads, preview=preview)
     if receiver is None:
         return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
     return receive_seated(query, search, receiver, threads=threads, progress=progress, cancel=cancel)
@@ -200,15 +196,15 @@ def answer_of_a_way(
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
     if receiver is not None and kept is None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
-            gathering = Gathering(problem, pool, 2 * threads, cancel, receiver.folder)
-            with gathering.given_up_on_errors():
-                _, done = run_blocks(blocks, threads, before, cancel, gathering.take, look, search.stop, pool)
-                result = gathered_result(gathering, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
+            collector = ResultCollector(problem, pool, 2 * threads, cancel, receiver.folder)
+            with collector.given_up_on_errors():
+                _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
+                result = collected_result(collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
                 result = with_reason(result, search, threads, cancel)
-                listed = gathering.listed
+                listed = collector.listed
                 if listed < sum(result.found.values()):
                     result = result.cut_short(listed)
-                receiver.receive(result, listed, gathering.tables(stage(rest, MEASURED, 1.0)))
+                receiver.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
         return result
     records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
     work = work_of(search, blocks, done)

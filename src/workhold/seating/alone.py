@@ -24,13 +24,13 @@ from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.common_normals import squeezed
 from workhold.seating.descents import Closing
 from workhold.seating.families import NO_WAYS, Finder
-from workhold.seating.filled import filled
 from workhold.seating.groups import Group
+from workhold.seating.growing_rows import filled, with_room
 from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
 from workhold.seating.loose_ways import on_one_center, on_one_line, on_parallel_lines
 from workhold.seating.tangent import tangent
-from workhold.seating.ways_down import Trodden, WaysDown, with_room
+from workhold.seating.ways_down import Trodden, WaysDown
 
 __all__ = ["Alone", "Kept", "alone", "balanced", "settled"]
 
@@ -90,10 +90,14 @@ class Kept:
     @classmethod
     def on(cls, locus: Locus) -> Kept:
         """What is kept of the groups on a part: nothing when it has become too much. Who has it goes on with it."""
-        kept = locus.alone.get("kept")
-        if kept is None or len(kept.found) >= MOST_KEPT or kept.trodden.counts[1] > MOST_NODES:
-            kept = locus.alone["kept"] = cls()
-        return kept
+        kept = locus.once(cls.empty)
+        is_full = len(kept.found) >= MOST_KEPT or kept.trodden.counts[1] > MOST_NODES
+        return locus.once(cls.empty, anew=True) if is_full else kept
+
+    @classmethod
+    def empty(cls, _: Locus) -> Kept:
+        """Nothing so far."""
+        return cls()
 
 
 def alone(kept: Kept, locus: Locus, group: Group, size: float) -> Alone:
@@ -112,7 +116,7 @@ def alone(kept: Kept, locus: Locus, group: Group, size: float) -> Alone:
 def two_alone(locus: Locus, group: Group, size: float) -> Told:
     """Of a peg of each jaw: on common normals, and on parallel faces or arcs of one centre."""
     pattern, given = group.pattern, Holdings.of_jaw_alone(locus, group).given
-    candidates = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
+    candidates = np.array(squeezed(locus, pattern)).reshape(-1, CANDIDATE_LENGTH)
     return in_balance(candidates, given, size), Finder(locus, pattern).free(on_one_line(locus, pattern))
 
 

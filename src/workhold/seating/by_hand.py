@@ -163,7 +163,7 @@ class ByHand:
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
     """What there is to know, and to do, of a part in the two clamps of a fixture."""
-    from workhold.seating.sticking_of_two import sticking_friction_of_two
+    from workhold.seating.sticking_friction import sticking_friction_of_two
 
     friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
     return ByHand(fixture, toolkit, friction)

@@ -173,7 +173,7 @@ def between(x: float, y: float) -> list[tuple[float, float]]:
     return [] if size < SHORTEST / 10.0 else [(x / size, y / size), (-x / size, -y / size)]
 
 
-def squeezed(pattern: Pattern, normals: list[CommonNormal]) -> list[Array]:
+def squeezed(locus: Locus, pattern: Pattern) -> list[Array]:
     """Candidates of a left and a right peg on a common normal, with the direction in which the separation falls, if there is
     one; where there are two, the second derivative is not told."""
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
@@ -182,7 +182,7 @@ def squeezed(pattern: Pattern, normals: list[CommonNormal]) -> list[Array]:
             continue
         run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
         least = abs(rise) * (1.0 + 1e-12)
-        for normal in normals:
+        for normal in locus.once(common_normals):
             if abs(normal.length) <= least:
                 continue
             omega = asin(rise / normal.length)

@@ -29,8 +29,8 @@ from workhold.seating.balance import settle_on_wall
 from workhold.seating.common_normals import squeezed
 from workhold.seating.families import Finder, joined, of_pattern
 from workhold.seating.fence import fence_candidates
-from workhold.seating.filled import filled
 from workhold.seating.groups import Group, groups_of
+from workhold.seating.growing_rows import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.locus import Locus
 from workhold.seating.loose_ways import on_one_line
@@ -100,7 +100,7 @@ def equilibria(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
 
 def on_fence(locus: Locus, pattern: Pattern, size: float) -> Equilibria:
     """The same between a wall, a locator and a tip."""
-    pressed = np.array(squeezed(pattern, locus.common_normals)).reshape(-1, CANDIDATE_LENGTH)
+    pressed = np.array(squeezed(locus, pattern)).reshape(-1, CANDIDATE_LENGTH)
     candidates = np.concatenate([pressed, fence_candidates(locus, pattern)])
     settle_on_wall(candidates, locus, pattern, size)
     finder = Finder(locus, pattern)

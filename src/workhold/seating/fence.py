@@ -38,7 +38,7 @@ from workhold.kernels.seating.pocketed import tip_in_pocket
 from workhold.kernels.seating.standing import LOCATOR, TIP, Stood, stationary
 from workhold.kernels.seating.standing import ON_WALL as FIRST_ON_WALL
 from workhold.kernels.seating.turning import SHAPE_LENGTH
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.hull import HullSide
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern

@@ -42,8 +42,8 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
-from workhold.seating.filled import filled
 from workhold.seating.groups import Group, jaw_groups
+from workhold.seating.growing_rows import filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -147,7 +147,7 @@ class JawHoldings:
     @classmethod
     def known(cls, locus: Locus, group: Group) -> JawHoldings:
         """The same of a group of pegs of one jaw, worked out once for all that stand alike."""
-        kept = locus.held
+        kept = locus.once(held_by_jaws)
         found = kept.get(group.key)
         if found is None:
             found = cls.of(locus, group.pattern.pegs, group.pattern.right)
@@ -155,6 +155,11 @@ class JawHoldings:
                 kept.clear()
             kept[group.key] = found
         return found
+
+
+def held_by_jaws(_: Locus) -> dict[tuple[object, ...], JawHoldings]:
+    """Room for the holdings of jaws on a part, by how their pegs stand."""
+    return {}
 
 
 @define(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from workhold.conventions import LEAST_HULL_EDGE, SAME_POSE, TOUCHING
 from workhold.geometry.hull_edges import HullPieces
 from workhold.kernels.seating.walls import SUPPORTS
 from workhold.model.workpiece import Workpiece
-from workhold.seating.touch import Touch
+from workhold.seating.boundary_pieces import Touch
 
 __all__ = ["Hull", "HullSide"]
 

@@ -8,9 +8,10 @@ pocket : a corner of the boundary in which a peg touches two pieces at once.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from math import atan2, pi
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 import numpy as np
 from attrs import define
@@ -18,30 +19,21 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, center_numbers, curve_table, loosened
 from workhold.contact.problem import centered
-from workhold.conventions import CLEARANCE, END_SLACK, JOINT, SAME_CENTER, TANGENT
-from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
-from workhold.geometry.segment import Arc, Point, Segment, segment_rows
-from workhold.kernels.base.distance import outline_distances
+from workhold.conventions import END_SLACK, SAME_CENTER
+from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
 from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
 from workhold.model.seating import Contact
 from workhold.model.workpiece import Workpiece
+from workhold.seating.boundary_pieces import Touch, pockets_of, touched_pieces
 from workhold.seating.hull import Hull
-from workhold.seating.touch import Touch
-
-if TYPE_CHECKING:
-    from workhold.seating.alone import Kept
-    from workhold.seating.common_normals import CommonNormal
-    from workhold.seating.holdings import JawHoldings
-    from workhold.seating.loose_ways import Opposed
-    from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import Pattern
 
 __all__ = ["Locus", "contains"]
 
 Array = NDArray[np.float64]
-# Corners that turn by less, in radians, are rounding.
-STRAIGHT_ON = 1e-7
+Found = TypeVar("Found")
 # mm. How far past a pocket a piece still counts for a peg beside it.
 PAST_POCKET = 0.05
 
@@ -183,13 +175,6 @@ class Locus:
         return [(standing, moving) for standing, moving in both if standing and moving]
 
     @cached_property
-    def opposed(self) -> list[Opposed]:
-        """See ``seating.loose_ways``."""
-        from workhold.seating.loose_ways import opposed_lines
-
-        return opposed_lines(self)
-
-    @cached_property
     def contacts(self) -> dict[int, tuple[Contact, ...]]:
         """Those that have been asked for, see ``contacts_of``."""
         return {}
@@ -223,19 +208,16 @@ class Locus:
         return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
     @cached_property
-    def tangents(self) -> dict[tuple[float, int], Array]:
-        """Tangencies by the length of the chord and the jaw; see ``seating.tangent``, which fills it."""
+    def found(self) -> dict[Callable[[Locus], Any], Any]:
+        """What functions found of this boundary, see ``once``."""
         return {}
 
-    @cached_property
-    def held(self) -> dict[tuple[object, ...], JawHoldings]:
-        """How pegs of one jaw hold the part, by how they stand; see ``seating.holdings``, which fills it."""
-        return {}
-
-    @cached_property
-    def alone(self) -> dict[str, Kept]:
-        """What is kept of groups of pegs; see ``seating.alone``, which fills it."""
-        return {}
+    def once(self, find: Callable[[Locus], Found], anew: bool = False) -> Found:
+        """What a function finds of this boundary, which is kept from its first call on, or from one anew."""
+        if anew or find not in self.found:
+            self.found[find] = find(self)
+        kept: Found = self.found[find]
+        return kept
 
     def curves(self, length: float, side: int) -> CurveTable:
         """The curves of chords of a length in mm of pegs that stand still (0), or that move (1), tail on the piece of the
@@ -262,13 +244,6 @@ class Locus:
         return float(dx), float(dy)
 
     @cached_property
-    def common_normals(self) -> list[CommonNormal]:
-        """See ``seating.common_normals``."""
-        from workhold.seating.common_normals import common_normals
-
-        return common_normals(self)
-
-    @cached_property
     def turned_over(self) -> Locus:
         """The boundary of the part turned over, x to -x in its own frame about the centre."""
         rows = np.array(self.rows)
@@ -284,15 +259,6 @@ class Locus:
         )
 
 
-def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Segment]]:
-    """The boundary for pegs of a radius in mm, and what they touch on each piece."""
-    faces = workpiece.faces
-    segments = [face.segment for face in faces]
-    pieces = [(Touch(faces[k].number, False), piece) for k, piece in trimmed_offsets(segments, radius)]
-    number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
-    return pieces + [(Touch(number[corner], True), arc) for corner, arc in rolled_corners(segments, radius)]
-
-
 def contains(row: Array, x: float, y: float) -> bool:
     """Whether a point of a piece's carrier lies on the piece, up to rounding."""
     unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
@@ -306,67 +272,3 @@ def along(row: Array, x: float, y: float) -> float:
     if row[IS_ARC] == 0.0:
         return float(dx * row[AXIS_X] + dy * row[AXIS_Y])
     return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)
-
-
-def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
-    """The arcs on which a disc rolls around the convex corners of an outline, as far as nothing else is nearer."""
-    rows, out = segment_rows(segments), []
-    raw = [piece for piece in (raw_offset(segment, radius) for segment in segments) if piece is not None]
-    before = {segment.end: segment for segment in segments if not is_full(segment)}
-    joints = [segment.start for segment in segments if not is_full(segment)]
-
-    def is_clear(points: Array) -> NDArray[np.bool_]:
-        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
-
-    for segment in segments:
-        if is_full(segment):
-            continue
-        previous = before.get(segment.start) or min(before.values(), key=lambda s: distance(s.end, segment.start))
-        low, high = end_angle(previous, 1.0), end_angle(segment, -1.0)
-        turn = (high - low + pi) % (2 * pi) - pi
-        if turn <= STRAIGHT_ON:
-            continue
-        arc = Arc(segment.start, radius, low + turn / 2, turn / 2, 1.0)
-        others = [joint for joint in joints if 0.0 < distance(joint, segment.start) <= 2 * radius + CLEARANCE]
-        out += [(segment.start, kept) for kept in kept_parts(arc, cut_points(arc, raw, others, radius), is_clear)]
-    return [(corner, arc) for corner, arc in out if isinstance(arc, Arc)]
-
-
-def is_full(segment: Segment) -> bool:
-    """Whether a segment is a whole circle."""
-    return isinstance(segment, Arc) and segment.is_full
-
-
-def distance(a: Point, b: Point) -> float:
-    """Distance in mm of two points."""
-    return float(np.hypot(a[0] - b[0], a[1] - b[1]))
-
-
-def end_angle(segment: Segment, end: float) -> float:
-    """Direction in radians of the outward normal at the end (1) or the start (-1) of a segment."""
-    along = end * segment.half_extent * (segment.sign if isinstance(segment, Arc) else 1.0)
-    x, y = segment.normal(along)
-    return atan2(y, x)
-
-
-def pockets_of(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Where two pieces end in one point with different normals: place about the centre, normals, and whose they are."""
-    ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
-    if not ends:
-        return np.zeros((0, 6)), np.zeros((0, 2), np.int64)
-    points = np.array([pieces[k].at(s * pieces[k].half_extent) for k, s in ends])
-    normals = np.array([pieces[k].normal(s * pieces[k].half_extent) for k, s in ends])
-    shift = rows[0, [X, Y]] - np.array(
-        pieces[0].center if isinstance(pieces[0], Arc) else pieces[0].middle  # the same point before centring
-    )
-    found, whose = [], []
-    for i in range(len(ends)):
-        for j in range(i + 1, len(ends)):
-            if np.abs(points[i] - points[j]).max() > JOINT or ends[i][0] == ends[j][0]:
-                continue
-            if np.abs(normals[i] - normals[j]).max() <= TANGENT:
-                continue
-            place = (points[i] + points[j]) / 2 + shift
-            found.append([*place, *normals[i], *normals[j]])
-            whose.append([ends[i][0], ends[j][0]])
-    return np.array(found).reshape(-1, 6), np.array(whose, dtype=np.int64).reshape(-1, 2)

@@ -26,7 +26,7 @@ from workhold.kernels.seating.parallel import (
 )
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_ONE, SLIDE_SECOND, SLIDE_TWO
 from workhold.seating.families import SAME, SHORTEST, SLIDE_STEPS, Contact, Way
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -119,7 +119,7 @@ def on_one_line(locus: Locus, pattern: Pattern) -> list[Way]:
             continue
         run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
         least = abs(rise) * (1.0 + 1e-12)
-        for pair in locus.opposed:
+        for pair in locus.once(opposed_lines):
             if abs(pair.width) > least:
                 a, b = pair.pieces
                 omega = asin(rise / pair.width)

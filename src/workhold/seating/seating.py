@@ -32,7 +32,7 @@ from workhold.seating.pattern import Pattern
 from workhold.seating.place import Silhouette
 from workhold.seating.rests import KINDS, LOOSE, UNSETTLED, Rests
 from workhold.seating.settled import is_equilibrium
-from workhold.seating.sticking import sticking_friction
+from workhold.seating.sticking_friction import sticking_friction
 from workhold.seating.tree import Join, Tree, distances
 
 __all__ = ["Solver", "seatings"]

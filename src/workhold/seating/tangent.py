@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, Given
 from workhold.kernels.seating.parallel import ALPHA, at_tangencies, tangent_chords
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.locus import Locus
 from workhold.seating.pattern import Pattern
 
@@ -39,8 +39,13 @@ def tangent(locus: Locus, pattern: Pattern, given: Given) -> list[Array]:
 
 def chords_at_tangencies(locus: Locus, d: float, jaw: int) -> Array:
     """Tangencies (C, 5) of the chords of a length, for pegs of a jaw: ``kernels.seating.parallel``."""
-    key = round(d, 9), jaw
-    if key not in locus.tangents:
+    known, key = locus.once(tangencies), (round(d, 9), jaw)
+    if key not in known:
         first, end = locus.parts[jaw].tolist()
-        locus.tangents[key] = filled(ALPHA + 1, 256, tangent_chords, locus.pieces, first, end, d)
-    return locus.tangents[key]
+        known[key] = filled(ALPHA + 1, 256, tangent_chords, locus.pieces, first, end, d)
+    return known[key]
+
+
+def tangencies(_: Locus) -> dict[tuple[float, int], Array]:
+    """Room for the tangencies on a part, by the length of the chord and the jaw."""
+    return {}

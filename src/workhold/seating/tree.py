@@ -25,7 +25,7 @@ from workhold.kernels.seating.loose import first_sets, write_beyond
 from workhold.kernels.seating.places import FALLS, leads_out, write_places
 from workhold.seating.descents import Closing
 from workhold.seating.equilibria import Equilibria
-from workhold.seating.ways_down import both_ways_down
+from workhold.seating.pass_descents import both_ways_down
 
 __all__ = ["Join", "Tree", "distances"]
 

@@ -75,7 +75,7 @@ class Touched:
     segments : how many face numbers there are.
     moving : (C,) 1 for a carrier that moves, 0 for others.
     directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame, zero for one that stands still.
-    wall : the number of the carrier that is a wall, or -1.
+    lies_flush : (C,) whether the part lies flush on a carrier, a wall.
     flush : how the part lies on a wall.
     """
 
@@ -86,7 +86,7 @@ class Touched:
     segments: int
     moving: Array
     directions: Array
-    wall: int
+    lies_flush: NDArray[np.bool_]
     flush: Flush
 
     @classmethod
@@ -106,10 +106,12 @@ class Touched:
         """
         carriers, segments = toolkit.carriers, len(workpiece.segments)
         if loci is None:
-            loci = [contact_features(workpiece, one.peg_radius, one.flat) for one in carriers if not one.is_wall]
-        wall = next((number for number, one in enumerate(carriers) if one.is_wall), -1)
-        flush = Flush.of((), ()) if wall < 0 else workpiece.flush
-        loci = loci if wall < 0 else [*loci[:wall], (), *loci[wall:]]
+            placed = [one for one in carriers if one.contact.is_placed]
+            loci = [contact_features(workpiece, one.peg_radius, one.flat) for one in placed]
+        lies_flush = np.array([not one.contact.is_placed for one in carriers])
+        flush = workpiece.flush if lies_flush.any() else Flush.of((), ())
+        before = iter(loci)
+        loci = [() if wall else next(before) for wall in lies_flush]
         features = [feature for locus in loci for feature in locus]
         center = np.array(workpiece.center)
         walls = [Line((a, b), (x, y)) for (a, b), (x, y) in flush.ends.tolist()]
@@ -134,7 +136,7 @@ class Touched:
             moving=np.array([carrier.travel is not None for carrier in carriers], np.float64),
             directions=np.array([(0.0, 0.0) if c.travel is None else c.travel.unit for c in carriers], np.float64)
             * -toolkit.clamping,
-            wall=wall,
+            lies_flush=lies_flush,
             flush=flush,
         )
 
@@ -154,7 +156,7 @@ class Touched:
         points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
         inverses = np.zeros((count, 4, each))
         on = np.asarray(carriers, np.int64)
-        on_wall = on == self.wall
+        on_wall = self.lies_flush.take(on)
         edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
         touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
         moves = self.moving.take(on)
@@ -178,10 +180,9 @@ class Touched:
             inverses,
             np.empty((each, 4)),
         )
-        if self.wall >= 0:
-            # What lies flush on a wall ends nowhere that matters.
-            for distances in (ends, edges):
-                distances[on_wall & ~np.isnan(distances)] = np.inf
+        # What lies flush on a wall ends nowhere that matters.
+        for distances in (ends, edges):
+            distances[on_wall & ~np.isnan(distances)] = np.inf
         if each == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
         reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)

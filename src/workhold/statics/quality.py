@@ -30,7 +30,6 @@ from workhold.model.quality import (
 from workhold.model.result import FixtureTable, Result, fixture_at, peg_places
 from workhold.model.tolerance import Tolerance
 from workhold.model.toolkit import Toolkit
-from workhold.model.wall import ON_WALL
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched
@@ -110,7 +109,7 @@ def quality_of(
             else np.nan
         )
         filled[:, CLAMP_FREEDOM] = np.nan
-        if toolkit.needs_pairs:
+        if toolkit.tips > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
         filled[:, TILT] = tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
@@ -143,17 +142,17 @@ def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) ->
     """Numbers (N, 4) that are the same for pegs which an error of one face moves alike; of a corner on a wall one of its
     own."""
     faces = block.face.astype(np.int64)
-    if toolkit.wall is not None:
-        faces[:, ON_WALL] = workpiece.flush.shared[workpiece.flush.number(block.theta)]
+    for ends in toolkit.ends_on_walls:
+        faces[:, ends] = workpiece.flush.shared[workpiece.flush.number(block.theta)]
     return faces
 
 
 def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
     """Sizes (N, 4) in mm of what is touched, from those (S,) of the faces; on a wall how long the part lies on it."""
     out = sizes.take(block.face)
-    if toolkit.wall is not None:
+    for ends in toolkit.ends_on_walls:
         flush = workpiece.flush
-        out[:, ON_WALL] = flush.length[flush.number(block.theta)][:, None]
+        out[:, ends] = flush.length[flush.number(block.theta)][:, None]
     return np.asarray(out)
 
 

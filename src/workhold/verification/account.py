@@ -14,7 +14,10 @@ The identities, for each type apart where a number is told for each:
   examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
 - of a fence: cells = hull_edges, candidates = contacts_examined;
 - features >= faces touched;
-- of two clamps see ``verification.pair_account``;
+- of two clamps, where the best pair of each seat is listed: found = seats, and pairs = the sum of what those listed stand
+  for, where all are; where every pair is: found = pairs, and seats = how many there are among those listed; at each there
+  are as many as are derived, once the search is complete; each seat and pair of directions needs two contacts of locators,
+  or wall and locator, and a clamp, each pair of clamps two of its own;
 - where fixtures are ruled out by their seating, a note says how many of how many are listed, and each that is listed has
   its seating told; without such rules as many have it as were asked for;
 - the notes are those that follow from these numbers.
@@ -24,7 +27,10 @@ What became of the candidates, and how much work that was, is otherwise known to
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from flint import ctx
 
 from workhold.model.notes import (
     best_note,
@@ -33,17 +39,22 @@ from workhold.model.notes import (
     fitted_note,
     kept_note,
     no_fixture_notes,
+    no_pair_note,
     no_place_note,
     seated_note,
     stopped_note,
     undecided_note,
 )
 from workhold.model.proof import Proof
+from workhold.verification.balls import PRECISIONS
 from workhold.verification.listing import Listing
-from workhold.verification.pair_account import no_pair_notes, pair_count_faults, too_few_contacts
+from workhold.verification.outline import Outline
+from workhold.verification.repeats import Seen
+from workhold.verification.rules.hardware import Hardware
+from workhold.verification.seat_clamps import pairs_at
 from workhold.verification.undecided import undecided_faults
 
-__all__ = ["account_faults"]
+__all__ = ["account_faults", "is_by_algebra", "seat_faults", "too_few_contacts"]
 
 SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
 FENCE = ("features", "hull_edges", "locator_places", "contacts_examined")
@@ -226,3 +237,68 @@ def stopped_notes(note: str) -> Iterator[str]:
             yield stopped_note(float(word))
         except ValueError:
             continue
+
+
+def pair_count_faults(listing: Listing) -> Iterator[str]:
+    """Contradictions among pairs, seats and what is listed."""
+    found, listed = sum(listing.found.values()), len(listing.fixtures)
+    pairs, seats = listing.pairs, listing.seats
+    if pairs is None or seats is None:
+        yield "it does not say how many pairs of clamps there are, and at how many seats"
+        return
+    if listing.query.listing == "all":
+        if pairs != found:
+            yield f"pairs says {pairs}, but found says {found} fixtures, each of which is one"
+        if not (seats <= pairs and (seats > 0) == (pairs > 0)):
+            yield f"seats says {seats}, at which there cannot be {pairs} pairs of clamps"
+        return
+    if seats != found:
+        yield f"seats says {seats}, but found says {found} fixtures, each of which is the best of one"
+    stood_for = sum(1 if fixture.pair is None else fixture.pair.count for fixture in listing.fixtures)
+    if stood_for + found - listed > pairs or (found == listed and stood_for != pairs):
+        yield f"pairs says {pairs}, but the fixtures listed stand for {stood_for}"
+
+
+def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
+    """Where every pair of clamps is listed: another number of seats, or of pairs at one of them, than is derived."""
+    query, found = listing.query, sum(listing.found.values())
+    if not query.toolkit.needs_pairs or query.listing != "all" or found != len(listing.fixtures):
+        return
+    hardware = Hardware(query.toolkit)
+    seen, at_seat = Seen(hardware), Counter[int]()
+    for index, fixture in enumerate(listing.fixtures):
+        if index not in refuted:
+            first = seen.add(index, fixture)
+            at_seat[index if first is None else first] += 1
+    if listing.seats not in (None, len(at_seat)) and not refuted:
+        yield f"seats says {listing.seats}, but the fixtures listed are at {len(at_seat)}"
+    if not listing.complete or refuted:
+        return
+    with ctx.workprec(PRECISIONS[0]):
+        outline = Outline.of(query.workpiece)
+        for index, count in sorted(at_seat.items()):
+            limits = pairs_at(listing.fixtures[index], query, hardware, outline)
+            if limits is not None and not limits[0] <= count <= limits[1]:
+                yield f"there are {limits[0]} pairs of clamps at the seat of fixture {index + 1}, and {count} are listed"
+                return
+
+
+def too_few_contacts(listing: Listing, proof: Proof) -> bool:
+    """Whether so many fixtures cannot come from so many contacts of locators, or wall and locator, and a clamp."""
+    found, pairs = sum(listing.found.values()), len(listing.query.toolkit.arrangements)
+    if 2 * (listing.seats or 0) > pairs * proof.verified:
+        return True
+    return 2 * max(found, listing.pairs or 0) > proof.verified * (proof.verified - 1)
+
+
+def no_pair_notes(listing: Listing, verified: int) -> tuple[str, ...]:
+    """The sentences of which one says why nothing is listed: how many seats were looked at is known to the search alone."""
+    toolkit, numbers_of = listing.query.toolkit, listing.statistics
+    if toolkit.wall is not None:
+        never, no_locator, *_ = no_fixture_notes(toolkit.wording)
+        if not (numbers_of.get("hull_edges") and numbers_of.get("locator_places")):
+            return (no_locator if numbers_of.get("hull_edges") else never,)
+    if verified == 0:
+        return (no_pair_note(0, 0),)
+    numbers = [int(word) for note in listing.notes for word in note.split() if word.isdecimal()]
+    return (no_pair_note(0, verified), *(no_pair_note(seats, verified) for seats in numbers))

@@ -17,8 +17,8 @@ from flint import arb
 
 from workhold.verification.balls import Point, dot, norm, turned
 from workhold.verification.contacts import Contact
-from workhold.verification.rules import HAIR, TANGENT
 from workhold.verification.sides import LineSide, Side
+from workhold.verification.tolerances import HAIR, TANGENT
 
 __all__ = ["clear_within"]
 

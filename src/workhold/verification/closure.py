@@ -14,8 +14,7 @@ from flint import arb, arb_mat
 from workhold.verification.balls import Point, cross, dot, least, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.hardware import Hardware
-from workhold.verification.rules import LEAST_SHARE, LEAST_SPAN
+from workhold.verification.tolerances import LEAST_CLAMPING, LEAST_SHARE, LEAST_SPAN
 from workhold.verification.wrench_radius import radius_of_four
 
 __all__ = ["Balance", "closure_findings", "inverted", "minors", "span"]
@@ -114,10 +113,15 @@ def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
     return inverse
 
 
-def closure_findings(balance: Balance, wrench_length: float, hardware: Hardware) -> Iterator[Finding]:
-    """Whether four contacts close, and whether what moves clamps.
+def closure_findings(
+    balance: Balance, wrench_length: float, names: Sequence[str], slack_words: str
+) -> Iterator[Finding]:
+    """Whether four contacts of some names close, and whether what moves clamps.
 
-    ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm.
+    Parameters
+    ----------
+    wrench_length : L, half the diameter of the peg-centre locus, in mm.
+    slack_words : what is wrong where the clamping force is none.
     """
     vector, spanned = balance.vector, span(balance.vector, wrench_length)
     words = f"the contacts do not hold the part: their wrenches span only {number(spanned)}"
@@ -127,14 +131,14 @@ def closure_findings(balance: Balance, wrench_length: float, hardware: Hardware)
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
         yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
         return
-    for name, share in zip(hardware.names, balance.shares, strict=True):
+    for name, share in zip(names, balance.shares, strict=True):
         yield from rule(
             share - LEAST_SHARE,
             f"the contacts do not hold the part: the share of {name} in the closure is {number(share)}",
             f"the share of {name} in the closure is exactly at its limit",
         )
     yield from rule(
-        balance.clamp - hardware.least_clamping,
-        f"{hardware.slack_words}: the clamping force is {number(balance.clamp)}",
+        balance.clamp - LEAST_CLAMPING,
+        f"{slack_words}: the clamping force is {number(balance.clamp)}",
         "the clamping force is exactly at its limit",
     )

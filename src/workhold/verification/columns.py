@@ -19,7 +19,6 @@ from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
 from workhold.model.toolkit import Toolkit
 from workhold.verification.claims import Claim
-from workhold.verification.plate import LOCATORS
 from workhold.verification.reading import with_working_forces
 
 __all__ = ["Columns", "FixturesInColumns", "columns_of"]
@@ -96,9 +95,10 @@ class FixturesInColumns(Sequence[Fixture]):
         numbers = {name: values[place].tolist() for name, values in self.columns.items()}
         arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
         pegs, pairs = [], isinstance(travelled, list)
-        travels = [0.0] * LOCATORS + travelled if pairs else [travelled] * 4
+        carriers = arrangement.carriers
+        travels = [0.0] * (len(carriers) - 2) + travelled if pairs else [travelled] * len(carriers)
         each = (numbers[name] for name in ("column", "row", "face", "force"))
-        for carrier, along, column, row, face, force in zip(arrangement.carriers, travels, *each, strict=True):
+        for carrier, along, column, row, face, force in zip(carriers, travels, *each, strict=True):
             one = self.toolkit.carriers[carrier]
             x, y = one.place(column, row, along)
             if one.is_wall:

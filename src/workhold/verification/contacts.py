@@ -1,7 +1,7 @@
-"""The four contact equations of a fixture in its unknowns theta, x, y and travel.
+"""The contact equations of a fixture in its unknowns theta, x, y and the travels of what moves.
 
 A workpiece point q lies at R(theta) q + t, t = (x, y), and a peg that moves at its hole's place plus S times its way, S
-being the travel: of a vise the jaw separation, of a clamp how far its tip is from its hole. With u the vector from t to the
+being its travel: of jaws the separation, of a clamp how far its tip is from its hole. With u the vector from t to the
 peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
@@ -20,24 +20,24 @@ from workhold.model.flat import Flat
 from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
 
-__all__ = ["Contact", "Pose", "contact_system", "standing_contact", "standoff"]
+__all__ = ["Contact", "Pose", "contact_system", "standoff"]
 
 
 @frozen(eq=False)
 class Pose:
-    """Unknowns of a fixture: orientation in radians (cosine and sine with it), place and travel in mm."""
+    """Unknowns of a fixture: orientation in radians (cosine and sine with it), place and travels in mm."""
 
     theta: arb
     x: arb
     y: arb
-    travel: arb
+    travels: tuple[arb, ...]
     cosine: arb
     sine: arb
 
     @classmethod
-    def of(cls, theta: arb, x: arb, y: arb, travel: arb) -> Pose:
+    def of(cls, theta: arb, x: arb, y: arb, *travels: arb) -> Pose:
         """The pose with its cosine and sine."""
-        return cls(theta, x, y, travel, theta.cos(), theta.sin())
+        return cls(theta, x, y, travels, theta.cos(), theta.sin())
 
 
 @frozen(eq=False)
@@ -51,6 +51,7 @@ class Contact:
     side : the face touched.
     radius : in mm, how far the peg's centre is from the side: its radius, or of a flat on a line the flat's distance.
     body : radius of the peg in mm where it has a flat, which its body keeps of all else; None where that is ``radius``.
+    travel : the number of its travel among those of a pose.
     """
 
     hole: Point
@@ -58,6 +59,7 @@ class Contact:
     side: Side
     radius: arb
     body: arb | None = field(default=None, kw_only=True)
+    travel: int = field(default=0, kw_only=True)
 
     is_flush: ClassVar[bool] = False
 
@@ -82,14 +84,15 @@ class Contact:
 
     def place(self, pose: Pose) -> Point:
         """The peg's centre in the toolkit's frame, in mm."""
-        return self.hole[0] + self.way[0] * pose.travel, self.hole[1] + self.way[1] * pose.travel
+        travelled = pose.travels[self.travel]
+        return self.hole[0] + self.way[0] * travelled, self.hole[1] + self.way[1] * travelled
 
     def in_part(self, pose: Pose) -> Point:
         """The peg's centre in the workpiece's frame, in mm."""
         return turned(self.from_origin(pose), pose.cosine, -pose.sine)
 
     def equation(self, pose: Pose) -> tuple[arb, list[arb]]:
-        """Value of the contact equation, and its derivatives by theta, x, y and travel."""
+        """Value of the contact equation, and its derivatives by theta, x, y and its travel."""
         u, side = self.from_origin(pose), self.side
         if isinstance(side, LineSide):
             n = turned(side.normal, pose.cosine, pose.sine)
@@ -101,18 +104,17 @@ class Contact:
         return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
 
 
-def standing_contact(hole: Point, way: Point, side: Side, peg_radius: float, flat: Flat | None) -> Contact:
-    """The contact of a peg, round or with a flat, which lies on lines."""
-    return Contact(hole, way, side, standoff(side, peg_radius, flat), body=None if flat is None else arb(peg_radius))
-
-
 def standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
     """Distance in mm from a side to the centre of a peg that touches it, round or with a flat."""
     return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
 def contact_system(contacts: Sequence[Contact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
-    """Values (4 x 1) and Jacobian (4 x 4) of the contact equations on a box (4 x 1) of unknowns."""
+    """Values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of angle, x, y and travels."""
     pose = Pose.of(*unknowns.entries())
-    rows = [contact.equation(pose) for contact in contacts]
-    return arb_mat(4, 1, [value for value, _ in rows]), arb_mat([slopes for _, slopes in rows])
+    values, rows = [], []
+    for contact in contacts:
+        value, (*slopes, along) = contact.equation(pose)
+        values.append(value)
+        rows.append([*slopes, *(along if k == contact.travel else arb(0) for k in range(len(pose.travels)))])
+    return arb_mat(len(values), 1, values), arb_mat(rows)

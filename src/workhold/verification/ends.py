@@ -8,8 +8,8 @@ barrier : a range of places at which the peg would enter another side; a contact
 Along its way a peg enters a side where its centre is nearer to it than the peg's radius. That changes only where the way
 meets the boundary of (side + disc): lines beside a straight side, circles inside and outside an arc, and about both ends.
 
-A peg may enter a side by a hair (``verification.rules``). So a barrier is one of pegs that are smaller by a hair, and begins
-somewhere between the places where the clearance passes from a hair to minus a hair: the ball of its edge holds both.
+A peg may enter a side by a hair (``verification.tolerances``). So a barrier is one of pegs that are smaller by a hair, and
+begins somewhere between the places where the clearance passes from a hair to minus a hair: the ball of its edge holds both.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from itertools import pairwise
 from flint import arb
 
 from workhold.verification.balls import Point, cross, dot, norm, root, turned
-from workhold.verification.rules import HAIR
 from workhold.verification.sides import ArcSide, LineSide, Side
+from workhold.verification.tolerances import HAIR
 
 __all__ = ["Barrier", "barriers", "edge_distances", "end_distance", "length_of", "on_circle", "on_line"]
 

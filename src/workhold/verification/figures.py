@@ -20,7 +20,7 @@ from itertools import permutations, product
 from attrs import field, frozen
 from flint import arb, arb_mat
 
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Pair
 from workhold.model.load import Load
 from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
@@ -28,14 +28,22 @@ from workhold.verification.balls import Point, cross, dot, exact_point, largest,
 from workhold.verification.closure import Balance
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.ends import Barrier, barriers, edge_distances, end_distance, length_of
-from workhold.verification.findings import Finding, rule
+from workhold.verification.findings import Finding, number, rule
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
 from workhold.verification.outline import Outline
-from workhold.verification.pair_balance import PairBalance
-from workhold.verification.rules import FIGURE_AGREEMENT, FILLED, HAIR, ROUNDING, SAME_END, TANGENT
+from workhold.verification.seat import CLAMPS, LOCATORS, SeatBalance
 from workhold.verification.sides import ArcSide
+from workhold.verification.tolerances import (
+    FIGURE_AGREEMENT,
+    FILLED,
+    HAIR,
+    NO_REACTION,
+    ROUNDING,
+    SAME_END,
+    TANGENT,
+)
 
-__all__ = ["Measure", "box_center", "figure_missing", "parts_spared", "written", "written_numbers"]
+__all__ = ["Measure", "box_center", "figure_missing", "pair_numbers", "written_numbers"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -121,7 +129,7 @@ class Measure:
     def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
         """The measure at the precision in force."""
         outline, outer = Outline.of(query.workpiece), len(query.workpiece.loops[0])
-        silhouette = [side for number, side in outline.faces.items() if number < outer]
+        silhouette = [side for face, side in outline.faces.items() if face < outer]
         arcs = tuple(side for side in silhouette if isinstance(side, ArcSide) and side.sign > 0)
         joints = [side.start for side in outline.segments[:outer]]
         return cls(
@@ -140,11 +148,11 @@ class Measure:
         )
 
     def figures(
-        self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance | PairBalance
+        self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance | SeatBalance
     ) -> Mapping[str, arb]:
         """The figures of a fixture by their keys; no load reaction without loads."""
         out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
-        if isinstance(balance, PairBalance):
+        if isinstance(balance, SeatBalance):
             out["clamp_freedom"] = balance.ratio.freedom
         inverse = balance.inverse(contacts, pose)
         if inverse is None:
@@ -210,7 +218,7 @@ class Measure:
             return None
         return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
 
-    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance | PairBalance) -> arb:
+    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
         """Jaw force in N above which no peg of a screw vise lets go, and never less than 0.
 
         Of the forces f0 that balance a load while the jaw keeps its force, locking it leaves the part f0 - P f0 at right
@@ -256,7 +264,7 @@ class Measure:
                         most = most.max(moved_arc(arc, x, y, t, most))
         return most
 
-    def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance | PairBalance) -> arb:
+    def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
         """Largest peg force in N under some load, with the least clamping that leaves no force negative.
 
         Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest -f0_i / lambda_i, so
@@ -329,14 +337,14 @@ def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
     return ""
 
 
-def parts_spared(balance: Balance | PairBalance) -> arb:
+def parts_spared(balance: Balance | SeatBalance) -> arb:
     """To which parts of themselves forces and figures of the file agree with the derived ones."""
     amplification = largest(balance.forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
 
 
 def written_numbers(
-    fixture: Fixture, names: Sequence[str], balance: Balance | PairBalance, figures: Mapping[str, arb]
+    fixture: Fixture, names: Sequence[str], balance: Balance | SeatBalance, figures: Mapping[str, arb]
 ) -> Iterator[Finding]:
     """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
 
@@ -355,9 +363,27 @@ def written_numbers(
             yield from written(f"its {key.replace('_', ' ')}", fixture.quality[key], derived, spare)
 
 
-def written(name: str, number: float, derived: arb, spare: arb) -> Iterator[Finding]:
+def pair_numbers(pair: Pair, names: Sequence[str], balance: SeatBalance) -> Iterator[Finding]:
+    """Whether the reactions and the ends of the ratio in the file are the derived ones."""
+    part = parts_spared(balance)
+    for name, said, derived in zip(names, pair.reactions, balance.reactions, strict=True):
+        for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
+            yield from written(f"the force of {name} under {clamp}", value, force, part * (1 + abs(force)))
+    # The ends follow from reactions that are off.
+    said, ratio = pair.ratio, balance.ratio
+    least = [abs(b) for _, b in balance.reactions[:LOCATORS] if abs(b) > NO_REACTION]
+    loss = 1 + largest([1 / b for b in least]) if least else arb(1)
+    yield from written("the lower end of its ratio", said[0], ratio.low, part * loss * (1 + ratio.low))
+    if (ratio.high is None) != (said[1] == float("inf")):
+        end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
+        yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
+    elif ratio.high is not None:
+        yield from written("the upper end of its ratio", said[1], ratio.high, part * loss * (1 + ratio.high))
+
+
+def written(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
     """Whether a number of the file is the derived one, to a hair and what may be spared besides."""
-    slack = HAIR + spare - abs(derived - number)
+    slack = HAIR + spare - abs(derived - value)
     if not slack > 0:
-        words = f"{name} is {number:.12g} in the file and comes to {float(derived.mid()):.12g}"
+        words = f"{name} is {value:.12g} in the file and comes to {float(derived.mid()):.12g}"
         yield from rule(slack, words, words)

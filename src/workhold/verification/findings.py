@@ -3,7 +3,7 @@
 Glossary
 --------
 slack : a number that a rule wants to be positive.
-hair : see ``verification.rules``.
+hair : see ``verification.tolerances``.
 
 Drawings are made with round numbers, so that two faces are often exactly as far apart as two holes, or a contact is
 exactly at the joint of two faces; and the coordinates of a drawing are rounded, which spoils such a coincidence by some

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 from math import isnan
 from typing import Literal
 
@@ -17,15 +16,15 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import PRECISIONS, norm
 from workhold.verification.closure import Balance, closure_findings
-from workhold.verification.contacts import Contact, Pose, contact_system
-from workhold.verification.figures import Measure, written_numbers
+from workhold.verification.contacts import Contact, Pose
+from workhold.verification.figures import Measure, pair_numbers, written_numbers
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.hardware import Hardware
-from workhold.verification.kinds import hardware_of
-from workhold.verification.pair_proof import pair_findings
-from workhold.verification.placing import gap_findings, proven_places, written_pose
-from workhold.verification.rules import AGREEMENT
+from workhold.verification.placing import gap_findings, proven_pose, written_pose
+from workhold.verification.rules.hardware import Hardware
+from workhold.verification.seat import SeatBalance
+from workhold.verification.seat_clamps import Standing
 from workhold.verification.sides import ArcSide, LineSide
+from workhold.verification.tolerances import AGREEMENT
 from workhold.verification.touching import touching_findings
 
 __all__ = ["Judge", "Ruling", "Verdict", "verify_fixture"]
@@ -78,7 +77,7 @@ class Judge:
     wrench_length: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        hardware, diameter = hardware_of(self.query.toolkit, self.query.listing), outline_diameter(self.query.workpiece)
+        hardware, diameter = Hardware.of(self.query), outline_diameter(self.query.workpiece)
         object.__setattr__(self, "hardware", hardware)
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
@@ -112,7 +111,6 @@ class Judge:
             if peg.face not in outline.faces:
                 yield Finding(True, f"{name} is on segment {peg.face}, which does not name a face")
         contacts = hardware.contacts(fixture, outline)
-        faces = hardware.shared_faces(fixture, contacts)
         touching = [
             (name, contact, peg.face)
             for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
@@ -122,24 +120,41 @@ class Judge:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
         yield from flat_findings(fixture, hardware.names, contacts)
-        if fixture.pair is not None:
-            yield from pair_findings(fixture, fixture.pair, contacts, self.query, hardware, measure)
-            return
-        solution = written_pose(fixture.pose, fixture.jaw_separation)
-        yield from gap_findings(touching, [solution] * len(touching))
-        proven, doubts = proven_pose(fixture, contacts, hardware.travel_words)
+        travels = hardware.travels(fixture)
+        pose = written_pose(fixture.pose, list(travels.values()))
+        yield from gap_findings(touching, pose)
+        proven, doubts = proven_pose(contacts, fixture.pose, travels)
         yield from doubts
         # Without a proof, what holds at no pose that agrees with the file's still refutes.
-        solution = proven or solution
-        yield from hardware.standing_findings(fixture, contacts, solution, outline)
+        pose = proven or pose
+        yield from hardware.standing_findings(fixture, contacts, pose, outline)
         for name, contact, face in touching:
-            yield from touching_findings(name, contact, face, solution, outline, self.query.contact_margin)
-        balance = Balance.of(contacts, solution, self.query.toolkit.clamping)
-        loose = list(closure_findings(balance, self.wrench_length, hardware))
+            yield from touching_findings(name, contact, face, pose, outline, self.query.contact_margin)
+        yield from self.force_findings(fixture, contacts, pose, measure, proven is not None)
+
+    def force_findings(
+        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, measure: Measure, is_proven: bool
+    ) -> Iterator[Finding]:
+        """Whether the contacts of a fixture close at a pose, and its forces and figures are the derived ones."""
+        hardware, pair = self.hardware, fixture.pair
+        balance: Balance | SeatBalance
+        if pair is None:
+            balance = Balance.of(contacts, pose, self.query.toolkit.clamping)
+            loose = list(closure_findings(balance, self.wrench_length, hardware.names, hardware.slack_words))
+        else:
+            balance = SeatBalance.of(contacts, pose)
+            yield from balance.push_findings(self.wrench_length)
+            loose = list(balance.closure_findings())
         yield from loose
-        if not loose or proven is None:
-            figures = measure.figures(contacts, faces, solution, balance)
-            yield from written_numbers(fixture, hardware.names, balance, figures)
+        if loose and (is_proven or pair is not None):
+            return
+        if pair is not None and isinstance(balance, SeatBalance):
+            yield from pair_numbers(pair, hardware.names, balance)
+        figures = measure.figures(contacts, hardware.shared_faces(fixture, contacts), pose, balance)
+        yield from written_numbers(fixture, hardware.names, balance, figures)
+        if pair is not None and isinstance(balance, SeatBalance) and is_proven:
+            standing = Standing.of(fixture, contacts, pose, self.query, hardware, measure.outline)
+            yield from standing.pair_findings(fixture, pair, contacts, pose, balance)
 
 
 def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[Contact]) -> Iterator[Finding]:
@@ -154,14 +169,3 @@ def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[Con
             off = norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
             words = f"the flat of {name} looks {number(off * 180 / arb.pi())} degrees past its face"
             yield from rule(AGREEMENT - off, words, words)
-
-
-def proven_pose(fixture: Fixture, contacts: list[Contact], travel_words: str) -> tuple[Pose | None, list[Finding]]:
-    """The proven solution of the contact equations near the file's pose, if there is one, and what is wrong with it.
-
-    ``travel_words`` say what the travel is called.
-    """
-    zero, findings = proven_places(
-        partial(contact_system, contacts), fixture.pose, {travel_words: fixture.jaw_separation}, "all four faces"
-    )
-    return None if zero is None else Pose.of(*zero), findings

@@ -14,7 +14,8 @@ from math import atan2, ceil, degrees
 from flint import arb
 
 from workhold.verification.contacts import Pose
-from workhold.verification.rules import (
+from workhold.verification.sides import LineSide, Side
+from workhold.verification.tolerances import (
     GENTLE_PEG,
     HAIR,
     LARGE_LOCATION_ERROR,
@@ -29,7 +30,6 @@ from workhold.verification.rules import (
     TILTED_POINTS,
     WEAK_CLOSURE,
 )
-from workhold.verification.sides import LineSide, Side
 
 __all__ = ["main_direction", "penalty", "tilt", "warnings"]
 

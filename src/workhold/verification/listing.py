@@ -26,9 +26,8 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.verification.claims import claim_of, with_claims
 from workhold.verification.columns import Columns, FixturesInColumns, columns_of
-from workhold.verification.hardware import Hardware
-from workhold.verification.kinds import hardware_of
 from workhold.verification.reading import fixtures_of
+from workhold.verification.rules.hardware import Hardware
 
 __all__ = ["Listing", "listing_of", "read_listing"]
 
@@ -62,7 +61,7 @@ class Listing:
     @property
     def hardware(self) -> Hardware:
         """The rules of its toolkit."""
-        return hardware_of(self.query.toolkit, self.query.listing)
+        return Hardware.of(self.query)
 
 
 def listing_of(result: Result) -> Listing:
@@ -97,7 +96,7 @@ def read_listing(path: str | Path) -> Listing:
         types = query.toolkit.types
         return Listing(
             query,
-            taken_in(taken, seatings, hardware_of(query.toolkit, query.listing), query, path),
+            taken_in(taken, seatings, Hardware.of(query), query, path),
             numbers_of(head.counts, "counts", types),
             numbers_of(head.found, "found", types, head.counts),
             numbers_of(head.distinct, "distinct", types, head.counts),

@@ -10,15 +10,16 @@ side. The order of ``listing`` is not used.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import isinf
+from math import isinf, pi, radians, tau
 
-from workhold.model.fixture import Fixture
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import RANKED
 from workhold.model.query import Query
 from workhold.model.seating import Seating
 from workhold.verification.claims import Claim
-from workhold.verification.hardware import Hardware
-from workhold.verification.rules import (
+from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.stroke import WAYS, direction_of, directions_of, quarter_turns, seen_along_x
+from workhold.verification.tolerances import (
     CLOSE_READING,
     HAIR,
     SAME,
@@ -27,7 +28,7 @@ from workhold.verification.rules import (
     UNFIT_LOCATION_ERROR,
 )
 
-__all__ = ["order_faults"]
+__all__ = ["order_faults", "rank"]
 
 # Files have twelve significant digits.
 DIGITS = 1e-12
@@ -35,6 +36,8 @@ DIGITS = 1e-12
 LEAST = 1e-15
 # What a number is counted as at least and at most.
 Range = tuple[float, float]
+# Type, directions and holes, orientation in radians, and faces, by which fixtures that are equally good are put in order.
+Rank = tuple[list[int], float, list[int]]
 MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 
@@ -107,10 +110,50 @@ def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Ran
 
 def is_earlier(one: Fixture, other: Fixture, hardware: Hardware) -> bool:
     """Whether a fixture certainly comes before another one that is as good."""
-    (holes, angle, faces), (others, angle_of_other, faces_of_other) = (hardware.rank(f) for f in (one, other))
+    (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
+        rank(fixture, hardware) for fixture in (one, other)
+    )
     if abs(angle - angle_of_other) > SAME:
         return (holes, angle) < (others, angle_of_other)
     return (holes, faces) < (others, faces_of_other)
+
+
+def rank(fixture: Fixture, hardware: Hardware) -> Rank:
+    """By what a fixture stands among those that are equally good.
+
+    Without a wall and with one thing that moves it is seen as it clamps along -x: columns count from the first peg of each
+    carrier, rows from the lowest of all; with as many pegs on both jaws it counts as it is at an orientation below half a
+    turn. All others count in the holes in which they stand.
+    """
+    ways = [list(WAYS).index(name) for name in directions_of(fixture)]
+    numbers = [hardware.toolkit.types.index(fixture.type), *ways]
+    theta = radians(fixture.pose.theta_deg)
+    if hardware.wall is not None or len(ways) > 1:
+        pegs = list[Peg]()
+        for carrier in hardware.carriers.values():
+            group = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
+            pegs += sorted(group, key=hole_and_face) if carrier in hardware.lattices else group
+        holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
+        return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
+    groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
+    clamps = [peg for peg in fixture.pegs if direction_of(peg)]
+    turns = quarter_turns(fixture.direction) if fixture.direction else 0
+    if len(groups) > 1 and len(groups[0]) == len(groups[1]) and (theta + SAME) % tau >= pi:
+        turns, groups = 2, groups[::-1]
+    seen = [
+        [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in group] for group in (*groups, clamps) if group
+    ]
+    lowest, places = min(row for part in seen for _, row, _ in part), list[tuple[int, int, int]]()
+    for part in seen:
+        first = min(column for column, *_ in part)
+        places += sorted((column - first, row - lowest, face) for column, row, face in part)
+    columns, rows, faces = (list(each) for each in zip(*places, strict=True))
+    return [*numbers, *columns, *rows], (theta - turns * pi / 2 + SAME) % tau - SAME, faces
+
+
+def hole_and_face(peg: Peg) -> tuple[int, int, int]:
+    """By what pegs of one carrier stand in order."""
+    return peg.column, peg.row, peg.face
 
 
 def unfit(fixture: Fixture, off: float) -> Range:

@@ -9,8 +9,8 @@ from flint import arb
 
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import Point
-from workhold.verification.rules import TANGENT
 from workhold.verification.sides import ArcSide, Side, vertex_side, whole_face
+from workhold.verification.tolerances import TANGENT
 
 __all__ = ["Outline"]
 

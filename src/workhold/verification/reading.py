@@ -1,4 +1,11 @@
-"""Fixtures of a result file from their JSON objects, number for number as it writes them."""
+"""Fixtures of a result file from their JSON objects, number for number as it writes them.
+
+Every function below ``fixtures_of`` raises an ``UnusableError`` that says what is missing or of the wrong kind.
+
+Glossary
+--------
+role : what a peg is: a "locator" in a hole of a plate, a "clamp" bolted to it, a "jaw" peg; pegs without one name their jaw.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +17,15 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.fixture import WALL, Fixture, Pair, Peg, Pose
 from workhold.model.quality import FIGURES
-from workhold.verification.fence import WALL_ENDS
-from workhold.verification.plate import PLATE, WAYS, clamp_place
-from workhold.verification.rules import WALL
+from workhold.verification.rules.stroke import WAYS, clamp_place
 
 __all__ = ["fixtures_of", "with_working_forces"]
+
+# What locators stand on.
+PLATE = "plate"
+NUMBERS = {3: "three", 5: "five"}
 
 
 class UnusableError(Exception):
@@ -41,98 +50,50 @@ def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
 
 
 def fixture_from(item: Any) -> Fixture:
-    """A fixture from its JSON object.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
+    """A fixture from its JSON object."""
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
-    fixture = pair_fixture_from(item) if "directions" in item else single_fixture_from(item)
+    is_pair, has_wall = "directions" in item, "wall" in item
+    directions = directions_from(item)
+    on_wall = wall_pegs(item["wall"], is_pair) if has_wall else ()
+    count = (5 if is_pair else 4) - 2 * has_wall
+    pegs = item.get("pegs")
+    if not isinstance(pegs, list) or len(pegs) != count or not all(isinstance(peg, dict) for peg in pegs):
+        raise UnusableError(f"it does not have {NUMBERS[count] if is_pair else 'four'} pegs")
+    forces = [two_numbers(peg, "force") for peg in pegs] if is_pair else []
+    if is_pair and has_wall:
+        forces[1:1] = wall_reactions(item["wall"])
+    taken = [peg_from({**peg, "force": 0.0} if is_pair else peg, directions) for peg in pegs]
+    # The ends on a wall stand behind what stands still in holes.
+    first = sum(peg.get("role") != "jaw" for peg in pegs[:1])
+    fixture = Fixture(
+        word(item, "type"),
+        (*taken[:first], *on_wall, *taken[first:]),
+        pose_from(item),
+        # How far a clamp has travelled follows from its place.
+        0.0 if directions else real(item, "jaw_separation"),
+        quality_from(item),
+        " ".join(directions) or None,
+    )
+    if is_pair:
+        low, high = two_numbers(item, "ratio", least=1)
+        pair = Pair((0.0, 0.0), (low, high), tuple(forces), whole(item, "pairs"))
+        fixture = with_working_forces(evolve(fixture, pair=pair))
     fixture = with_flats(fixture, item["flats"]) if "flats" in item else fixture
     # What its fields say is looked at where the query is known.
     return evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
 
 
 def with_flats(fixture: Fixture, flats: Any) -> Fixture:
-    """A fixture with which way the flats of its pegs in holes look, in degrees, null for none.
-
-    Raises
-    ------
-    UnusableError
-        When they are others.
-    """
-    standing = [place for place, peg in enumerate(fixture.pegs) if peg.carrier != WALL]
+    """A fixture with which way the flats of its pegs in holes look, in degrees, null for none."""
+    standing = [place for place, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
     if not isinstance(flats, list) or len(flats) != len(standing):
         raise UnusableError("flats is not one number or null for each peg")
     pegs = list(fixture.pegs)
     for place, angle in zip(standing, flats, strict=True):
-        told = None if angle is None else real({"number in flats": angle}, "number in flats")
-        pegs[place] = evolve(pegs[place], flat_deg=told)
+        looks = None if angle is None else real({"number in flats": angle}, "number in flats")
+        pegs[place] = evolve(pegs[place], flat_deg=looks)
     return evolve(fixture, pegs=tuple(pegs))
-
-
-def single_fixture_from(item: Mapping[str, Any]) -> Fixture:
-    """A fixture with one thing that moves from its JSON object.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
-    direction = word(item, "direction") if item.get("direction") is not None else None
-    if direction not in (None, *WAYS):
-        raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
-    on_wall = wall_pegs_from(item["wall"]) if "wall" in item else ()
-    pegs = pegs_of(item, 4 - len(on_wall), "four")
-    taken = tuple(peg_from(peg) if direction is None else plate_peg_from(peg, direction) for peg in pegs)
-    return Fixture(
-        word(item, "type"),
-        (*taken[:1], *on_wall, *taken[1:]),
-        pose_from(item),
-        # How far a clamp has travelled follows from its place.
-        real(item, "jaw_separation") if direction is None else 0.0,
-        quality_from(item),
-        direction,
-    )
-
-
-def pair_fixture_from(item: Mapping[str, Any]) -> Fixture:
-    """A fixture with two clamps from its JSON object.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
-    directions, wall = item["directions"], item.get("wall")
-    pegs = pegs_of(item, 5, "five") if wall is None else pegs_of(item, 3, "three")
-    if not isinstance(directions, list) or len(directions) != 2 or not all(map(list(WAYS).__contains__, directions)):
-        raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
-    forces = [two_numbers(peg, "force") for peg in pegs]
-    on_wall: tuple[Peg, ...] = ()
-    if wall is not None:
-        on_wall = wall_pegs_from(wall, [0.0, 0.0])
-        forces[1:1] = wall_reactions(wall)
-    taken = []
-    for peg in pegs:
-        direction = word(peg, "direction") if peg.get("role") == "clamp" else directions[0]
-        if direction not in WAYS:
-            raise UnusableError(f"the direction of a clamp is not {' or '.join(WAYS)}")
-        taken.append(plate_peg_from({**peg, "force": 0.0}, direction))
-    low, high = two_numbers(item, "ratio", least=1)
-    fixture = Fixture(
-        word(item, "type"),
-        (*taken[:1], *on_wall, *taken[1:]),
-        pose_from(item),
-        0.0,
-        quality_from(item),
-        " ".join(directions),
-        Pair((0.0, 0.0), (low, high), tuple(forces), whole(item, "pairs")),
-    )
-    return with_working_forces(fixture)
 
 
 def with_working_forces(fixture: Fixture) -> Fixture:
@@ -143,28 +104,25 @@ def with_working_forces(fixture: Fixture) -> Fixture:
     return evolve(fixture, pegs=tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True)))
 
 
-def pegs_of(item: Mapping[str, Any], count: int, words: str) -> list[Mapping[str, Any]]:
-    """The pegs of a fixture, so many, in words for a message.
-
-    Raises
-    ------
-    UnusableError
-        When they are others.
-    """
-    pegs = item.get("pegs")
-    if not isinstance(pegs, list) or len(pegs) != count or not all(isinstance(peg, dict) for peg in pegs):
-        raise UnusableError(f"it does not have {words} pegs")
-    return pegs
+def directions_from(item: Mapping[str, Any]) -> list[str]:
+    """The directions of the clamps of a fixture, none, one or two."""
+    if "directions" in item:
+        directions: Any = item["directions"]
+        if (
+            not isinstance(directions, list)
+            or len(directions) != 2
+            or not all(map(list(WAYS).__contains__, directions))
+        ):
+            raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
+        return directions
+    direction = None if item.get("direction") is None else word(item, "direction")
+    if direction not in (None, *WAYS):
+        raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
+    return [] if direction is None else [direction]
 
 
 def pose_from(item: Mapping[str, Any]) -> Pose:
-    """The pose of a fixture.
-
-    Raises
-    ------
-    UnusableError
-        When it has none.
-    """
+    """The pose of a fixture."""
     pose = item.get("pose")
     if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
@@ -172,13 +130,7 @@ def pose_from(item: Mapping[str, Any]) -> Pose:
 
 
 def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
-    """The figures of quality of a fixture.
-
-    Raises
-    ------
-    UnusableError
-        When it has none.
-    """
+    """The figures of quality of a fixture."""
     quality = item.get("quality")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
@@ -186,13 +138,7 @@ def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
 
 
 def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
-    """Two numbers of a JSON object; of those after the first ``least`` a null is infinite.
-
-    Raises
-    ------
-    UnusableError
-        When they are others.
-    """
+    """Two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
         raise UnusableError(f"{key} is {values!r}, not two numbers" if key in item else f"the key {key} is missing")
@@ -203,51 +149,40 @@ def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[floa
 
 
 def wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
-    """The forces of the two ends of the contact with a wall under each of two clamps.
-
-    Raises
-    ------
-    UnusableError
-        When they are others.
-    """
+    """The forces of the two ends of the contact with a wall under each of two clamps."""
     forces = wall.get("forces")
     if not isinstance(forces, list) or len(forces) != 2:
         raise UnusableError("the forces of its wall are not two pairs of numbers")
     return [two_numbers({"forces of its wall": pair}, "forces of its wall") for pair in forces]
 
 
-def wall_pegs_from(item: Any, forces: list[float] | None = None) -> tuple[Peg, Peg]:
-    """The two ends of the contact with a wall from their JSON object, with its forces or those given.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
+def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
+    """The two ends of the contact with a wall from their JSON object, for two clamps without forces of their own."""
     if not isinstance(item, dict):
         raise UnusableError("its wall is not told by places, segments and forces")
     pairs = []
     for key in ("from", "to", "segments", "forces"):
-        value = item.get(key) if key != "forces" or forces is None else forces
+        value = [0.0, 0.0] if key == "forces" and is_pair else item.get(key)
         if not isinstance(value, list) or len(value) != 2:
             raise UnusableError(f"the {key} of its wall is not two numbers")
         pairs.append({"first": value[0], "second": value[1]})
     *places, faces, shares = pairs
-    one, other = (
-        Peg(WALL, 0, 0, real(place, "first"), real(place, "second"), whole(faces, which), real(shares, which), called)
-        for place, which, called in zip(places, ("first", "second"), WALL_ENDS, strict=True)
+    ends = zip(places, ("first", "second"), strict=True)
+    return tuple(
+        Peg(WALL, 0, 0, real(at, "first"), real(at, "second"), whole(faces, k), real(shares, k)) for at, k in ends
     )
-    return one, other
 
 
-def plate_peg_from(item: Mapping[str, Any], direction: str) -> Peg:
-    """A locator, or a clamp that moves in a direction, from its JSON object.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
+def peg_from(item: Mapping[str, Any], directions: list[str]) -> Peg:
+    """A peg from its JSON object; of two clamps each has its direction, which else is that of the fixture."""
+    if not directions:
+        column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
+        x, y, force = (real(item, key) for key in ("x", "y", "force"))
+        jaw = "jaw" if item.get("role") == "jaw" else word(item, "jaw")
+        return Peg(jaw, column, row, x, y, segment, force)
+    direction = word(item, "direction") if len(directions) > 1 and item.get("role") == "clamp" else directions[0]
+    if direction not in WAYS:
+        raise UnusableError(f"the direction of a clamp is not {' or '.join(WAYS)}")
     role, line = word(item, "role"), "row" if direction.endswith("x") else "column"
     contact = real(item, "x"), real(item, "y"), whole(item, "segment"), real(item, "force")
     if role == "locator":
@@ -266,31 +201,12 @@ def plate_peg_from(item: Mapping[str, Any], direction: str) -> Peg:
         raise UnusableError(f"the {line} of its clamp is not that of its hole")
     place[line] = whole(item, line)
     column, row = place["column"], place["row"]
-    called = clamp_place(direction, column, row, hole is not None) if min(column, row) >= 0 else None
+    called = clamp_place(PLATE, direction, column, row, hole is not None) if min(column, row) >= 0 else None
     return Peg(f"clamp {direction}", column, row, *contact, called)
 
 
-def peg_from(item: Mapping[str, Any]) -> Peg:
-    """A peg of a vise from its JSON object.
-
-    Raises
-    ------
-    UnusableError
-        Saying what is missing.
-    """
-    column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
-    x, y, force = (real(item, key) for key in ("x", "y", "force"))
-    return Peg(word(item, "jaw"), column, row, x, y, segment, force)
-
-
 def word(item: Mapping[str, Any], key: str) -> str:
-    """A word of a JSON object.
-
-    Raises
-    ------
-    UnusableError
-        When it is missing or no word.
-    """
+    """A word of a JSON object."""
     value = item.get(key)
     if not isinstance(value, str):
         raise UnusableError(f"{key} is {value!r}, not a word" if key in item else f"the key {key} is missing")
@@ -298,13 +214,7 @@ def word(item: Mapping[str, Any], key: str) -> str:
 
 
 def real(item: Mapping[str, Any], key: str) -> float:
-    """A finite number of a JSON object.
-
-    Raises
-    ------
-    UnusableError
-        When it is missing or no number.
-    """
+    """A finite number of a JSON object."""
     value: Any = item.get(key)
     if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
         raise UnusableError(f"{key} is {value!r}, not a number" if key in item else f"the key {key} is missing")
@@ -312,13 +222,7 @@ def real(item: Mapping[str, Any], key: str) -> float:
 
 
 def whole(item: Mapping[str, Any], key: str) -> int:
-    """A whole number of a JSON object.
-
-    Raises
-    ------
-    UnusableError
-        When it is missing or no whole number of a sensible size.
-    """
+    """A whole number of a JSON object of a sensible size."""
     value = item.get(key)
     if type(value) is not int or abs(value) > 2**31:
         raise UnusableError(f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing")

@@ -17,19 +17,24 @@ closure margin : the largest least entry of null vectors of all five wrenches th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import combinations
 
 from attrs import frozen
 from flint import arb
 
-from workhold.verification.balls import Point, cross, least
-from workhold.verification.rules import NO_REACTION
+from workhold.verification.balls import Point, cross, dot, largest, least, turned
+from workhold.verification.closure import inverted
+from workhold.verification.contacts import Contact, Pose
+from workhold.verification.findings import Finding, number, rule
+from workhold.verification.tolerances import LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, MOST_FORCE, NO_REACTION
+from workhold.verification.wrench_radius import radius_of_five
 
-__all__ = ["Push", "Ratio", "Seat", "closure_margin", "ratio_of"]
+__all__ = ["CLAMPS", "LOCATORS", "Push", "Ratio", "Seat", "SeatBalance", "closure_margin", "ratio_of"]
 
 LOCATORS = 3
+CLAMPS = ("clamp 1", "clamp 2")
 
 
 @frozen(eq=False)
@@ -44,6 +49,17 @@ class Seat:
 
     points: Sequence[Point]
     normals: Sequence[Point]
+
+    @classmethod
+    def of(cls, contacts: Sequence[Contact], pose: Pose) -> Seat:
+        """The seat of three locators, or of the two ends of a wall's contact and one."""
+        return cls([contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts])
+
+    def push(self, contact: Contact, pose: Pose) -> Push:
+        """What a clamp does here; it pushes along -n, and clamps against its way."""
+        point = contact.in_part(pose)
+        normal = contact.side.outward(point)
+        return Push(self.taken(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal))
 
     @cached_property
     def wrenches(self) -> list[tuple[arb, arb, arb]]:
@@ -86,6 +102,11 @@ class Push:
     def reactions(self) -> list[arb]:
         """Forces of the locators per unit of the clamp's own."""
         return [entry / self.push for entry in self.taken]
+
+    @property
+    def most(self) -> arb:
+        """The most that a locator takes up."""
+        return largest([abs(entry) for entry in self.taken])
 
     @cached_property
     def alone(self) -> arb:
@@ -170,3 +191,123 @@ def closure_margin(one: Push, other: Push) -> arb:
         if total > 0:
             best = best.max(least(entries) / total)
     return best
+
+
+@frozen(eq=False)
+class SeatBalance:
+    """How five contacts press.
+
+    Parameters
+    ----------
+    points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
+    seat : the locators, of which a wall's ends are two.
+    pushes : both clamps.
+    known_ratio : in which their forces may be; None where a reaction is exactly at the edge of what counts as none.
+    """
+
+    points: Sequence[Point]
+    normals: Sequence[Point]
+    seat: Seat
+    pushes: tuple[Push, Push]
+    known_ratio: Ratio | None
+
+    @classmethod
+    def of(cls, contacts: Sequence[Contact], pose: Pose) -> SeatBalance:
+        """The balance of three contacts that stand still and then two clamps."""
+        seat = Seat.of(contacts[:LOCATORS], pose)
+        first, second = (seat.push(contact, pose) for contact in contacts[LOCATORS:])
+        points, normals = zip(*((contact.in_part(pose), contact.outward(pose)) for contact in contacts), strict=True)
+        return cls(points, normals, seat, (first, second), ratio_of(first, second))
+
+    @property
+    def ratio(self) -> Ratio:
+        """The ratio of a fixture that closes."""
+        assert self.known_ratio is not None
+        return self.known_ratio
+
+    def push_findings(self, wrench_length: float) -> Iterator[Finding]:
+        """Whether the locators fix the pose, and both clamps push without holding the part alone; L is in mm."""
+        spanned = abs(self.seat.determinant) / wrench_length
+        words = f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
+        yield from rule(spanned - LEAST_SEAT, words, words)
+        for name, push in zip(CLAMPS, self.pushes, strict=True):
+            yield from rule(
+                push.push - LEAST_PUSH,
+                f"{name} does not push the part: its share is {number(push.push)}",
+                f"the push of {name} is exactly at its limit",
+            )
+            yield from rule(
+                MOST_FORCE * push.push - push.most,
+                f"{name} presses a locator with {number(push.most / push.push)} times its own force",
+                f"the force of a locator under {name} is exactly at its limit",
+            )
+            yield from rule(
+                NO_REACTION - push.alone,
+                f"{name} holds the part without the other: its least share is {number(push.alone)}",
+                f"whether {name} holds the part without the other is exactly at its limit",
+            )
+
+    def closure_findings(self) -> Iterator[Finding]:
+        """Whether both clamps together press the part against all locators."""
+        if self.known_ratio is None:
+            yield Finding(False, "a locator's force is exactly at the edge of what counts as none")
+            return
+        words = "the clamps do not hold the part: at no ratio of their forces are all locators pressed"
+        freedom = self.ratio.freedom
+        if not freedom > 0:
+            yield Finding(bool(freedom < 0) or bool(self.margin < LEAST_SHARE), words)
+            return
+        yield from rule(
+            self.margin - LEAST_SHARE,
+            f"the clamps do not hold the part: the closure margin is {number(self.margin)}",
+            "the closure margin is exactly at its limit",
+        )
+
+    @cached_property
+    def reactions(self) -> list[tuple[arb, arb]]:
+        """Of each peg its force per unit of the first clamp's, and of the second's."""
+        one, other = self.pushes
+        own = [(1 / one.push, arb(0)), (arb(0), 1 / other.push)]
+        return [*zip(one.reactions, other.reactions, strict=True), *own]
+
+    @cached_property
+    def forces(self) -> list[arb]:
+        """Force of each peg per unit of both clamps' at the working ratio."""
+        first, second = self.ratio.forces
+        return [first * a + second * b for a, b in self.reactions]
+
+    @cached_property
+    def shares(self) -> list[arb]:
+        """The forces scaled to sum 1."""
+        total = sum(self.forces, arb(0))
+        return [force / total for force in self.forces]
+
+    @cached_property
+    def margin(self) -> arb:
+        """The closure margin."""
+        return closure_margin(*self.pushes)
+
+    def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
+        """The inverse of the locators' wrenches, which alone tell where the part is; None where there may be none."""
+        return inverted([list(wrench) for wrench in self.seat.wrenches])
+
+    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
+        """A number for each peg, from a row of the inverse: clamps that keep their force take nothing of a load."""
+        return [*row, arb(0), arb(0)]
+
+    def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
+        """The part of some forces that lies in the plane of those with which both clamps press."""
+        ones, others = zip(*self.reactions, strict=True)
+        aa, ab, bb = inner(ones, ones), inner(ones, others), inner(others, others)
+        fa, fb, area = inner(forces, ones), inner(forces, others), aa * bb - ab * ab
+        u, v = (fa * bb - fb * ab) / area, (fb * aa - fa * ab) / area
+        return [u * a + v * b for a, b in self.reactions]
+
+    def wrench_radius(self, center: Point, length: float) -> arb | None:
+        """The wrench radius, about a centre with L in mm; None where all wrenches may lie in one line."""
+        return radius_of_five(center, length, self.points, self.normals)
+
+
+def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    """Scalar product of two rows."""
+    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))

@@ -14,22 +14,32 @@ from math import ceil, floor
 from attrs import evolve, frozen
 from flint import arb
 
-from workhold.model.fixture import Peg
+from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.query import Query
-from workhold.verification.balls import Point, dot, exact_point, largest, norm, turned
+from workhold.model.toolkit import Carrier
+from workhold.verification.balls import Point, dot, exact_point, largest, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.ends import on_line
-from workhold.verification.findings import Finding
+from workhold.verification.findings import Finding, number, rule
 from workhold.verification.outline import Outline
-from workhold.verification.pair_balance import push_of
-from workhold.verification.plate import WAYS, PlateRules
-from workhold.verification.rules import HAIR, LEAST_PUSH, LEAST_SHARE, MOST_FORCE, NO_REACTION, SAME
-from workhold.verification.seat import Push, Seat, closure_margin, ratio_of
+from workhold.verification.placing import proven_pose
+from workhold.verification.restrictions import zone_distance
+from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.stroke import WAYS, direction_of, directions_of, line_of, pieces_apart
+from workhold.verification.seat import LOCATORS, Push, Seat, SeatBalance, closure_margin, ratio_of
 from workhold.verification.sides import ArcSide, LineSide, Side
+from workhold.verification.tolerances import (
+    HAIR,
+    LEAST_PUSH,
+    LEAST_SHARE,
+    MOST_FORCE,
+    NO_REACTION,
+    SAME,
+    SAME_FREEDOM,
+)
 from workhold.verification.touching import touching_findings
-from workhold.verification.zones import zone_distance
 
-__all__ = ["Hole", "SeatClamp", "SeatPair", "Standing", "choices"]
+__all__ = ["SeatClamp", "Standing", "pairs_at"]
 
 # mm. Lines of holes this near beside the part are looked at as well.
 BESIDE = 1e-3
@@ -90,19 +100,46 @@ class Standing:
 
     Parameters
     ----------
-    query, rules, outline : what is asked, of what toolkit, and the workpiece.
-    pegs, locators : the locators, three or, beside a wall, one.
-    pose : the solution, with a travel of 0.
+    query, hardware, outline : what is asked, of what toolkit, and the workpiece.
+    pegs, locators : those in holes that stand still, three or, beside a wall, one, and their contacts by name.
+    pose : the solution, in which the first travel is 0.
     seat : their wrenches, a wall's with them.
     """
 
     query: Query
-    rules: PlateRules
+    hardware: Hardware
     outline: Outline
     pegs: Sequence[Peg]
-    locators: Sequence[Contact]
+    locators: Sequence[tuple[str, Contact]]
     pose: Pose
     seat: Seat
+
+    @classmethod
+    def of(
+        cls,
+        fixture: Fixture,
+        contacts: Sequence[Contact],
+        pose: Pose,
+        query: Query,
+        hardware: Hardware,
+        outline: Outline,
+    ) -> Standing:
+        """The seat of a fixture in a pose."""
+        named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
+        held = [(name, peg, contact) for name, peg, contact in named if not peg.is_on_wall]
+        locators = [(name, contact) for name, _, contact in held]
+        still = Pose.of(pose.theta, pose.x, pose.y, arb(0))
+        seat = Seat.of(contacts[:LOCATORS], still)
+        return cls(query, hardware, outline, [peg for _, peg, _ in held], locators, still, seat)
+
+    @property
+    def lattice(self) -> Carrier:
+        """The holes that the clamps are bolted in."""
+        return self.hardware.lattices[0]
+
+    def radius(self, direction: str) -> float:
+        """Radius in mm of the tip of a clamp in a direction."""
+        return self.hardware.tips[direction].peg_radius
 
     def pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
         """The pairs of clamps in two directions that hold the part here, those in doubt with them."""
@@ -116,7 +153,7 @@ class Standing:
             margin = closure_margin(first.push, second.push)
             if margin < LEAST_SHARE:
                 continue
-            stands = [sure for *_, sure in choices(self.rules, self.pegs, first, second)]
+            stands = [sure for *_, sure in self.choices(first, second)]
             if stands:
                 sure = any(stands) and first.sure and second.sure and bool(margin > LEAST_SHARE)
                 freedom = arb(0, 90) if ratio is None else ratio.freedom
@@ -141,12 +178,12 @@ class Standing:
         upright = direction.endswith("y")
         axis = self.axis(upright)
         ends = [side.center] if isinstance(side, ArcSide) else [side.start, side.end]
-        reach = self.rules.toolkit.clamp_radius + (float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0)
+        reach = self.radius(direction) + (float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0)
         places = [float((dot(axis, end) + self.shift(upright)).mid()) for end in ends]
-        pitch, noun = self.rules.toolkit.pitch[not upright], "column" if upright else "row"
+        pitch, noun = self.lattice.pitch[not upright], "column" if upright else "row"
         low, high = ceil((min(places) - reach - BESIDE) / pitch), floor((max(places) + reach + BESIDE) / pitch)
         numbers = [getattr(peg, noun) for peg in self.pegs]
-        return [line for line in range(low, high + 1) if self.rules.fits(noun, [*numbers, line])]
+        return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
 
     def axis(self, upright: bool) -> Point:
         """The plate's x for columns, or y for rows, in the workpiece's frame."""
@@ -155,19 +192,19 @@ class Standing:
 
     def shift(self, upright: bool) -> arb:
         """How far along that axis the workpiece's origin is from column or row 0, in mm."""
-        x, y = self.rules.origin
+        x, y = self.lattice.offset
         return self.pose.x - x if upright else self.pose.y - y
 
     def clamps_on(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
         """The clamps on a line that touch a side and keep all rules of their own, those in doubt with them."""
-        upright, radius = direction.endswith("y"), arb(self.rules.toolkit.clamp_radius)
+        upright, radius = direction.endswith("y"), arb(self.radius(direction))
         if isinstance(side, ArcSide) and not side.reach(radius) > 0:
             return
         axis, way = self.axis(upright), exact_point(*map(float, WAYS[direction]))
         back = turned(way, self.pose.cosine, -self.pose.sine)
         if isinstance(side, LineSide) and not dot(back, side.normal) > LEAST_PUSH:
             return
-        level = arb(self.rules.toolkit.pitch[not upright]) * line - self.shift(upright)
+        level = arb(self.lattice.pitch[not upright]) * line - self.shift(upright)
         for point in on_line(side, radius, axis, level):
             if not dot(back, side.outward(point)) > 0:
                 continue
@@ -183,10 +220,10 @@ class Standing:
         touches = verdict(touching_findings("a clamp", contact, face, self.pose, self.outline, margin))
         if touches is False:
             return None
-        push = push_of(contact, self.pose, self.seat)
+        push = self.seat.push(contact, self.pose)
         if push.push < LEAST_PUSH or push.alone > NO_REACTION:
             return None
-        most = largest([abs(force) for force in push.taken]) - MOST_FORCE * push.push
+        most = push.most - MOST_FORCE * push.push
         if most > 0:
             return None
         sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION), bool(most < 0)]
@@ -200,48 +237,93 @@ class Standing:
 
     def holes(self, contact: Contact, line: int, direction: str) -> Iterator[Hole]:
         """Where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
-        upright, travel = direction.endswith("y"), self.rules.toolkit.travel
-        if travel is None:
-            stands = verdict(self.rules.clamp_findings("a clamp", self.locators, contact, self.pose, self.outline))
+        upright, rules = direction.endswith("y"), self.hardware.stroke
+        if rules.span is None:
+            stands = verdict(rules.findings("a clamp", self.locators, contact, self.pose, self.outline))
             if stands is not False:
                 column, row = (line, None) if upright else (None, line)
                 yield Hole(column, row, contact.hole, arb(0), stands is True)
             return
-        (pitch_x, pitch_y), (x, y) = self.rules.toolkit.pitch, self.rules.origin
+        (pitch_x, pitch_y), (x, y) = self.lattice.pitch, self.lattice.offset
         tip, sign = contact.hole[int(upright)] - (y if upright else x), sum(WAYS[direction])
         pitch = pitch_y if upright else pitch_x
-        near, far = sorted(float(tip.mid()) + sign * stroke for stroke in travel)
-        for number in range(ceil((near - BESIDE) / pitch), floor((far + BESIDE) / pitch) + 1):
-            stroke = sign * (arb(pitch) * number - tip)
-            column, row = (line, number) if upright else (number, line)
+        near, far = sorted(float(tip.mid()) + sign * stroke for stroke in rules.span)
+        for count in range(ceil((near - BESIDE) / pitch), floor((far + BESIDE) / pitch) + 1):
+            stroke = sign * (arb(pitch) * count - tip)
+            column, row = (line, count) if upright else (count, line)
             place = x + arb(pitch_x) * column, y + arb(pitch_y) * row
-            bolted, pose = evolve(contact, hole=place), evolve(self.pose, travel=-stroke)
-            stands = verdict(self.rules.clamp_findings("a clamp", self.locators, bolted, pose, self.outline))
+            bolted, pose = evolve(contact, hole=place), evolve(self.pose, travels=(-stroke,))
+            stands = verdict(rules.findings("a clamp", self.locators, bolted, pose, self.outline))
             if stands is not False:
                 yield Hole(column, row, place, stroke, stands is True)
 
+    def choices(self, one: SeatClamp, other: SeatClamp) -> Iterator[tuple[Hole, Hole, bool]]:
+        """The holes in which two clamps may be bolted together, and whether they certainly may."""
+        apart = arb(self.radius(one.direction)) + self.radius(other.direction) - HAIR
+        for first, second in product(one.holes, other.holes):
+            columns = [peg.column for peg in self.pegs] + [h.column for h in (first, second) if h.column is not None]
+            rows = [peg.row for peg in self.pegs] + [h.row for h in (first, second) if h.row is not None]
+            if not (self.hardware.fits("column", columns) and self.hardware.fits("row", rows)):
+                continue
+            clear = pieces_apart((one.tip, first.place), (other.tip, second.place)) - apart
+            if not clear < 0:
+                yield first, second, first.sure and second.sure and bool(clear > 0)
 
-def choices(
-    rules: PlateRules, pegs: Sequence[Peg], one: SeatClamp, other: SeatClamp
-) -> Iterator[tuple[Hole, Hole, bool]]:
-    """The holes in which two clamps may be bolted together, and whether they certainly may."""
-    apart = 2 * arb(rules.toolkit.clamp_radius) - HAIR
-    for first, second in product(one.holes, other.holes):
-        columns = [peg.column for peg in pegs] + [h.column for h in (first, second) if h.column is not None]
-        rows = [peg.row for peg in pegs] + [h.row for h in (first, second) if h.row is not None]
-        if not (rules.fits("column", columns) and rules.fits("row", rows)):
-            continue
-        clear = pieces_apart((one.tip, first.place), (other.tip, second.place)) - apart
-        if not clear < 0:
-            yield first, second, first.sure and second.sure and bool(clear > 0)
+    def pair_findings(
+        self, fixture: Fixture, pair: Pair, contacts: Sequence[Contact], pose: Pose, balance: SeatBalance
+    ) -> Iterator[Finding]:
+        """Whether the clamps are bolted in the holes of the least total travel, and stand for all pairs that they are to."""
+        if self.hardware.stroke.span is not None:
+            yield from self.stroke_findings(fixture, contacts, pose)
+        if not self.hardware.every:
+            yield from best_findings(pair, balance, list(self.pairs(directions_of(fixture))))
+        elif pair.count != 1:
+            yield Finding(True, f"it stands for {pair.count} pairs of clamps, and all are listed")
+
+    def stroke_findings(self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose) -> Iterator[Finding]:
+        """Whether the clamps are bolted in the holes of the least total travel that have a place together."""
+        clamps = []
+        for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
+            tip = evolve(contact, hole=contact.place(pose), travel=0)
+            line, direction, push = line_of(peg), direction_of(peg), self.seat.push(tip, self.pose)
+            holes = list(self.holes(tip, line, direction))
+            clamps.append(SeatClamp(direction, line, peg.face, tip.hole, push, holes, True))
+        total = -sum(pose.travels, arb(0))
+        for first, second, sure in self.choices(*clamps):
+            less = total - HAIR - first.stroke - second.stroke
+            if less < 0:
+                continue
+            words = f"{number(first.stroke + second.stroke)} mm of travel in all, not {number(total)}"
+            yield Finding(sure and bool(less > 0), f"the clamps could be bolted with {words}")
 
 
-def pieces_apart(one: tuple[Point, Point], other: tuple[Point, Point]) -> arb:
-    """Distance in mm of two straight pieces, each along x or y."""
-    beyond = []
-    for a, b, c, d in zip(*one, *other, strict=True):
-        beyond.append(arb(0).max(a.min(b) - c.max(d)).max(c.min(d) - a.max(b)))
-    return norm((beyond[0], beyond[1]))
+def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -> Iterator[Finding]:
+    """Whether a fixture stands for as many pairs as there are at its seat, and none of them is better."""
+    sure = [one for one in pairs if one.sure]
+    if not len(sure) <= pair.count <= len(pairs):
+        yield Finding(True, f"it stands for {pair.count} pairs of clamps, and there are {len(sure)} at its seat")
+    elif len(sure) < len(pairs):
+        yield Finding(False, f"there are {len(sure)} to {len(pairs)} pairs of clamps at its seat")
+    freedom, margin = balance.ratio.freedom, balance.margin
+    freest = largest([freedom, *(one.freedom for one in sure)])
+    worse = freest - freedom - SAME_FREEDOM - HAIR
+    words = f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one {number(freedom)}"
+    yield from rule(-worse, words, words)
+    rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
+    widest = largest([margin, *rivals])
+    words = f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one {number(margin)}"
+    yield from rule(2 * HAIR - (widest - margin), words, words)
+
+
+def pairs_at(fixture: Fixture, query: Query, hardware: Hardware, outline: Outline) -> tuple[int, int] | None:
+    """How many pairs of clamps there are at a fixture's seat, at least and at most; None where its place is not proven."""
+    contacts = hardware.contacts(fixture, outline)
+    pose, _ = proven_pose(contacts, fixture.pose, hardware.travels(fixture))
+    if pose is None:
+        return None
+    standing = Standing.of(fixture, contacts, pose, query, hardware, outline)
+    pairs = list(standing.pairs(directions_of(fixture)))
+    return sum(one.sure for one in pairs), len(pairs)
 
 
 def verdict(findings: Iterable[Finding]) -> bool | None:

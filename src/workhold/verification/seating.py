@@ -29,12 +29,12 @@ from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, norm, turned
 from workhold.verification.claims import Claim
 from workhold.verification.contacts import Pose
-from workhold.verification.kinds import hardware_of
 from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
-from workhold.verification.rules import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
+from workhold.verification.rules.hardware import Hardware
 from workhold.verification.seating_contacts import Touching, touching_faults, touching_wall
 from workhold.verification.seating_stop import stop_of, travelled
+from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
 __all__ = ["Judged", "SeatingJudge"]
 
@@ -178,7 +178,7 @@ class Judged:
         """Where each peg of the fixture, or an end of its wall, touches; not every form of a file tells it of a wall."""
         theta = arb(self.fixture.pose.theta_deg) * arb.pi() / 180
         pose = Pose.of(theta, arb(self.fixture.pose.x), arb(self.fixture.pose.y), arb(0))
-        contacts = hardware_of(self.judge.query.toolkit).contacts(self.fixture, self.judge.outline)
+        contacts = Hardware(self.judge.query.toolkit).contacts(self.fixture, self.judge.outline)
         return [contact.place(pose) for contact in contacts]
 
     def kind_of(self, seat: Mapping[str, Any]) -> str:

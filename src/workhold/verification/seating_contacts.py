@@ -9,8 +9,8 @@ from flint import arb
 
 from workhold.verification.balls import Point, exact_point, turned
 from workhold.verification.outline import Outline
-from workhold.verification.rules import AGREEMENT
 from workhold.verification.sides import ArcSide
+from workhold.verification.tolerances import AGREEMENT
 
 __all__ = ["Touching", "touching_faults", "touching_wall"]
 

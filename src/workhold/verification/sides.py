@@ -18,7 +18,7 @@ from attrs import frozen
 from flint import arb
 
 from workhold.verification.balls import Point, cross, dot, exact_point, norm, turned
-from workhold.verification.rules import STRAIGHT, WHOLE
+from workhold.verification.tolerances import STRAIGHT, WHOLE
 
 __all__ = ["ArcSide", "LineSide", "Side", "arc_side", "line_side", "whole_face"]
 

@@ -22,7 +22,7 @@ from workhold.verification.clearance import clear_within
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.outline import Outline
-from workhold.verification.rules import HAIR
+from workhold.verification.tolerances import HAIR
 
 __all__ = ["touching_findings"]
 

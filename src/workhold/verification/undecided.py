@@ -18,7 +18,6 @@ from math import hypot, radians
 from attrs import evolve, frozen
 from flint import arb, ctx
 
-from workhold.model.plate import Plate
 from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.model.query import Query
 from workhold.model.toolkit import Arrangement, Carrier
@@ -26,9 +25,10 @@ from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, tur
 from workhold.verification.contacts import standoff
 from workhold.verification.ends import on_circle, on_line
 from workhold.verification.outline import Outline
-from workhold.verification.plate import LOCATORS, quarter_turns, seen_along_x
-from workhold.verification.rules import AGREEMENT
+from workhold.verification.rules.stroke import quarter_turns, seen_along_x
+from workhold.verification.seat import LOCATORS
 from workhold.verification.sides import ArcSide, LineSide, Side
+from workhold.verification.tolerances import AGREEMENT
 
 __all__ = ["undecided_faults"]
 
@@ -75,31 +75,27 @@ def entry_fault(entry: Undecided, query: Query, outline: Outline) -> str:
 
 
 def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
-    """The contacts of a seat and a clamp that an entry of a plate or fence with two is made of, one or two, each with a
-    query of that clamp alone."""
-    toolkit = query.toolkit
-    assert isinstance(toolkit, Plate)
-    kind, *directions = entry.type.split()
-    paired = toolkit.arrangements[0].name
-    alone = paired.removesuffix("2")
-    asked = {
-        (alone, 1): [(name,) for pair in toolkit.directions for name in pair],
-        (paired, 2): toolkit.directions,
-    }
-    if tuple(directions) not in asked.get((kind, len(entry.faces) - LOCATORS), ()):
+    """The contacts of a seat and a clamp that an entry of two clamps is made of, one or two, each with a query of that clamp
+    alone."""
+    _, *directions = entry.type.split()
+    alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
+    asked = (
+        query.toolkit.arrangements if len(directions) > 1 else [a for w in query.toolkit.ways for a in w.arrangements]
+    )
+    if entry.type not in [one.title for one in asked] or len(entry.faces) - LOCATORS != len(directions):
         # Of a kind that is not asked for, which is told of it.
         yield evolve(entry, type=f"{entry.type} with {len(entry.faces)} pegs"), query
         return
     for number, direction in enumerate(directions, LOCATORS):
         chosen = (*range(LOCATORS), number)
         faces, columns, rows = ([values[k] for k in chosen] for values in (entry.faces, entry.columns, entry.rows))
-        if kind == paired:
+        if len(directions) > 1:
             columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
             (columns if direction.endswith("x") else rows)[LOCATORS] = 0
-        plate = evolve(toolkit, clamps=1, directions=(direction,))
-        single = evolve(query, toolkit=plate, arrangements=None, ranking=None, best=None, listing=None)
+        name, way = alone[direction]
+        single = evolve(query, toolkit=way, arrangements=None, ranking=None, best=None, listing=None)
         holes = tuple(faces), tuple(columns), tuple(rows)
-        yield Undecided(f"{alone} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
+        yield Undecided(f"{name} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
 
 
 def is_of_chords(entry: Undecided) -> bool:

@@ -11,7 +11,7 @@ from itertools import combinations
 from flint import arb
 
 from workhold.verification.balls import Point, cross, least, root
-from workhold.verification.rules import FLAT
+from workhold.verification.tolerances import FLAT
 
 __all__ = ["radius_of_five", "radius_of_four"]
 

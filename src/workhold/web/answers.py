@@ -12,17 +12,17 @@ from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamp import ShownClamp
+from workhold.model.contact_kind import WALL_END
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
 from workhold.model.flat import standoff
-from workhold.model.holes import hole_name
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.setting import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Arrangement, Carrier, Toolkit
+from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 
@@ -214,19 +214,19 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         }
         for each in seen.carriers
     ]
-    plate, wall = seen.carriers[0], seen.wall
-    if wall is not None:
-        lattices.append(
-            {
-                **lattice_of_none(wall.carrier),
-                "plate": [wall.bar.x0, wall.bar.y0, wall.bar.x1, wall.bar.y1],
-                "pegs": [next(numbers) for _ in wall.ends],
-                "peg_radius": 0.0,
-                "clamping": None,
-                "measured": None,
-                "clamp": None,
-            }
-        )
+    plate = seen.carriers[0]
+    walls = [
+        {
+            **lattice_of_none(each.carrier),
+            "plate": [each.bar.x0, each.bar.y0, each.bar.x1, each.bar.y1],
+            "pegs": [next(numbers) for _ in each.ends],
+            "peg_radius": 0.0,
+            "clamping": None,
+            "measured": None,
+            "clamp": None,
+        }
+        for each in seen.walls
+    ]
     clamps = [
         {
             **lattice_of_none(each.carrier),
@@ -246,7 +246,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         }
         for each, axes in zip(seen.clamps, of_clamps, strict=True)
     ]
-    return lattices + clamps
+    return lattices + walls + clamps
 
 
 def stroke_of(clamp: ShownClamp) -> float:
@@ -297,32 +297,22 @@ def settings_answer(fixture: Fixture, toolkit: Toolkit) -> list[dict[str, Any]]:
     return [{"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(fixture, toolkit)]
 
 
-def title_of(arrangement: Arrangement) -> str:
-    """What a fixture of an arrangement is called in a line.
-
-    >>> title_of(Arrangement("II", (3, 1))), title_of(Arrangement("clamp", (3, 1), "-x"))
-    ('Type II', 'Clamp \u2212x')
-    """
-    if arrangement.direction is None:
-        return f"Type {arrangement.title}"
-    return f"Clamp{'s' if ' ' in arrangement.direction else ''} {arrangement.direction}".replace("-", "\u2212")
-
-
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """A fixture by itself, without a rank."""
+    pair = fixture.pair
     return {
         "type": fixture.type,
-        "title": title_of(toolkit.arrangement(fixture.type, fixture.direction)),
+        "title": toolkit.arrangement(fixture.type, fixture.direction).heading,
         "settings": settings_answer(fixture, toolkit),
         "order": order_words(fixture),
-        "pairs": None if fixture.pair is None else fixture.pair.count,
+        "pairs": None if pair is None else pair.count,
         "mover": toolkit.moving.noun,
-        "origin": origin_name(toolkit),
+        "origin": toolkit.datum.name,
         "holes": [peg.hole for peg in fixture.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "touched": [peg.touched for peg in fixture.pegs],
         "corners": [number for number, peg in enumerate(fixture.pegs) if peg.beside is not None],
-        "flush": [number for number, peg in enumerate(fixture.pegs) if peg.is_on_wall],
+        "flush": [number for number, peg in enumerate(fixture.pegs) if peg not in fixture.placed],
         "theta_deg": fixture.pose.theta_deg,
         "x": fixture.pose.x,
         "y": fixture.pose.y,
@@ -334,18 +324,13 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     }
 
 
-def origin_name(toolkit: Toolkit) -> str:
-    """What places are told from."""
-    wall = toolkit.wall
-    return hole_name(toolkit.carriers[0].name, 0, 0) if wall is None else f"column A at the {wall.noun}"
-
-
 def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """Outward normals and contacts of a fixture's pegs in the toolkit's frame."""
     segments = {face.number: face.segment for face in workpiece.faces}
     normals, contacts = [], []
     for peg in fixture.pegs:
-        if peg.is_on_wall:
+        carrier = toolkit.carrier(peg.carrier)
+        if carrier.contact is WALL_END:
             normals.append([0.0, -1.0])
             contacts.append([peg.x, peg.y])
             continue
@@ -353,7 +338,6 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         nx, ny = segment.normal(segment.parameter(fixture.pose.inverse.apply(peg.x, peg.y)))
         x, y = (float(v) / hypot(nx, ny) for v in fixture.pose.turn(nx, ny))
         normals.append([x, y])
-        carrier = toolkit.carrier(peg.carrier)
         off = standoff(carrier.peg_radius, carrier.flat, segment)
         contacts.append([peg.x - off * x, peg.y - off * y])
     return {"normals": normals, "contacts": contacts}

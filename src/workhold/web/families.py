@@ -51,11 +51,11 @@ class FamilyForm(Form):
             For the first value that cannot be, and where the solver is not installed.
         """
         from workhold.family.covering import load_solver
-        from workhold.family.losses import FAMILY_RANKING, PAIR_FAMILY_RANKING
+        from workhold.family.losses import RANKINGS
 
         load_solver()
         toolkit = self.toolkit.toolkit()
-        usual = PAIR_FAMILY_RANKING if toolkit.needs_pairs else FAMILY_RANKING
+        usual = RANKINGS[toolkit.travels]
         ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]

@@ -226,7 +226,7 @@ class SearchForm(Form):
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             jaw_force=self.jaw_force,
-            listing=self.listing if toolkit.needs_pairs else None,
+            listing=None if toolkit.closes_at_once else self.listing,
         )
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from attrs import define, evolve, field
 
 from workhold.errors import InputError
-from workhold.listing.alike import Entries
+from workhold.listing.near_duplicates import Entries
 from workhold.model.explanation import Explanation
 from workhold.model.notes import cut_note, kept_note, stopped_note
 from workhold.model.result import Result

@@ -71,7 +71,7 @@ def find_seating(held: Held, order: Order) -> Seating | ByHand:
     from workhold.seating.seating import Solver
 
     fixture, workpiece, toolkit = held
-    if fixture.pair is not None:
+    if not toolkit.closes_at_once:
         return by_hand(fixture, workpiece, toolkit)
     told: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
     return told

@@ -156,7 +156,7 @@ def explanation(query: Query, order: Order) -> Explanation:
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> tuple[NamedQuery, ...]:
     """The queries of a request, after everything that can be known to be wrong with them is asked for."""
     from workhold.contact.problem import Problem
-    from workhold.seating.first import refuse_unasked
+    from workhold.search.seated import refuse_unasked
 
     form, most_segments = payload
     queries = form.queries(most_segments)

@@ -18,7 +18,7 @@ from workhold.files.result import columns as in_columns
 from workhold.files.result.columns import significant, write_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
-from workhold.listing.alike import entries
+from workhold.listing.near_duplicates import entries
 from workhold.model.columns import COLUMNS, HEAD
 from workhold.model.result import FixtureTable, Result
 from workhold.verification.listing import read_listing

@@ -18,7 +18,7 @@ import check_result
 from fakes import fake_proof, fake_result
 from workhold import Vise, design, load
 from workhold.errors import InputError
-from workhold.files.result import writer as result_file
+from workhold.files.result import fixture_lines
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result, write_result_to
 from workhold.files.toolkit.presets import preset
@@ -126,7 +126,7 @@ def test_fixtures_become_objects_a_block_at_a_time(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(FixtureTable, "take", recorded)
     write_result_to(fake_result(9000), io.StringIO())
-    assert sizes == [result_file.BLOCK] * 3
+    assert sizes == [fixture_lines.BLOCK] * 3
 
 
 def test_any_layout_of_the_same_json_is_read(tmp_path: Path, document: dict[str, Any]) -> None:
@@ -163,7 +163,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file(tmp_path: Path, monkeypatch
     def broken(*_: object) -> object:
         raise MemoryError
 
-    monkeypatch.setattr(result_file, "rounded", broken)
+    monkeypatch.setattr(fixture_lines, "rounded", broken)
     with pytest.raises(MemoryError):
         write_result(fake_result(3), path)
     assert path.read_text() == "old"

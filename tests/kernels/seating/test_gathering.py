@@ -30,8 +30,8 @@ from workhold.kernels.seating.columns import (
     THETA,
 )
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP, gathered
-from workhold.seating.filled import filled
 from workhold.seating.groups import groups_of
+from workhold.seating.growing_rows import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 

@@ -24,7 +24,7 @@ from workhold.kernels.seating.three_contacts import (
     may_balance,
     three_contacts,
 )
-from workhold.seating.filled import filled
+from workhold.seating.growing_rows import filled
 from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
 

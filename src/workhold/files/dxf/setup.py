@@ -89,7 +89,7 @@ def setup_dxf(
             document.layers.add(name, color=color)
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
-        add_wall(space, seen)
+        add_walls(space, seen)
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
@@ -110,19 +110,19 @@ def layer_of(carrier: Carrier) -> str:
     >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
-    if carrier.on is not None or carrier.is_wall or carrier.name == carrier.noun:
+    if not carrier.has_lattice or carrier.name == carrier.noun:
         return carrier.noun.upper()
     return f"{carrier.noun}_{carrier.name}".upper()
 
 
 def peg_layer(carrier: Carrier) -> str:
     """The layer that a carrier's pegs are on: of a clamp that of its body."""
-    return layer_of(carrier) if carrier.on is not None else f"{carrier.peg}s".upper()
+    return f"{carrier.peg}s".upper() if carrier.has_lattice else layer_of(carrier)
 
 
 def setting_layer(mover: Carrier) -> str:
     """The layer of the length to set on what moves."""
-    return "OPENING" if mover.on is None else f"{layer_of(mover)}_SETTING"
+    return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
 
 
 def layers_of(toolkit: Toolkit) -> dict[str, int]:
@@ -135,7 +135,7 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
     moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
     return {
         **PART,
-        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if not carrier.is_wall},
+        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if carrier.contact.is_placed},
         **HOLES,
         **{setting_layer(carrier): SETTING for carrier in moving},
         **OTHERS,
@@ -238,12 +238,12 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
                 add_text(space, str(row + 1), (beside, y), seen)
 
 
-def add_wall(space: Modelspace, seen: Shown) -> None:
-    """Adds the wall, if there is one, as a bar that the part lies on."""
-    if seen.wall is not None:
-        bar = seen.wall.bar
+def add_walls(space: Modelspace, seen: Shown) -> None:
+    """Add the walls that the part lies on as bars."""
+    for wall in seen.walls:
+        bar = wall.bar
         corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
-        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(seen.wall.carrier)})
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
 
 
 def add_travel(space: Modelspace, seen: Shown) -> None:

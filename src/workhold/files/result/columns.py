@@ -27,7 +27,7 @@ from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degree
 from workhold.files.result.seating_forms import checked_seating, seatings_told
 from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
-from workhold.model.columns import COLUMNS, HEAD, PAIR_COLUMNS, columns_said
+from workhold.model.columns import COLUMNS_OF, HEAD, columns_said
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 
@@ -58,7 +58,7 @@ class ColumnsReceiver:
         """
         counts = Counter[str]()
         with binary_file(self.path) as stream:
-            archive = ArchiveWriter(stream, PAIR_COLUMNS if result.toolkit.needs_pairs else COLUMNS, listed)
+            archive = ArchiveWriter(stream, COLUMNS_OF[result.toolkit.travels], listed)
             for table in tables:
                 counts.update(result.toolkit.arrangements_counted(table.arrangement))
                 for start in range(0, len(table), BLOCK):

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import IO
 
 from workhold.files.atomic import text_file
+from workhold.files.result.fixture_lines import fixture_rows
 from workhold.files.result.rounding import known_figures
-from workhold.files.result.writer import fixture_rows
+from workhold.model.contact_kind import FLAT_PIN
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.result import Result
 from workhold.model.seating import DECIMALS
@@ -44,11 +45,11 @@ def write_result_csv_to(result: Result, stream: IO[str]) -> None:
 
 def column_names(result: Result) -> list[str]:
     """The names of the columns."""
-    pegs = [f"peg{peg}_{name}" for peg in range(1, result.toolkit.peg_count + 1) for name in PEG_COLUMNS]
-    moved = TRAVEL_COLUMNS[2 if result.toolkit.needs_pairs else 1]
-    kinds, standing = result.toolkit.carriers, result.toolkit.arrangements[0].carriers
-    count = sum(not kinds[k].is_wall for k in standing) if result.toolkit.has_flats else 0
-    flats = [f"flat{number}_deg" for number in range(1, 1 + count)]
+    toolkit = result.toolkit
+    pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
+    moved = TRAVEL_COLUMNS[toolkit.travels]
+    placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
+    flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
     seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
     return [*POSE_COLUMNS, *moved, *(figure.key for figure in known_figures(result.table)), *pegs, *flats, *seating]
 
@@ -64,8 +65,7 @@ def result_csv_text(result: Result) -> Iterator[str]:
     """The comma-separated values, piece by piece."""
     toolkit, carriers = result.toolkit, result.toolkit.carriers
     yield ",".join(column_names(result)) + "\n"
-    moved = 3 + (2 if toolkit.needs_pairs else 1)
-    flats = toolkit.has_flats
+    moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number, seated = 0, seating_values(result) if result.seating else []
     for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):

@@ -30,7 +30,6 @@ from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
-from workhold.model.wall import ON_WALL
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["read_result"]
@@ -121,27 +120,27 @@ def fixture_row(
     pegs, pose = fixture["pegs"], fixture["pose"]
     if "wall" in fixture and isinstance(pegs, list):
         pegs = wall_pegs(fixture["wall"]) + pegs
-    pair = fixture.get("directions")
-    if not isinstance(pegs, list) or len(pegs) != (4 if pair is None else 5):
-        raise ValueError(f"it does not have {'four' if pair is None else 'five'} pegs")
-    direction = fixture.get("direction") if pair is None else " ".join(pair)
-    name = name if direction is None else f"{name} {direction}"
+    directions = directions_of(fixture)
+    several = len(directions) > 1
+    if not isinstance(pegs, list) or len(pegs) != (5 if several else 4):
+        raise ValueError(f"it does not have {'five' if several else 'four'} pegs")
+    name = " ".join((name, *directions))
     jaws, holes = [], []
     for peg in pegs:
-        carrier, column, row = peg_place(peg, direction if pair is None else peg.get("direction"))
+        carrier, column, row = peg_place(peg, peg.get("direction") if several else "".join(directions))
         jaws.append(carrier)
         holes.append([column, row, peg["segment"]])
     if not all(isinstance(word, str) for word in (fixture["type"], *jaws)):
         raise ValueError("its type or a peg's jaw is not text")
-    forces = [[peg["force"], 0.0] if pair is None else [*peg["force"]] for peg in pegs]
+    forces = [[*peg["force"]] if several else [peg["force"], 0.0] for peg in pegs]
     if any(len(force) != 2 for force in forces):
         raise ValueError("a peg does not have a force for each clamp")
     contacts = [[peg["x"], peg["y"], *force] for peg, force in zip(pegs, forces, strict=True)]
     figures = fixture.get("quality", {})
     known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
     # The travel of a clamp follows from its place.
-    travel = fixture["jaw_separation"] if direction is None else 0.0
-    placing = [pose["theta_deg"], pose["x"], pose["y"], travel, 1 if pair is None else fixture.get("pairs", 1)]
+    travel = 0.0 if directions else fixture["jaw_separation"]
+    placing = [pose["theta_deg"], pose["x"], pose["y"], travel, fixture.get("pairs", 1) if several else 1]
     if {type(value) for hole in holes for value in hole} != {int}:
         raise ValueError("a peg's column, row or segment is not a whole number")
     if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
@@ -150,6 +149,13 @@ def fixture_row(
     if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > LARGEST_LENGTH for value in numbers):
         raise ValueError("a length, an angle or a force is not a finite number")
     return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+
+
+def directions_of(fixture: Any) -> list[str]:
+    """The directions in which the clamps of a fixture push; none where no clamp holds the part."""
+    if fixture.get("directions") is not None:
+        return [*fixture["directions"]]
+    return [] if fixture.get("direction") is None else [str(fixture["direction"])]
 
 
 def wall_pegs(wall: Any) -> list[Any]:
@@ -213,12 +219,13 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     contact = np.take_along_axis(columns.contacts, order[:, :, None], axis=1)
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation, pairs = columns.placing.T
-    if toolkit.wall is not None:
-        face[:, ON_WALL] = faces_on_wall(query.workpiece, np.radians(theta_deg), path)
-    if toolkit.needs_pairs:
-        separation = np.stack([clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in (-2, -1)], axis=1)
-    elif toolkit.moving.on is not None:
-        separation = clamp_travel(toolkit, jaw[:, -1], hole[:, -1], contact[:, -1])
+    for ends in toolkit.ends_on_walls:
+        face[:, ends] = faces_on_wall(query.workpiece, np.radians(theta_deg), path)
+    tips = range(toolkit.peg_count - toolkit.tips, toolkit.peg_count)
+    strokes = [clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
+    travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travels]
+    # With one thing that moves there is no axis for it.
+    alone = ... if toolkit.travels > 1 else 0
     table = FixtureTable(
         arrangement=arrangement,
         column=column,
@@ -226,8 +233,8 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         face=face,
         theta=np.radians(theta_deg) % (2 * np.pi),
         position=np.stack([x, y], axis=1),
-        jaw_separation=separation.copy(),
-        force=np.ascontiguousarray(contact[:, :, 2:] if toolkit.needs_pairs else contact[:, :, 2]),
+        jaw_separation=np.stack(travels, axis=1)[:, alone].copy(),
+        force=np.ascontiguousarray(force[:, :, alone]),
         quality=columns.quality,
         pairs=pairs.astype(np.int32),
     )

@@ -93,7 +93,7 @@ def setup_step(
     InputError
         As :func:`write_setup_step`.
     """
-    if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0:
+    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0:
         raise InputError(
             f"pegs of radius 0 have no body to write to a STEP file: give the {toolkit.noun} a peg radius."
         )
@@ -125,9 +125,9 @@ def setup_step(
         named.append((clamp.tip.hole, extruded(wire(clamp.outline()), [], 0.0, thickness)))
         if clamp.hole is not None:
             bolt = peg_body(clamp.hole, seen.carriers[0].carrier.peg_radius, -plate_thickness, 0.0)
-            named.append((f"bolt {hole_name(clamp.carrier.on or '', clamp.tip.column, clamp.tip.row)}", bolt))
-    if seen.wall is not None:
-        named.append((seen.wall.carrier.noun, extruded(wire(rectangle(seen.wall.bar)), [], 0.0, thickness)))
+            named.append((f"bolt {hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)}", bolt))
+    for wall in seen.walls:
+        named.append((wall.carrier.noun, extruded(wire(rectangle(wall.bar)), [], 0.0, thickness)))
     named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen.carriers]
     named.append(("part zero X0 Y0", axes_at((zero or part_zero(workpiece)).point, fixture.pose, seen.pitch)))
     return assembly(f"{name} set-up", named)

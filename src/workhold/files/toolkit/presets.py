@@ -32,7 +32,7 @@ def preset_names() -> tuple[str, ...]:
     found = [entry.name for entry in (files("workhold") / "data" / "toolkits").iterdir() if entry.name.endswith(ENDING)]
     presets = [preset(name.removesuffix(ENDING)) for name in found]
     presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
-    presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.on is None))
+    presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.has_lattice))
     return tuple(one.name for one in presets)
 
 

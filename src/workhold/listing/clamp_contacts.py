@@ -1,0 +1,258 @@
+"""Contacts of locators with one clamp of two: what the locators take up of its force, and where it may be
+bolted.
+
+The search of each direction proves contacts of locators, or of a wall and a locator, with a clamp. A clamp
+that holds the part by itself is left out, for it needs no second one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from math import inf, tau
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define, fields
+from numpy.typing import NDArray
+
+from workhold.contact.frame import QUARTERS
+from workhold.contact.problem import ROUNDINGS, Problem
+from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
+from workhold.geometry.rotation import rotated
+from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
+from workhold.listing.canonical_form import Candidates
+from workhold.listing.clamp_placement import DIRECTION_NAMES
+from workhold.listing.placing import LOCATORS, TIP, clamp_placement
+from workhold.listing.wall_fixtures import WallFixtures
+from workhold.proof.deciding import BALLS
+from workhold.statics.wrenches import outward_normals, wrenches
+
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import CandidateBox
+
+__all__ = ["ClampContacts", "box_beside", "contacts_of_candidates", "contacts_on_wall"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# mm. Proven contacts are this near to where they are said to be.
+BESIDE = 1e-8
+
+
+@define(frozen=True, eq=False)
+class ClampContacts:
+    """M contacts of L locators and a clamp; columns and rows count from the locators' lowest, but rows from a
+    wall.
+
+    Parameters
+    ----------
+    direction : (M,) number of the clamp's.
+    feature, column, row : (M, L) of the locators, in the order of columns and rows.
+    face : (M, 3) numbers of the faces that locators touch, those on a wall last.
+    theta : (M,) orientation of the workpiece on the plate in radians.
+    point : (M, 2) a point of the part in its own coordinates, in mm.
+    start : (M, 2) the first locator's centre from that point, on the plate.
+    clamp_feature, line : (M,) of the clamp.
+    tip : (M, 2) place of the tip on the plate in mm; beside a wall along it from the locator.
+    taken : (M, 3) forces of locators and wall per unit of the clamp's on its face.
+    push : (M,) share of the clamp's own force that a unit on its face is.
+    doubt : (M,) how far ``taken`` may be off.
+    holes : (H, 2) in which clamps may be bolted, and which of them: (H,) numbers of contacts.
+    hole_of : (H,) number of the contact.
+    """
+
+    direction: IntArray
+    feature: IntArray
+    column: IntArray
+    row: IntArray
+    face: IntArray
+    theta: Array
+    point: Array
+    start: Array
+    clamp_feature: IntArray
+    line: IntArray
+    tip: Array
+    taken: Array
+    push: Array
+    doubt: Array
+    holes: IntArray
+    hole_of: IntArray
+
+    @classmethod
+    def joined(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
+        """The contacts of several directions as one."""
+        names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
+        starts = np.cumsum([0, *(len(part.theta) for part in parts)])
+        hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
+        return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names}, hole_of=hole_of)
+
+
+def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> ClampContacts:
+    """The contacts of a wall, a locator and a clamp that the search of one direction proved."""
+    found = found.listed_once()
+    found = found.take(is_one_of_two(found.null[:, :3], found.push))
+    index, hole = found.placement(problem).holes(problem, every=True)
+    kept = np.unique(index)
+    found, hole_of = found.take(kept), np.searchsorted(kept, index)
+    flush, plate, line = problem.workpiece.flush, problem.toolkit.carriers[0], found.line[hole_of]
+    height = found.row * plate.pitch[1] + plate.offset[1]
+    return ClampContacts(
+        direction=np.full(len(found), DIRECTION_NAMES.index(direction)),
+        feature=found.feature[:, :1],
+        column=np.zeros((len(found), 1), np.int64),
+        row=found.row[:, None],
+        face=np.hstack([problem.faces[found.feature[:, :1]], flush.face[found.edge]]),
+        theta=flush.theta[found.edge],
+        point=flush.ends[found.edge, 0],
+        start=np.stack([found.locator[:, 0], height], axis=1),
+        clamp_feature=found.feature[:, 1],
+        line=found.line,
+        tip=np.stack([found.tip[:, 0] - found.locator[:, 0], found.tip[:, 1]], axis=1),
+        # The wall's ends are listed after the locator.
+        taken=found.null[:, [2, 0, 1]],
+        push=found.push,
+        doubt=found.doubt,
+        holes=np.stack([hole, line] if problem.toolkit.moving.is_along_x else [line, hole], axis=1),
+        hole_of=hole_of,
+    )
+
+
+def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> ClampContacts:
+    """The contacts of three locators and a clamp that the search of one direction proved."""
+    frame = problem.frame
+    rows = problem.rows[c.feature]
+    wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
+    inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATORS], 1, 2)), np.float64)
+    taken = -(inverse @ wrench[:, TIP, :, None])[..., 0]
+    axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
+    turned = np.stack(rotated(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
+    push = (turned * wrench[:, TIP, :2]).sum(axis=1)
+    taken, push, doubt = sharpened(c, taken, push, *doubts(inverse, taken, rows, push, problem), problem)
+    column, row = frame.step_back(c.column[:, LOCATORS], c.row[:, LOCATORS])
+    lowest = np.stack([column.min(axis=1, initial=1 << 30), row.min(axis=1, initial=1 << 30)], axis=1)
+    column, row = column - lowest[:, :1], row - lowest[:, 1:]
+    placement = clamp_placement(c, problem)
+    index, hole = placement.holes(problem, every=True)
+    pitch = np.array(frame.toolkit.carriers[0].pitch)
+    cosine, sine = QUARTERS[frame.quarters]
+    along, height = placement.tip.T
+    tip = np.stack([cosine * along - sine * height, sine * along + cosine * height], axis=1) - lowest * pitch
+    across = 1 if frame.quarters % 2 == 0 else 0
+    line = np.stack(frame.step_back(np.zeros(len(along), np.int64), c.row[:, TIP]), axis=1)[:, across]
+    holes = np.stack(frame.step_back(hole, c.row[index, TIP]), axis=1) - lowest[index]
+    kept = is_one_of_two(taken, push)
+    kept[np.setdiff1d(np.arange(len(kept)), index)] = False
+    number = np.cumsum(kept) - 1
+    order = np.lexsort((row, column), axis=1)
+    feature, column, row = (
+        np.take_along_axis(values, order, axis=1)[kept] for values in (c.feature[:, LOCATORS], column, row)
+    )
+    point = np.take_along_axis(c.point[:, LOCATORS], order[:, :1, None], axis=1)[kept, 0]
+    taken = np.take_along_axis(taken, order, axis=1)[kept]
+    there = kept[index]
+    return ClampContacts(
+        direction=np.full(kept.sum(), DIRECTION_NAMES.index(direction)),
+        feature=feature,
+        column=column,
+        row=row,
+        face=problem.faces[feature],
+        theta=(c.theta[kept] + frame.quarters * np.pi / 2 + SAME_POSE) % tau - SAME_POSE,
+        point=point + np.array(problem.workpiece.center),
+        start=np.zeros((len(point), 2)),
+        clamp_feature=c.feature[kept, TIP],
+        line=(line - lowest[:, across])[kept],
+        tip=tip[kept],
+        taken=taken,
+        push=push[kept],
+        doubt=doubt[kept],
+        holes=holes[there],
+        hole_of=number[index[there]],
+    )
+
+
+def sharpened(
+    c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
+) -> tuple[Array, Array, Array]:
+    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts, told by balls where doubles leave
+    forces in doubt.
+
+    Parameters
+    ----------
+    push_off, doubt : (N,) how far pushes and forces may be off.
+    """
+    from workhold.proof.clamp_reactions import sharp_reactions
+
+    taken, push, doubt = taken.copy(), push.copy(), doubt.copy()
+    # Per unit of the clamp's own force, as parts of one and the largest force.
+    most = np.abs(taken).max(axis=1, initial=0.0)
+    off = (doubt + most * push_off / push) / (push + most) + push_off / push
+    chosen = np.flatnonzero(off > FORCES_OFF).tolist()
+    with BALLS if chosen else nullcontext():
+        for k in chosen:
+            sharp = sharp_reactions(box_of(c, k, problem), problem.limits)
+            if sharp is not None:
+                taken[k], push[k], doubt[k] = sharp.taken, sharp.push, sharp.doubt
+    return taken, push, doubt
+
+
+def box_of(c: Candidates, number: int, problem: Problem) -> CandidateBox:
+    """A contact of three locators and a clamp in the frame of the search."""
+    column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
+    x, y = (column[LOCATORS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
+    separation = float(x.max() + c.gap[number])
+    offsets = list(zip([*x.tolist(), 0.0], y.tolist(), strict=True))
+    middle = -float(c.theta[number]), *c.point[number, 0].tolist(), separation
+    return box_beside(c.feature[number].tolist(), offsets, middle, problem)
+
+
+def box_beside(
+    features: Sequence[int],
+    offsets: Sequence[tuple[float, float]],
+    middle: tuple[float, float, float, float],
+    problem: Problem,
+) -> CandidateBox:
+    """A box about a proven contact of three locators and a clamp, as drawn, see
+    ``proof.interval_newton.CandidateBox``."""
+    from flint import ctx
+
+    from workhold.proof.exact_rows import exact_rows
+    from workhold.proof.interval_newton import PRECISIONS, CandidateBox
+
+    frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)
+    radii = [frame.standing.peg_radius] * TIP + [frame.moving.peg_radius]
+    with ctx.workprec(PRECISIONS[-1]):
+        rows = exact_rows(features, radii, problem)
+    return CandidateBox(rows, offsets, TIP, middle, reach)
+
+
+def is_one_of_two(taken: Array, push: Array) -> BoolArray:
+    """Which clamps (N,) may be one of two: those that do not hold the part alone, and press no locator with
+    more than ``MOST_FORCE`` times their own force.
+
+    Parameters
+    ----------
+    taken : (N, 3) forces of the locators per unit of that on the clamp's face.
+    push : (N,) force of the clamp per unit of that on its face.
+    """
+    needs_another = taken.min(axis=1, initial=inf) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
+    return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))
+
+
+def doubts(inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem) -> tuple[Array, Array]:
+    """How far clamps' pushes (N,) and forces of the locators (N, 3) may be off by the rounding of places and
+    products.
+
+    A polished place is off by the inverse of the contact equations times their rounding, and a tip along its
+    line by that over its push; by so much over its radius a normal is turned, and by so much over L moments
+    are off. First-order, and doubled.
+    """
+    size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length
+    norm = np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
+    curved = 1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)
+    off = 4.0 * norm * (ROUNDINGS * size + problem.backward_error)
+    swing = 2.5 * off * (curved[:, TIP] / push + 1.0 / problem.wrench_length) + ROUNDINGS
+    wrench = off * (2.5 * curved.max(axis=1) + 2.5 / problem.wrench_length) + ROUNDINGS
+    at_tip = np.maximum(wrench, swing + 2.5 * off / (push * problem.wrench_length))
+    return swing, 2.0 * norm * (at_tip + wrench * np.abs(taken).sum(axis=1))

@@ -1,0 +1,135 @@
+"""Where a clamp is bolted: in a hole of its line, behind its tip.
+
+A clamp slides along a line of the plate's own holes. With a travel it is bolted in the nearest hole behind
+its tip from which its body, a capsule from the hole to the tip, clears locators and part, and that is still
+on the plate. Without a travel the clamp is its tip alone, which has no hole.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import BODY_SLACK, GAP_SLACK
+from workhold.fixels.directions import DIRECTIONS
+from workhold.geometry.rotation import rotated
+from workhold.kernels.base.capsule import piece_distances
+from workhold.model.toolkit import Carrier, Travel
+
+__all__ = ["DIRECTION_NAMES", "FAR", "OPENING", "ClampPlacement", "is_upright", "last_holes"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Farther than any hole.
+FAR = 1 << 30
+# Clamps are listed in this order of directions; unit vectors along which the travel of each is counted.
+DIRECTION_NAMES = tuple(DIRECTIONS)
+OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
+
+
+def is_upright(direction: IntArray) -> BoolArray:
+    """Which directions, by their numbers, are along columns."""
+    return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
+
+
+def last_holes(plate: Carrier) -> tuple[float, float]:
+    """The most columns and rows that holes of a plate are apart; infinite where it has no end."""
+    columns, rows = (inf if count is None else count - 1.0 for count in (plate.columns, plate.rows))
+    return columns, rows
+
+
+@frozen(eq=False)
+class ClampPlacement:
+    """The clamps of N fixtures, in a frame whose axes the lines of holes follow; lengths in mm.
+
+    Parameters
+    ----------
+    clamp : the carrier that slides, for its radius and its travel.
+    axis, back : 0 where it slides along x and 1 along y, and the sign of the way in which it opens.
+    tip, locators : (N, 2) and (N, K, 2) centres.
+    place : (N,) where tips are along their lines, from hole 0.
+    pitch : distance of holes along the lines.
+    first, last : (N,) the lowest and the highest hole that the plate has.
+    fits : (N,) whether the plate has the locators' holes and the lines.
+    seen : (N, 2) tips in the part's frame, about its centre.
+    theta : (N,) orientations of the part in radians.
+    """
+
+    clamp: Carrier
+    axis: int
+    back: int
+    tip: Array
+    locators: Array
+    place: Array
+    pitch: float
+    first: Array
+    last: Array
+    fits: BoolArray
+    seen: Array
+    theta: Array
+
+    def nearest(self, problem: Problem) -> tuple[IntArray, BoolArray]:
+        """The nearest hole (N,) of each clamp, 0 without a travel, and whether (N,) there is one that will
+        do."""
+        index, number = self.holes(problem, every=False)
+        hole, fits = np.zeros(len(self.tip), np.int64), np.zeros(len(self.tip), np.bool_)
+        hole[index], fits[index] = number, True
+        return hole, fits
+
+    def holes(self, problem: Problem, every: bool) -> tuple[IntArray, IntArray]:
+        """The holes in which clamps may be bolted.
+
+        Parameters
+        ----------
+        every : all holes of a clamp, the nearest first, or the nearest alone.
+
+        Returns
+        -------
+        numbers (M,) of fixtures, in order; numbers (M,) of holes on their lines, 0 without a travel
+        """
+        travel, waiting = self.clamp.travel, np.flatnonzero(self.fits)
+        assert travel is not None
+        if travel.most is None:
+            waiting = waiting[self.is_clear(waiting, np.zeros(len(waiting)), problem)]
+            return waiting, np.zeros(len(waiting), np.int64)
+        # Travel grows as a clamp opens, so from its hole to its tip it is below zero.
+        nearest = np.ceil((self.back * self.place - travel.most - GAP_SLACK) / self.pitch).astype(np.int64)
+        found = [np.zeros((2, 0), np.int64)]
+        for step in range(int((travel.most - travel.least) / self.pitch) + 2):
+            number = (nearest[waiting] + step) * self.back
+            stroke = self.back * (number * self.pitch - self.place[waiting])
+            there = (self.first[waiting] <= number) & (number <= self.last[waiting])
+            near = np.flatnonzero(there & (stroke <= -travel.least + GAP_SLACK))
+            chosen = waiting[near]
+            good = self.is_clear(chosen, stroke[near], problem)
+            found.append(np.stack([chosen[good], number[near][good]]))
+            waiting = waiting if every else np.setdiff1d(waiting, chosen[good], assume_unique=True)
+        index, numbers = np.concatenate(found, axis=1)
+        order = np.argsort(index, kind="stable")
+        return index[order], numbers[order]
+
+    def is_clear(self, index: IntArray, stroke: Array, problem: Problem) -> BoolArray:
+        """Which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear locators
+        and part."""
+        radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))
+        behind[:, self.axis] = self.back * stroke
+        one, other = self.tip[index], self.tip[index] + behind
+        low, high = (ends[:, None] for ends in (np.minimum(one, other), np.maximum(one, other)))
+        beside = self.locators[index] - np.clip(self.locators[index], low, high)
+        least = problem.frame.standing.peg_radius + radius - GAP_SLACK
+        clear = np.asarray((np.hypot(beside[..., 0], beside[..., 1]) >= least).all(axis=1))
+        chosen = np.flatnonzero(clear & (stroke > 0.0))
+        if len(chosen):
+            starts = self.seen[index[chosen]]
+            x, y = behind[chosen].T
+            ends = starts + np.stack(rotated(x, y, -self.theta[index[chosen]]), axis=1)
+            distances = np.empty(len(chosen))
+            piece_distances(starts, ends, problem.outline, distances)
+            clear[chosen] = distances >= radius - BODY_SLACK
+        return clear

@@ -1,0 +1,220 @@
+"""Seats with two clamps: the pairs of clamps that close together and not alone, counted, and the best pair of
+each seat."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import SAME_POSE
+from workhold.geometry.rotation import rotated
+from workhold.kernels.contact.clamp_pairs import (
+    CLAMPS,
+    COUNT,
+    DIRECTION,
+    DOUBT,
+    FREEDOM,
+    HOLES,
+    KIND,
+    LINE,
+    MARGIN,
+    OPEN,
+    PUSH,
+    SEAT,
+    TAKEN,
+    TIP,
+    Hardware,
+    pairs_of,
+)
+from workhold.listing.clamp_contacts import box_beside
+from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_upright, last_holes
+from workhold.listing.listed import Work
+from workhold.listing.ranked_table import RankedTable
+from workhold.listing.seats import Seats
+from workhold.model.plate import Plate
+from workhold.model.proof import AT_AN_EDGE, Undecided
+from workhold.model.quality import CLAMP_FREEDOM
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.toolkit import Toolkit
+from workhold.proof.deciding import BALLS, Account
+
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import CandidateBox
+
+__all__ = ["ClampedSeats", "undecided_pairs"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@define(eq=False)
+class ClampedSeats:
+    """The fixtures with two clamps found so far, or the best of them.
+
+    Parameters
+    ----------
+    query : what is asked, in a toolkit with two clamps.
+    problem : the search of one of its directions, for what all have in common.
+    looked_at, seats, pairs : how many seats there were; how many, by pair of directions, two clamps close; in
+        how many ways.
+    """
+
+    query: Query
+    problem: Problem
+    toolkit: Plate = field(init=False)
+    hardware: Hardware = field(init=False)
+    ranked: RankedTable = field(init=False)
+    looked_at: int = field(default=0, init=False)
+    seats: int = field(default=0, init=False)
+    pairs: int = field(default=0, init=False)
+    undecided: list[Undecided] = field(factory=list, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        toolkit = self.query.toolkit
+        assert isinstance(toolkit, Plate)
+        self.toolkit, self.ranked = toolkit, RankedTable(self.query, self.problem)
+        kinds = np.full((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), -1, np.int64)
+        for number, pair in enumerate(toolkit.distinct_pairs):
+            kinds[DIRECTION_NAMES.index(pair[0]), DIRECTION_NAMES.index(pair[1])] = number
+        last_column, last_row = last_holes(toolkit.carriers[0])
+        in_holes = self.problem.toolkit.moving.has_a_hole
+        self.hardware = Hardware(kinds, 2 * toolkit.clamp_radius, last_column, last_row, in_holes)
+
+    def __len__(self) -> int:
+        return len(self.ranked)
+
+    @property
+    def turns_half(self) -> bool:
+        """Whether half a turn of everything leaves the toolkit as it is."""
+        return self.toolkit.wall is None
+
+    def add(self, seats: Seats) -> None:
+        """Pair the clamps of further seats."""
+        self.looked_at += len(seats)
+        # Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
+        # paired.
+        half = ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
+        every = self.query.listing == "all"
+        rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        if self.turns_half and (rows[:, OPEN] != 0.0).any():
+            seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
+            rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        is_open = rows[:, OPEN] != 0.0
+        self.undecided += undecided_pairs(self.table_of(rows[is_open], seats), self.toolkit)
+        rows = rows[~is_open]
+        self.pairs += int(rows[:, COUNT].sum())
+        self.seats += len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
+        self.ranked.add(self.table_of(rows, seats))
+
+    def sharpened(self, seats: Seats, rows: Array) -> Seats:
+        """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
+        from workhold.proof.clamp_reactions import sharp_reactions
+
+        reals = seats.clamps.reals.copy()
+        with BALLS:
+            for seat, clamp in sorted({(int(row[SEAT]), int(row[CLAMPS + k])) for row in rows for k in range(2)}):
+                sharp = sharp_reactions(self.box(seats, seat, clamp), self.problem.limits)
+                if sharp is not None:
+                    reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
+        return evolve(seats, clamps=seats.clamps._replace(reals=reals))
+
+    def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
+        """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along
+        x."""
+        pitch, integers = np.array(self.toolkit.pitch), seats.clamps.integers[clamp]
+        carrier = self.toolkit.carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
+        assert carrier.travel is not None
+        cosine, sine = carrier.travel.unit
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        holes = np.stack([seats.column[seat], seats.row[seat]], axis=1) * pitch
+        places, tip = (holes - holes[0]) @ turn.T, turn @ (seats.clamps.reals[clamp, TIP : TIP + 2] - holes[0])
+        x, y = (seats.point[seat] - self.problem.workpiece.center).tolist()
+        features = [*seats.feature[seat], seats.clamp_feature[clamp]]
+        offsets = [*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))]
+        middle = carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])
+        return box_beside(features, offsets, middle, self.problem)
+
+    def table_of(self, rows: Array, seats: Seats) -> FixtureTable:
+        """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are
+        known."""
+        seat, clamp = rows[:, SEAT].astype(np.int64), rows[:, [CLAMPS, CLAMPS + 1]].astype(np.int64)
+        direction, reals = seats.clamps.integers[clamp, DIRECTION], seats.clamps.reals[clamp]
+        plate, (column, row, lowest) = self.toolkit.carriers[0], self.holes_of(rows, seats)
+        at = np.stack([column, row], axis=2) * np.array(plate.pitch) + np.array(plate.offset)
+        tip = reals[..., TIP : TIP + 2] - (lowest * np.array(plate.pitch))[:, None]
+        push, force = reals[..., PUSH], np.zeros((len(rows), 5, 2))
+        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / push[..., None], 1, 2)
+        force[:, 3, 0], force[:, 4, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
+        quality = unknown_quality(rows[:, MARGIN])
+        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
+        theta, point = seats.theta[seat], seats.point[seat]
+        face = np.hstack([seats.face[seat], self.problem.faces[seats.clamp_feature[clamp]]])
+        return FixtureTable(
+            arrangement=rows[:, KIND].astype(np.int8),
+            column=column.astype(np.int32),
+            row=row.astype(np.int32),
+            face=face.astype(np.int32),
+            theta=theta,
+            position=at[:, 0] - seats.start[seat] - np.stack(rotated(point[:, 0], point[:, 1], theta), axis=1),
+            jaw_separation=((tip - at[:, 3:]) * OPENING[direction]).sum(axis=2),
+            force=force,
+            quality=quality,
+            pairs=rows[:, COUNT].astype(np.int32),
+        )
+
+    def holes_of(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
+        """Columns and rows (N, 5) of pairs (N, 10), and the lowest of each (N, 2) as seats and clamps count
+        them."""
+        seat, clamp, bolted = (
+            rows[:, columns].astype(np.int64) for columns in (SEAT, [CLAMPS, CLAMPS + 1], [HOLES, HOLES + 1])
+        )
+        direction, line = (seats.clamps.integers[clamp, number] for number in (DIRECTION, LINE))
+        upright, hole = is_upright(direction), seats.clamps.holes[bolted, :2].astype(np.int64)
+        if not self.hardware.bolted:
+            hole = np.full_like(hole, FAR)
+        locators, clamps = (
+            (seats.column[seat], seats.row[seat]),
+            (
+                np.where(upright, line, hole[..., 0]),
+                np.where(upright, hole[..., 1], line),
+            ),
+        )
+        lowest = np.stack(
+            [np.minimum(*(v.min(axis=1) for v in pair)) for pair in zip(locators, clamps, strict=True)], axis=1
+        )
+        # Rows count from a wall, whose ends are listed after the locator.
+        lowest[:, 1] *= self.turns_half
+        ends = np.zeros((len(rows), 3 - seats.column.shape[1]), np.int64)
+        column, row = (
+            np.hstack([standing - first, ends, np.where(moving == FAR, 0, moving - first)])
+            for standing, moving, first in zip(locators, clamps, lowest.T[..., None], strict=True)
+        )
+        return column, row, lowest
+
+    def result(self, account: Account, work: Work) -> Result:
+        """The result of all."""
+        account = evolve(account, undecided=(*account.undecided, *self.undecided))
+        return evolve(self.ranked.result(account, work), pairs=self.pairs, seats=self.seats)
+
+
+def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
+    """Pairs of which it is not decided whether they close, for the account."""
+    columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
+    return [
+        Undecided(toolkit.arrangements[kind].title, tuple(face), tuple(column), tuple(row), angle, AT_AN_EDGE, 0.0)
+        for kind, face, column, row, angle in zip(*(values.tolist() for values in columns), strict=True)
+    ]
+
+
+def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
+    """The height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2, 2)
+    leads to."""
+    upright = bool(is_upright(integers[DIRECTION]))
+    away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
+    return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))

@@ -1,0 +1,204 @@
+"""When two fixtures are the same, and how many sets they form under the rotations of a part onto itself.
+
+A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched. Faces are
+left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that a rotation of
+the part, or half a turn of the toolkit, carries into each other share the smallest of their images, which stands
+for the set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import SAME_IMAGE, SAME_POSE
+from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
+from workhold.listing.canonical_form import changes, clusters, packed
+from workhold.model.result import FixtureTable
+from workhold.model.toolkit import Arrangement, Toolkit
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["Identity", "SetCount", "identity_order"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Columns and rows from the lowest of a fixture are fewer than this, lines as many to either side.
+MOST_HOLES = (1 << 20) - 1
+
+
+@frozen(eq=False)
+class Identity:
+    """What names the fixtures of a toolkit that hold a part.
+
+    Parameters
+    ----------
+    toolkit, part : what holds, and what is held.
+    every : whether each choice of clamps is a fixture; else one stands for all of its directions.
+    rotations : those of the part onto itself, the identity first.
+    """
+
+    toolkit: Toolkit
+    part: Workpiece
+    every: bool = True
+    rotations: tuple[Rotation, ...] = field(init=False)
+
+    @rotations.default
+    def onto_itself(self) -> tuple[Rotation, ...]:
+        """The rotations of the part onto itself."""
+        return tuple(rotations_onto_itself([face.segment for face in self.part.faces]))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether a fixture need not be a set of its own."""
+        return len(self.rotations) > 1
+
+    def smallest(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
+        """The smallest images of fixtures under the rotations: packed whole numbers (N,), and orientations and places
+        (N, P)."""
+        x, y = self.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+        forms = [self.form(table, x, y, sign) for sign in (1, -1)]
+        halves = np.array([turns_into_itself(one, self.toolkit) for one in self.toolkit.arrangements])[
+            table.arrangement
+        ]
+        period = np.where(halves, np.pi, 2.0 * np.pi)
+        kept = np.array(centroid_of_joints([face.segment for face in self.part.faces]))
+        after = [table.theta - rotation.angle + SAME_POSE for rotation in self.rotations]
+        least = np.min([theta % period for theta in after], axis=0)
+        words, pose = list[IntArray](), np.zeros((0, 0))
+        for rotation, theta in zip(self.rotations, after, strict=True):
+            # Only the images of the least orientation can be the smallest.
+            chosen = np.flatnonzero(theta % period <= least + SAME_POSE)
+            turned = halves & (theta % (2.0 * np.pi) >= np.pi)
+            numbers = [np.where(turned, two, one)[chosen] for one, two in zip(forms[0][0], forms[1][0], strict=True)]
+            anchor, ahead = (
+                np.where(turned[:, None], two, one)[chosen] for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
+            )
+            (u, v), back = (anchor - table.position[chosen]).T, -table.theta[chosen]
+            seen = rotated(u, v, back)
+            place = rotated(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
+            image = np.column_stack([(theta % period)[chosen] - SAME_POSE, *place, ahead])
+            if not words:
+                words = [np.full(len(table), np.iinfo(np.int64).max) for _ in numbers]
+                pose = np.full((len(table), image.shape[1]), np.inf)
+            better = precedes(numbers, image, [word[chosen] for word in words], pose[chosen])
+            pose[chosen[better]] = image[better]
+            for word, number in zip(words, numbers, strict=True):
+                word[chosen[better]] = number[better]
+        return words, pose
+
+    def form(self, table: FixtureTable, x: Array, y: Array, sign: int) -> tuple[list[IntArray], Array, Array]:
+        """What names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the first peg, and how far
+        (N, M) ahead of it what moves is.
+
+        Parameters
+        ----------
+        x, y : (N, K) places of pegs in mm.
+        sign : -1 for fixtures after half a turn of everything, which turns the order of pegs round, else 1.
+        """
+        carriers, on = self.toolkit.carriers, self.toolkit.peg_carriers(table.arrangement)
+        pegs = [carriers[number] for number in self.toolkit.arrangements[0].carriers][::sign]
+        # Whole numbers of pegs: of those in holes of their own, of clamps, and of what moves.
+        places = np.arange(len(pegs))[::sign]
+        clamps = places[[peg.on is not None for peg in pegs]]
+        own = places[[peg.on is None and not peg.is_wall for peg in pegs]]
+        movers = clamps if len(clamps) else own[-1:]
+        column, row = sign * table.column.astype(np.int64), sign * table.row.astype(np.int64)
+        each = [np.where(on[:, own] == k, column[:, own], MOST_HOLES).min(axis=1) for k in range(len(carriers))]
+        first, lowest = np.stack(each, axis=1), row[:, own].min(axis=1, keepdims=True)
+        numbers = [
+            (table.arrangement[:, None], len(self.toolkit.arrangements)),
+            (column[:, own] - np.take_along_axis(first, on[:, own], axis=1), MOST_HOLES),
+            (row[:, own] - lowest, MOST_HOLES),
+        ]
+        along_y = np.array([carrier.travel is not None and not carrier.is_along_x for carrier in carriers])
+        upright = along_y[on[:, movers]]
+        if self.every:
+            # A clamp is named by its line; jaws have holes of their own.
+            line = np.where(upright, column[:, movers] - first[:, :1], row[:, movers] - lowest)
+            numbers.append((line[:, : len(clamps)] + MOST_HOLES, 2 * MOST_HOLES + 1))
+        away = np.where(upright, y[:, movers] - y[:, own[:1]], x[:, movers] - x[:, own[:1]])
+        anchor = np.stack([x[:, own[0]], y[:, own[0]]], axis=1)
+        return packed(*numbers), anchor, sign * away[:, : None if self.every else 0]
+
+    def count(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
+        """How many sets of each arrangement (A,) there are among fixtures with these smallest images, of arrangements
+        (N,)."""
+        order = np.lexsort(words[::-1])
+        fresh = changes([word[order] for word in words])
+        order, fresh = clusters(order, fresh, *((numbers, SAME_IMAGE) for numbers in pose.T))
+        return np.bincount(arrangement[order[fresh]], minlength=len(self.toolkit.arrangements))
+
+
+def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
+    """Whether half a turn of everything makes an arrangement the same again: with as many pegs on either jaw, or with two
+    clamps in opposite directions, unless a wall stays where it is."""
+    ways = [
+        toolkit.carriers[number].travel for number in arrangement.carriers if toolkit.carriers[number].on is not None
+    ]
+    if not ways:
+        swaps = any(one.half_turns % 2 and one.carriers == (1, 0) for one in toolkit.symmetries)
+        return swaps and arrangement.pegs == arrangement.pegs[::-1]
+    units = np.array([way.unit for way in ways if way is not None])
+    return toolkit.wall is None and len(units) == 2 and not units.sum(axis=0).any()
+
+
+def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array) -> BoolArray:
+    """Which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic order."""
+    before = np.zeros(len(pose), np.bool_)
+    for one, other in zip(pose.T[::-1], other_pose.T[::-1], strict=True):
+        before = (one < other - SAME_IMAGE) | ((one <= other + SAME_IMAGE) & before)
+    for word, other_word in zip(reversed(words), reversed(others), strict=True):
+        before = (word < other_word) | ((word == other_word) & before)
+    return before
+
+
+@define(eq=False)
+class SetCount:
+    """How many fixtures there are, and how many sets they form, as they come.
+
+    Parameters
+    ----------
+    identity : what names them.
+    found : (A,) fixtures of each arrangement so far.
+    """
+
+    identity: Identity
+    found: IntArray = field(init=False)
+    images: list[tuple[NDArray[np.generic], ...]] = field(factory=list, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.found = np.zeros(len(self.identity.toolkit.arrangements), np.int64)
+
+    def add(self, table: FixtureTable) -> None:
+        """Count further fixtures."""
+        self.found += np.bincount(table.arrangement, minlength=len(self.found))
+        if self.identity.is_symmetric and len(table):
+            words, pose = self.identity.smallest(table)
+            self.images.append((table.arrangement, pose, *words))
+
+    @property
+    def distinct(self) -> IntArray:
+        """Sets (A,) of each arrangement so far."""
+        if not self.images:
+            return self.found
+        arrangement, pose, *words = (np.concatenate(values) for values in zip(*self.images, strict=True))
+        return self.identity.count(words, pose, arrangement)
+
+    def by_type(self, counts: IntArray) -> dict[str, int]:
+        """Counts (A,) of arrangements, summed by their names."""
+        toolkit = self.identity.toolkit
+        each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
+        return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}
+
+
+def identity_order(table: FixtureTable) -> NDArray[np.intp]:
+    """The order of fixtures by type, holes, orientation, faces and place."""
+    place = table.position @ np.array([1.0, 0.7548776662])
+    columns = [*table.column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
+    return np.lexsort([*reversed(columns), table.arrangement])

@@ -1,0 +1,204 @@
+"""Fixtures of a part that lies flush on a wall, with a locator and a clamp: each once, in the holes of the
+plate.
+
+Rows count from the wall, so a clamp is bolted in none below row 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import define, evolve, field, fields
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import SAME_PLACE
+from workhold.geometry.rotation import rotated
+from workhold.listing.clamp_placement import ClampPlacement, last_holes
+from workhold.listing.listed import Work
+from workhold.listing.ranked_table import RankedTable
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.proof.deciding import Account
+
+__all__ = ["WallCollector", "WallFixtures", "placed_on_wall", "wall_table"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Fixtures that wait to be listed and measured together.
+WAITING = 1 << 14
+
+
+@define(frozen=True, eq=False)
+class WallFixtures:
+    """N pairs of locator and clamp that press the part against the wall.
+
+    Places are in the wall's frame, in mm: u along the hull edge from its start, v up from it.
+
+    Parameters
+    ----------
+    edge : (N,) number of the hull edge that lies on the wall.
+    row, line : (N,) row of the locator; row of the clamp, or its column counted from the locator's.
+    locator, tip : (N, 2) centres.
+    feature : (N, 2) touched by locator and clamp.
+    null : (N, 4) null vectors of the wall's two ends, locator and clamp, not scaled.
+    push : (N,) part of its force that the clamp passes on along its direction.
+    doubt : (N,) by how much entries of the null vector may be off, where that matters: of one of two clamps.
+    """
+
+    edge: IntArray
+    row: IntArray
+    line: IntArray
+    locator: Array
+    tip: Array
+    feature: IntArray
+    null: Array
+    push: Array
+    doubt: Array = field()
+
+    @doubt.default
+    def none(self) -> Array:
+        """No doubt."""
+        return np.zeros(len(self.edge))
+
+    def __len__(self) -> int:
+        return len(self.edge)
+
+    def take(self, order: NDArray[np.int64] | BoolArray) -> WallFixtures:
+        """The fixtures of an index array or mask, in its order."""
+        return WallFixtures(*(getattr(self, one.name)[order] for one in fields(WallFixtures)))
+
+    @classmethod
+    def joined(cls, parts: list[WallFixtures]) -> WallFixtures:
+        """All fixtures of several, at least one."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(WallFixtures)))
+
+    def listed_once(self) -> WallFixtures:
+        """One of the fixtures that are the same: a contact at a tangent joint is found on both features that
+        meet there."""
+        # One number that mixes all places tells them apart, as in ``canonical_form.listed_once``.
+        place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
+        columns = (self.edge, self.row, self.line)
+        order = np.lexsort([place, *columns[::-1]])
+        new = np.ones(len(order), np.bool_)
+        new[1:] = np.diff(place[order]) > SAME_PLACE
+        new[1:] |= np.any([np.diff(values[order]) != 0 for values in columns], axis=0)
+        run = np.cumsum(new)
+        best = np.lexsort([self.feature[order, 1], self.feature[order, 0], run])
+        return self.take(order[best[np.diff(run[best], prepend=0) > 0]])
+
+    def placement(self, problem: Problem) -> ClampPlacement:
+        """Where the clamps may be bolted; columns count from the locator's."""
+        plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
+        assert clamp.travel is not None
+        columns, rows = last_holes(plate)
+        along_x, theta, count = clamp.is_along_x, flush.theta[self.edge], len(self)
+        axis = 0 if along_x else 1
+        on_line = (self.line <= rows) if along_x else (np.abs(self.line) <= columns)
+        return ClampPlacement(
+            clamp,
+            axis,
+            back=int(clamp.travel.unit[axis]),
+            tip=self.tip,
+            locators=self.locator[:, None],
+            place=self.tip[:, 0] - self.locator[:, 0] if along_x else self.tip[:, 1] - plate.offset[1],
+            pitch=plate.pitch[axis],
+            first=np.full(count, -columns if along_x else 0.0),
+            last=np.full(count, columns if along_x else rows),
+            fits=on_line & (self.row <= rows),
+            seen=flush.ends[self.edge, 0] - np.array(problem.workpiece.center) + turned(self.tip, -theta),
+            theta=theta,
+        )
+
+
+def turned(points: Array, angle: Array) -> Array:
+    """Points (N, 2) turned by angles (N,)."""
+    return np.stack(rotated(points[:, 0], points[:, 1], angle), axis=1)
+
+
+def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
+    """The table of fixtures whose clamps are in these holes (N,); of their quality only the closure margin is
+    known yet."""
+    clamp, flush, count = problem.toolkit.moving, problem.workpiece.flush, len(found)
+    column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
+    row[:, 0] = found.row
+    column[:, 3], row[:, 3] = (hole, found.line) if clamp.is_along_x else (found.line, hole)
+    # The lowest column is 0; where the clamp has no hole, its place is counted from there.
+    column[:, [0, 3]] -= np.minimum(column[:, [0]], column[:, [3]])
+    if clamp.is_along_x and not clamp.has_a_hole:
+        column[:, 3] = 0
+    across = column[:, 0] * clamp.pitch[0] - found.locator[:, 0]
+    theta = flush.theta[found.edge]
+    position = np.stack([across, np.zeros(count)], axis=1) - turned(flush.ends[found.edge, 0], theta)
+    x, y = clamp.place(column[:, 3], row[:, 3])
+    unit = clamp.travel.unit if clamp.travel is not None else (0.0, 0.0)
+    # The locator is listed before the ends of the wall, the clamp after them.
+    null = found.null[:, [2, 0, 1, 3]]
+    share = null / null.sum(axis=1, keepdims=True)
+    touched = problem.faces[found.feature]
+    face = np.concatenate([touched[:, :1], flush.face[found.edge], touched[:, 1:]], axis=1)
+    return FixtureTable(
+        arrangement=np.zeros(count, np.int8),
+        column=column,
+        row=row,
+        face=face.astype(np.int32),
+        theta=theta,
+        position=position,
+        jaw_separation=(found.tip[:, 0] + across - x) * unit[0] + (found.tip[:, 1] - y) * unit[1],
+        force=share / (share[:, 3] * found.push)[:, None],
+        quality=unknown_quality(share.min(axis=1, initial=1.0)),
+    )
+
+
+def placed_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
+    """The table of the fixtures whose clamps have a place, each once."""
+    found = found.listed_once()
+    hole, fits = found.placement(problem).nearest(problem)
+    return wall_table(found.take(fits), hole[fits], problem)
+
+
+@define(eq=False)
+class WallCollector:
+    """The fixtures of a wall with one clamp found so far, or the best of them.
+
+    Parameters
+    ----------
+    query : what is asked.
+    problems : the searches of all directions of the clamp.
+    waiting : fixtures of each direction that are not listed yet.
+    """
+
+    query: Query
+    problems: Sequence[Problem]
+    ranked: RankedTable = field(init=False)
+    waiting: list[list[WallFixtures]] = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.ranked = RankedTable(self.query, self.problems[0])
+        self.waiting = [[] for _ in self.problems]
+
+    def __len__(self) -> int:
+        return len(self.ranked) + sum(len(part) for parts in self.waiting for part in parts)
+
+    def add(self, found: Sequence[WallFixtures | None]) -> None:
+        """Take the fixtures of each direction, where there are some."""
+        for parts, part in zip(self.waiting, found, strict=True):
+            parts += [] if part is None else [part]
+        if sum(len(part) for parts in self.waiting for part in parts) > WAITING:
+            self.list_waiting()
+
+    def list_waiting(self) -> None:
+        """List what waits."""
+        for number, (parts, problem) in enumerate(zip(self.waiting, self.problems, strict=True)):
+            if parts:
+                table = placed_on_wall(WallFixtures.joined(parts), problem)
+                self.ranked.add(evolve(table, arrangement=table.arrangement + np.int8(number)))
+                parts.clear()
+
+    def result(self, account: Account, work: Work) -> Result:
+        """The result of all."""
+        self.list_waiting()
+        return self.ranked.result(account, work)

@@ -1,0 +1,208 @@
+"""What the contacts of a fixture stand on: a lattice of holes, a clamp on a line of holes, or a straight wall.
+
+A carrier is data, and it answers in words and places what drawings, files and sheets need of it.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import Any, Literal
+
+from attrs import frozen
+
+from workhold.fixels.directions import TOWARDS
+from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
+from workhold.model.flat import Flat
+from workhold.model.holes import Holes, column_letters, hole_name, letter_of
+
+__all__ = ["Carrier", "Measure", "Travel"]
+
+# What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of its tip.
+Measure = Literal["opening", "stroke", "tip"]
+
+
+@frozen
+class Travel:
+    """The freedom of a carrier that slides along a line.
+
+    Parameters
+    ----------
+    direction : angle in radians of the line along which travel is counted, from the x axis.
+    least, most : smallest and largest travel in mm; -inf and None where there is none.
+    """
+
+    direction: float
+    least: float
+    most: float | None
+
+    @property
+    def unit(self) -> tuple[float, float]:
+        """The unit vector of the direction; exact along the axes."""
+        return round(cos(self.direction), 15), round(sin(self.direction), 15)
+
+
+@frozen
+class Carrier:
+    """What contacts stand on: a lattice of holes for pegs, a clamp, or a wall.
+
+    Parameters
+    ----------
+    name : such as "left"; its first letter names its holes.
+    pitch : distance in mm between neighbouring columns and rows.
+    columns, rows : of holes, or None for as many as needed.
+    peg_radius : of its pegs in mm.
+    body_radius : of the thickest part of its pegs in mm, below the workpiece.
+    offset : place in mm of the hole in column 0 and row 0 without any travel.
+    blocked : holes and columns that no peg can stand in.
+    travel : how it slides; None when it stands still.
+    noun : what it is called, such as "jaw".
+    peg : what each of its pegs is called, such as "locator".
+    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
+    is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
+    flat : of its pegs, which lies on straight faces; None where they are round.
+    """
+
+    name: str
+    pitch: tuple[float, float]
+    columns: int | None
+    rows: int | None
+    peg_radius: float
+    body_radius: float
+    offset: tuple[float, float] = (0.0, 0.0)
+    blocked: tuple[Holes, ...] = ()
+    travel: Travel | None = None
+    noun: str = "carrier"
+    peg: str = "peg"
+    on: str | None = None
+    is_wall: bool = False
+    flat: Flat | None = None
+
+    @property
+    def least_standoff(self) -> float:
+        """Distance in mm from a face to the centre of a peg that touches it, at least."""
+        return self.peg_radius if self.flat is None else self.flat.distance
+
+    @property
+    def title(self) -> str:
+        """What it is called, such as "left jaw"."""
+        return self.name if self.noun in self.name else f"{self.name} {self.noun}"
+
+    @property
+    def column_count(self) -> int:
+        """The number of columns, of a carrier that has an end; in the frame of a search every one has."""
+        assert self.columns is not None
+        return self.columns
+
+    @property
+    def contact(self) -> ContactKind:
+        """The kind of contact that what stands on it makes with the part."""
+        if self.is_wall:
+            return WALL_END
+        if self.on is not None:
+            return CLAMP_TIP
+        return ROUND_PIN if self.flat is None else FLAT_PIN
+
+    @property
+    def stands_on(self) -> str:
+        """The name of the carrier in whose holes what stands on it is, its own or the one that it is bolted to."""
+        return self.on or self.name
+
+    @property
+    def has_lattice(self) -> bool:
+        """Whether it is a plate with holes of its own, rather than a wall or a clamp that is bolted to a plate."""
+        return self.contact in (ROUND_PIN, FLAT_PIN)
+
+    @property
+    def is_along_x(self) -> bool:
+        """Whether it slides along its rows."""
+        return self.travel is not None and self.travel.unit[0] != 0.0
+
+    @property
+    def line(self) -> Literal["row", "column"]:
+        """What a clamp pushes along."""
+        return "row" if self.is_along_x else "column"
+
+    @property
+    def direction(self) -> str:
+        """In which a clamp pushes, as files name it, such as "-x"."""
+        return self.name.rpartition(" ")[2]
+
+    @property
+    def towards(self) -> str:
+        """Which way a clamp pushes, in words, on a plan whose y runs up; nothing of what is named for no direction."""
+        return TOWARDS.get(self.direction, "")
+
+    @property
+    def pushers(self) -> str:
+        """What pushes the part as it moves: such jaws together, or a clamp."""
+        return f"{self.noun}s" if self.has_lattice else self.noun
+
+    @property
+    def measure(self) -> Measure:
+        """What is set on it where it moves."""
+        if self.contact is CLAMP_TIP:
+            return "stroke" if self.has_a_hole else "tip"
+        return "opening"
+
+    @property
+    def has_a_hole(self) -> bool:
+        """Whether what stands on it is in a hole: not so of a clamp of which only the line is told."""
+        return self.on is None or self.travel is None or self.travel.most is not None
+
+    @property
+    def counted(self) -> tuple[bool, bool]:
+        """Whether the column of what stands on it says where that is, and whether the row does."""
+        if not self.contact.is_placed:
+            return False, False
+        return self.has_a_hole or not self.is_along_x, self.has_a_hole or self.is_along_x
+
+    @property
+    def written_as(self) -> tuple[str, str]:
+        """How files name what stands on it: by its carrier where there are several lattices, else by its role."""
+        return (self.noun, self.name) if self.has_lattice and self.letter else ("role", self.contact.role)
+
+    def place_name(self, column: int, row: int) -> str:
+        """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.
+
+        >>> from workhold import Plate
+        >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
+        >>> clamp.place_name(0, 2)
+        'clamp row 3'
+        """
+        if self.is_wall:
+            return self.noun
+        if self.on is None:
+            return hole_name(self.name, column, row)
+        if self.has_a_hole:
+            return f"{self.noun} {hole_name(self.on, column, row)}"
+        return f"{self.noun} row {row + 1}" if self.is_along_x else f"{self.noun} column {column_letters(column)}"
+
+    @property
+    def letter(self) -> str:
+        """What the names of its holes begin with."""
+        return letter_of(self.name)
+
+    def is_blocked(self, column: int, row: int) -> bool:
+        """Whether no peg can stand in a hole."""
+        return not {Holes(self.name, column), Holes(self.name, column, row)}.isdisjoint(self.blocked)
+
+    def place(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
+        """Centre of a hole in mm, or of many: numbers or arrays of them.
+
+        Parameters
+        ----------
+        column, row : of the hole, counted from 0.
+        travelled : how far the carrier has slid, in mm; of no account for one that stands still.
+
+        Examples
+        --------
+        >>> from workhold import Vise
+        >>> right = Vise(pitch=10, columns=2, peg_radius=3).carriers[1]
+        >>> right.place(1, 2, travelled=14.5)
+        (34.5, 20.0)
+        """
+        x, y = self.offset[0] + column * self.pitch[0], self.offset[1] + row * self.pitch[1]
+        if self.travel is None:
+            return x, y
+        along, across = self.travel.unit
+        return x + travelled * along, y + travelled * across

@@ -1,0 +1,227 @@
+"""Constructors of toolkits, made from their tables of fields, and what every constructor refuses.
+
+A kind names its fields by annotations alone. What each takes, what stands for nothing given, what it must be at least and
+which limit it sets are in its row of ``fixels.fields``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from itertools import product
+from math import inf, isfinite, isnan
+from typing import Any, TypeVar
+
+from attrs import NOTHING, field, frozen
+from attrs.converters import optional
+
+from workhold.errors import InputError
+from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.fields import ToolkitField
+from workhold.limits import MOST_BLOCKED, refuse_long
+from workhold.model.flat import flat_of, resolved_flat
+from workhold.model.holes import Holes, holes_named
+from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
+from workhold.model.real import real
+from workhold.model.toolkit import Toolkit
+
+__all__ = ["made_from_table", "settle"]
+
+Kind = TypeVar("Kind", bound=type[Toolkit])
+
+# What the bounds of a length are called, by the least that it may be.
+BOUNDS = {
+    "above 0": "is not a positive length: give it in mm",
+    "0": "is not a length: give 0 or more, in mm",
+    "any": "is not a length: give it in mm",
+}
+
+
+def made_from_table(kind: Kind) -> Kind:
+    """Make a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
+
+    Raises
+    ------
+    KeyError
+        For an annotation without a row.
+    """
+    rows = {row.name: row for row in kind.table.fields}
+    names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
+    these = {name: attribute_of(rows[name], inherits=kind.__base__ is not Toolkit) for name in names}
+    return frozen(these=these)(kind)
+
+
+def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:
+    """Return the attribute of a field; what is needed beside inherited fields is given by name alone."""
+    by_name = row.form == "flat" or inherits
+    default = NOTHING if row.is_required else row.default
+    return field(default=default, converter=converter_of(row), kw_only=by_name)
+
+
+def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
+    """Return what a field's values are taken with; values that cannot be are refused when all are known."""
+    match row.form:
+        case "length" if row.follows:
+            return optional_length
+        case "length":
+            return real if row.is_required or row.default is not None else optional(real)
+        case "holes":
+            return partial(all_holes, carriers=row.carriers, noun=row.carrier_noun)
+        case form:
+            return CONVERTERS[form]
+
+
+def all_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: str) -> tuple[Holes, ...]:
+    """Return holes as a tuple, where they may be given by name."""
+    return tuple(holes_named(one, carriers, noun) if isinstance(one, str) else one for one in holes)
+
+
+def least_and_most(value: Iterable[float] | None) -> tuple[float, float] | None:
+    """Return the least and the most that a clamp stretches, or None.
+
+    Raises
+    ------
+    InputError
+        For anything but two lengths.
+    """
+    if value is None:
+        return None
+    numbers = tuple(value) if isinstance(value, Iterable) else (value,)
+    if len(numbers) != 2:
+        raise InputError(
+            f"travel {value} is not two lengths: give the least and the most that the clamp stretches, in mm."
+        )
+    return real(numbers[0]), real(numbers[1])
+
+
+def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
+    """Return directions in the order in which they are listed, or pairs of them; none for None, which a kind resolves.
+
+    Raises
+    ------
+    InputError
+        For what is no direction, and no pair where there are pairs.
+    """
+    if value is None:
+        return ()
+    names = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
+    if not names:
+        raise InputError(f"there is no direction for the clamp: choose among {', '.join(DIRECTIONS)}.")
+    if any(isinstance(name, str) for name in names):
+        for name in names:
+            refuse_direction(name)
+        return tuple(name for name in DIRECTIONS if name in names)
+    pairs = [tuple(one) if isinstance(one, Iterable) else (one,) for one in names]
+    for two in pairs:
+        if len(two) != 2:
+            raise InputError(f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y').")
+        for name in two:
+            refuse_direction(name)
+    every = product(DIRECTIONS, repeat=2)
+    return tuple(one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs})
+
+
+def refuse_direction(name: Any) -> None:
+    """Refuse what is no direction of a clamp.
+
+    Raises
+    ------
+    InputError
+        Naming those that are.
+    """
+    if not isinstance(name, str) or name not in DIRECTIONS:
+        raise InputError(f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}.")
+
+
+CONVERTERS: dict[str, Callable[[Any], Any]] = {
+    "count": whole,
+    "pitch": pair,
+    "span": least_and_most,
+    "flat": flat_of,
+    "directions": direction_names,
+}
+
+
+def settle(toolkit: Any, *, noun: str, peg: str) -> None:
+    """Put in what follows from other fields, and refuse values that cannot be.
+
+    Parameters
+    ----------
+    toolkit : whose fields are converted; values that follow from others are put into it.
+    noun, peg : what a lattice of it and what stands in its holes are called.
+
+    Raises
+    ------
+    InputError
+        Naming the value and the remedy.
+    """
+    rows = toolkit.table.fields
+    for row in rows:
+        value = getattr(toolkit, row.name)
+        if row.form == "length" and row.follows and isnan(value):
+            object.__setattr__(toolkit, row.name, toolkit.followed(row))
+        if row.form == "count" and row.allowed and value not in row.allowed:
+            few = " or ".join(map(str, row.allowed))
+            raise InputError(f"{row.words} {value} cannot be: a {toolkit.noun} has {few}.")
+    refuse_lattice(toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, noun, peg)
+    for row in rows:
+        refuse_out_of_bounds(toolkit, row)
+    refuse_many_holes(toolkit.columns, toolkit.rows, noun)
+    for row in rows:
+        if row.form == "holes":
+            refuse_blocked(toolkit, row)
+
+
+def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
+    """Refuse a value below what it must be at least, or too large to reckon with.
+
+    Raises
+    ------
+    InputError
+        Naming the value and the bound.
+    """
+    value = getattr(toolkit, row.name)
+    match row.form:
+        case "length" if value is not None:
+            is_low = value <= 0 if row.least == "above 0" else value < 0 and row.least == "0"
+            if not isfinite(value) or is_low:
+                raise InputError(f"{row.words} {value} {BOUNDS[row.least]}.")
+            least = getattr(toolkit, row.at_least) if row.at_least else -inf
+            if value < least:
+                raise InputError(row.below.format(value=value, least=least))
+            refuse_long(row.words, value)
+        case "span" if value is not None:
+            if not 0 <= value[0] <= value[1] < inf:
+                raise InputError(
+                    f"{row.words} {value[0]:g} to {value[1]:g} is none that a clamp has: give the least and the most "
+                    "from its hole to its tip, in mm."
+                )
+            refuse_long(row.words, value[1])
+        case "pitch":
+            refuse_long(row.words, max(value))
+        case "flat":
+            object.__setattr__(toolkit, row.name, resolved_flat(value, toolkit.peg_radius))
+
+
+def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
+    """Refuse blocked holes that a toolkit does not have, too many of them, and a carrier without a free hole.
+
+    Raises
+    ------
+    InputError
+        Naming the hole or the carrier.
+    """
+    blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
+    if len(blocked) > MOST_BLOCKED:
+        raise InputError(
+            f"{len(blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block whole "
+            "columns, such as L-B."
+        )
+    for holes in blocked:
+        if holes.column >= columns:
+            raise InputError(f"hole {holes.name} is blocked, but each {noun} has only {columns} columns.")
+        if rows is not None and holes.row is not None and holes.row >= rows:
+            raise InputError(f"hole {holes.name} is blocked, but each {noun} has only {rows} rows.")
+    for carrier in row.carriers:
+        if len({holes.column for holes in blocked if holes.carrier == carrier and holes.row is None}) == columns:
+            raise InputError(f"every column of the {carrier} {noun} is blocked: leave at least one.")

@@ -1,0 +1,283 @@
+"""Why no contacts on a lattice make a fixture: every simultaneous contact is asked which rule it breaks first.
+
+The rules are asked one after the other, as a person would: what the user ruled out, whether four pegs can touch at all,
+contact margin, smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts as computed, in
+plain numbers; the proof that there is no fixture is the search's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from attrs import define, evolve
+from numpy.typing import NDArray
+
+from workhold.contact.features import end_distances
+from workhold.contact.frame import Frame
+from workhold.contact.problem import Problem
+from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.geometry.rotation import rotated
+from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
+from workhold.kernels.contact import record
+from workhold.limits import thread_count
+from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
+from workhold.listing.placing import placeable, placed
+from workhold.model.explanation import NearestMiss, Removal
+from workhold.model.restrictions import Restrictions
+from workhold.model.result import fixture_at
+from workhold.model.toolkit import Toolkit
+from workhold.model.units import Unit
+from workhold.proof.deciding import is_standing
+from workhold.search.cells import run_blocks
+from workhold.search.contacts import contacts_of
+from workhold.search.removals import SECOND_CLAMP, Removals
+from workhold.search.toolkit_search import ToolkitSearch
+from workhold.statics.wrenches import outward_normals
+
+__all__ = ["all_contacts", "removals_of"]
+
+Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+# Contacts kept from each block of the search; far more than a part without a fixture has.
+MOST_LISTED = 5_000
+# Pegs this near in x, in mm, are even.
+EVEN = 1e-6
+# Where something is that lies along +x of a frame so many quarter turns on.
+BESIDE = ("to the right of", "above", "to the left of", "below")
+# A contact misses closure by this much at most to be called near.
+ROUNDING = 1e-12
+
+
+@define(frozen=True, eq=False)
+class Contacts:
+    """N sets of four simultaneous contacts and what the rules ask of them.
+
+    Parameters
+    ----------
+    candidates : the contacts, as fixtures would be.
+    margin : (N,) smallest entry of the null vector of sum of sizes 1, of the sign that makes it largest.
+    null : (N, 4) that null vector.
+    clamping : (N,) the clamping force for it.
+    end_distance : (N,) smallest distance in mm to the end of a feature, as the contact margin counts it.
+    """
+
+    candidates: Candidates
+    margin: Array
+    null: Array
+    clamping: Array
+    end_distance: Array
+
+    def take(self, chosen: BoolArray) -> Contacts:
+        """Some of them."""
+        rest = (values[chosen] for values in (self.margin, self.null, self.clamping, self.end_distance))
+        return Contacts(self.candidates.take(chosen), *rest)
+
+
+def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
+    """How many contacts there are without any restriction, what each rule takes away of them, and what comes nearest.
+
+    Parameters
+    ----------
+    alone : whether one clamp is to hold the part; of two the contacts are those of three locators and one of them. None
+        comes nearest, as each is a clamp short.
+    """
+    contacts = all_contacts(problem, threads)
+    first, removals = restriction_removals(problem, threads, len(contacts.margin))
+    if not alone:
+        return Removals(first, [*removals, Removal(SECOND_CLAMP, len(contacts.margin), 0)], None)
+    nearest = None
+    for rule, keeps, miss in rules(problem, unit):
+        if len(contacts.margin) == 0:
+            break
+        kept = keeps(contacts)
+        removals.append(Removal(rule, len(kept), int(kept.sum())))
+        if not kept.any():
+            nearest = nearest_miss(contacts, miss(contacts), problem)
+        contacts = contacts.take(kept)
+    return Removals(first, removals, nearest)
+
+
+def all_contacts(problem: Problem, threads: int | None) -> Contacts:
+    """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
+    workers = thread_count(threads)
+    search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
+    records, _ = run_blocks(search.blocks(problem.query.arrangements), workers, None, None)
+    swapped = search.frame.swapped
+    together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
+    together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
+    c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
+    rows = problem.rows[c.feature]
+    normals = outward_normals(rows, c.point)
+    # All entries are -1 where the wrenches do not span the space.
+    spans = (c.null > -1.0).any(axis=1)
+    null = c.null * np.where(c.null.min(axis=1) >= -c.null.max(axis=1), 1.0, -1.0)[:, None]
+    along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
+    return Contacts(
+        evolve(c, force=null),
+        margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
+        null=null,
+        clamping=-problem.toolkit.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
+        end_distance=(end_distances(rows, c.point) + rows[..., LOW_SLACK : HIGH_SLACK + 1] - END_SLACK).min(
+            axis=(1, 2), initial=np.inf
+        ),
+    )
+
+
+def facing(c: Candidates, swapped: int) -> Candidates:
+    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those whose moving
+    pegs are farther right in the middle.
+
+    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
+    lower one is taken for the right one.
+    """
+    across, upward = rotated(c.point[..., 0], c.point[..., 1], c.theta[:, None])
+    right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
+    return c.take((c.standing != swapped) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
+
+
+def restriction_removals(problem: Problem, threads: int | None, left: int) -> tuple[int, list[Removal]]:
+    """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
+
+    Parameters
+    ----------
+    left : contacts that keep all restrictions.
+    """
+    toolkit, asked = problem.toolkit, problem.restrictions
+    holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
+    bodies = [limit for limit in toolkit.limits if limit.bounds == "bodies"]
+    free = toolkit.without([*holes, *bodies])
+    steps: list[tuple[str, Restrictions, Toolkit]] = []
+    if asked.avoid:
+        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free))
+    if asked.zones:
+        # What stands over a zone is a peg's body.
+        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), toolkit.without(holes)))
+    if holes or bodies:
+        steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit))
+    if asked.angles:
+        steps.append(("angles of the part", asked, toolkit))
+
+    def count(restrictions: Restrictions, held_in: Toolkit) -> int:
+        asked = evolve(problem.query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
+        return contacts_of(Problem.of(asked), threads)
+
+    first = before = max(count(Restrictions(), free), left) if steps else left
+    removals = []
+    for rule, restrictions, held_in in steps:
+        after = left if rule == steps[-1][0] else min(max(count(restrictions, held_in), left), before)
+        removals.append(Removal(rule, before, after))
+        before = after
+    return first, removals
+
+
+Rule = tuple[str, Callable[[Contacts], BoolArray], Callable[[Contacts], tuple[int, str]]]
+
+
+def rules(problem: Problem, unit: Unit) -> list[Rule]:
+    """The rules in the order they are asked: words, which contacts keep it, and which broken one comes nearest and why."""
+    margin, frame = problem.contact_margin, problem.frame
+    out: list[Rule] = []
+    if margin > 0.0:
+        out.append(
+            ("contact margin", lambda c: c.end_distance >= margin - END_SLACK, partial(short_of_margin, margin, unit))
+        )
+    if frame.toolkit.gap is not None:
+        out.append(
+            ("smallest gap", lambda c: c.candidates.gap >= frame.gap - GAP_SLACK, partial(too_near, frame, unit))
+        )
+    out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
+    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, frame)))
+    return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
+
+
+def placing_rules(problem: Problem) -> list[Rule]:
+    """The rules about where fixtures stand on the carriers, as far as the toolkit and the user have any.
+
+    The angles come after the pegs' bodies, and each rule is asked together with those before it.
+    """
+    toolkit, asked = problem.toolkit, problem.restrictions
+    limits = toolkit.limits
+    first = sum(limit.bounds == "bodies" for limit in limits)
+    out: list[Rule] = []
+
+    def rule(words: str, kept: int, restrictions: Restrictions) -> None:
+        query = evolve(problem.query, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
+        part = evolve(problem, query=query)
+        keeps = partial(no_place, toolkit.noun, words)
+        out.append((words, lambda c: placeable(c.candidates, part), keeps))
+
+    if problem.frame.moving.on is not None:
+        rule("locators clear of the clamp", 0, Restrictions())
+    for number, limit in enumerate(limits):
+        if number == first and asked.angles:
+            rule("angles of the part", first, asked)
+        rule(limit.rule, number + 1, asked if number >= first else Restrictions())
+    if first == len(limits) and asked.angles:
+        rule("angles of the part", first, asked)
+    return out
+
+
+def no_contact(contacts: Contacts) -> BoolArray:
+    """None of the contacts."""
+    return np.zeros(len(contacts.margin), np.bool_)
+
+
+def short_of_margin(margin: float, unit: Unit, c: Contacts) -> tuple[int, str]:
+    """The contact whose pegs are farthest from the ends of their faces."""
+    index = int(c.end_distance.argmax())
+    return index, (
+        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; the contact margin is "
+        f"{unit.figure(margin)} {unit.abbreviation}."
+    )
+
+
+def too_near(frame: Frame, unit: Unit, c: Contacts) -> tuple[int, str]:
+    """The contact whose moving pegs are farthest along the travel from the others."""
+    index = int(c.candidates.gap.argmax())
+    gap = c.candidates.gap[index]
+    beyond = BESIDE[frame.quarters if gap >= 0 else (frame.quarters + 2) % 4]
+    least = f"{unit.figure(frame.gap)} {unit.abbreviation}"
+    return index, (
+        f"the {frame.moving.name} pegs would stand {unit.text(abs(gap))} {beyond} the {frame.standing.name} ones; the "
+        f"smallest gap is {least}."
+    )
+
+
+def open_contact(c: Contacts) -> tuple[int, str]:
+    """The contact that comes nearest to force closure."""
+    index = int(c.margin.argmax())
+    if c.margin[index] > -ROUNDING:
+        return (
+            index,
+            "the lines of force of the pegs meet in one point or are parallel, so one peg would not press at all.",
+        )
+    pulls = int((c.null[index] < 0).sum())
+    many = "one peg" if pulls == 1 else f"{pulls} pegs"
+    return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
+
+
+def unclamped(frame: Frame, c: Contacts) -> tuple[int, str]:
+    """The contact that comes nearest to being clamped."""
+    return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
+
+
+def no_place(noun: str, words: str, c: Contacts) -> tuple[int, str]:
+    """The best of what cannot be placed."""
+    return int(c.margin.argmax()), f"it would hold, but what was asked for of the {noun} forbids it: {words}."
+
+
+def on_the_edge(c: Contacts) -> tuple[int, str]:
+    """The best of what the exact test removes."""
+    return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
+
+
+def nearest_miss(contacts: Contacts, miss: tuple[int, str], problem: Problem) -> NearestMiss:
+    """A contact that is no fixture, placed in a toolkit without limits."""
+    index, words = miss
+    toolkit = problem.toolkit.without(problem.toolkit.limits)
+    part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
+    table = placed(contacts.candidates.take(np.array([index])), part)
+    return NearestMiss(fixture_at(table, toolkit, 0, problem.workpiece), words)

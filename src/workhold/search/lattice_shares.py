@@ -1,0 +1,138 @@
+"""The search for two clamps on a lattice, in shares: the seats of one range of orientations after the other.
+
+Three locators alone fix the pose, and both clamps follow in closed form; so the contacts of three locators
+and one clamp that the search of each direction proves, not asked to close, are all that pairs are made of.
+Ranges keep no more than the seats of one of them in memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from math import degrees, tau
+from threading import Event
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem, Progress
+from workhold.conventions import SAME_POSE
+from workhold.kernels.crossing.two_and_two import CANDIDATES
+from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
+from workhold.listing.clamp_contacts import contacts_of_candidates
+from workhold.listing.clamped_seats import ClampedSeats
+from workhold.listing.finish import Batches
+from workhold.listing.listed import Work, stage
+from workhold.listing.placing import at_angle
+from workhold.listing.seats import Seats, seats_of
+from workhold.listing.ways import summed
+from workhold.model.notes import no_pair_note
+from workhold.model.query import Query
+from workhold.proof.deciding import Account, Course, decided
+from workhold.search.cells import Block, run_blocks
+from workhold.search.shares import one_clamp
+from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
+
+__all__ = ["LatticeShares"]
+
+Array = NDArray[np.float64]
+
+# Blocks of one direction's search that are worked on before seats are made of what they found, and most such
+# ranges.
+BLOCKS_TOGETHER, MOST_RANGES = 48, 256
+# Of a range few cells are searched, which the threads are to share.
+BLOCKS_PER_HALF_TURN = 2 * LEAST_BLOCKS
+# Radians beside a range that are searched as well, so that a seat on its edge is found whole from either
+# side.
+OVERLAP = 10 * SAME_POSE
+
+
+@define(eq=False)
+class LatticeShares:
+    """Ranges of orientation, see ``search.shares.Locating``.
+
+    Parameters
+    ----------
+    searches : of each direction of the clamp, for contacts that need not close.
+    collector : takes the seats.
+    whole_turn : blocks of each search that find everything.
+    pool : of so many threads.
+    cancel : when set, the search stops soon.
+    """
+
+    searches: Sequence[ToolkitSearch]
+    collector: ClampedSeats
+    whole_turn: Sequence[list[Block]]
+    pool: Executor
+    threads: int
+    cancel: Event | None
+    accounts: list[Account] = field(factory=list, init=False)
+    cells: int = field(default=0, init=False)
+
+    @classmethod
+    @contextmanager
+    def of(cls, query: Query, threads: int, cancel: Event | None) -> Iterator[LatticeShares]:
+        """The shares of a query with two clamps, with threads for as long as the context lasts."""
+        problems = [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
+        searches = [ToolkitSearch.of(problem, threads=threads, cancel=cancel) for problem in problems]
+        blocks = [search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN) for search in searches]
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            yield cls(searches, ClampedSeats(query, searches[0].problem), blocks, pool, threads, cancel)
+
+    @property
+    def shares(self) -> int:
+        """How many ranges there are."""
+        return min(max(max(map(len, self.whole_turn)) // BLOCKS_TOGETHER, 1), MOST_RANGES)
+
+    def look(self, share: int, progress: Progress | None) -> tuple[Seats, bool]:
+        """The seats of a range."""
+        low, high = (np.linspace(0.0, tau, self.shares + 1) - SAME_POSE)[share : share + 2].tolist()
+        within, parts, is_whole = (degrees(low - OVERLAP), degrees(high + OVERLAP)), [], True
+        for place, search in enumerate(self.searches):
+            part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
+            blocks = self.whole_turn[place]
+            if self.shares > 1:
+                blocks = search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, within)
+            records, done = run_blocks(
+                blocks, self.threads, counting(part, len(self.collector)), self.cancel, stop=search.stop, pool=self.pool
+            )
+            self.cells += sum(block.cells for block in done)
+            is_whole = is_whole and len(done) == len(blocks)
+            direction = search.frame.toolkit.arrangements[0].direction or ""
+            parts.append(contacts_of_candidates(self.proven(records, search.problem), search.problem, direction))
+        return seats_of(parts, self.searches[0].problem, (low, high)), is_whole
+
+    def proven(self, records: Sequence[Array], problem: Problem) -> Candidates:
+        """Contacts of three locators and a clamp that are proven, each once."""
+        course, batches = Course(sum(map(len, records)), cancel=self.cancel), Batches()
+        blocks = [*(block for array in records for block in batches.add(array)), batches.rest()]
+
+        def work(block: Array) -> tuple[Candidates, Account]:
+            proven, account = decided(block, problem, course)
+            candidates = canonical_form(candidates_of(proven, problem), 0)
+            return candidates.take(at_angle(candidates.theta, problem.restrictions.angles, problem.frame)), account
+
+        parts, accounts = zip(*self.pool.map(work, blocks), strict=True)
+        self.accounts += accounts
+        return listed_once(joined(list(parts)))
+
+    def account(self) -> Account:
+        """What became of all contacts so far."""
+        return Account.together(self.accounts)
+
+    def work(self, done: int, complete: bool) -> Work:
+        """How the search went."""
+        examined = int(sum(search.totals[CANDIDATES] for search in self.searches))
+        statistics = summed(search.statistics for search in self.searches)
+        return Work(complete and self.account().left == 0, statistics, self.cells, examined)
+
+    def why_none(self) -> str:
+        """Why a search that came to its end has no fixture."""
+        return no_pair_note(self.collector.looked_at, self.account().verified)
+
+
+def counting(progress: Progress | None, found: int) -> Progress | None:
+    """A progress that reports so many fixtures."""
+    return None if progress is None else lambda fraction, _: progress(fraction, found)

@@ -1,0 +1,230 @@
+"""Where round pegs on straight lines touch a part that lies flush on a wall, in closed form and with bounds of the error.
+
+In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. The lines are rows, of one v
+each, or columns, of one u each; every one meets a straight feature in one point at most and an arc in two.
+
+Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn`` radians, and of
+sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off by ``off`` over the sine of the
+angle at which its line meets the feature, and its normal by ``turn`` and, on an arc, by that over the radius; the factors
+below are generous. Where a line only grazes an arc there is no bound, and the contact is decided in balls.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import define, fields, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import LOOSE, PARALLEL
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SIGN,
+    X,
+    Y,
+)
+
+__all__ = ["PartOnWall", "PinContacts", "part_on_wall", "pin_contacts_on"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Half a unit in the last place of a double.
+ROUNDING = 1.2e-16
+# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line does not graze
+# the arc, its place is off by less.
+PAST_END = 1e-4
+# Pairs of lines and features looked at together.
+TOGETHER = 1 << 19
+
+
+@frozen(eq=False)
+class PartOnWall:
+    """Features of a part that lies on a hull edge.
+
+    Parameters
+    ----------
+    rows : (F, 12) kernel rows in the wall's frame.
+    length : of the hull edge, in mm.
+    turn : by how many radians its direction may be off.
+    off : by how many mm lengths may be off.
+    """
+
+    rows: Array
+    length: float
+    turn: float
+    off: float
+
+
+def part_on_wall(rows: Array, start: Array, end: Array) -> PartOnWall:
+    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same point."""
+    step = end - start
+    length = float(np.hypot(*step))
+    (tx, ty), out = step / length, rows.copy()
+    dx, dy = rows[:, X] - start[0], rows[:, Y] - start[1]
+    out[:, X], out[:, Y] = dx * tx + dy * ty, dy * tx - dx * ty
+    out[:, AXIS_X] = rows[:, AXIS_X] * tx + rows[:, AXIS_Y] * ty
+    out[:, AXIS_Y] = rows[:, AXIS_Y] * tx - rows[:, AXIS_X] * ty
+    size = float(np.abs(out[:, [X, Y, RADIUS]]).max(initial=length) + np.abs([start, end]).max())
+    turn = 8 * ROUNDING * (1.0 + size / length)
+    return PartOnWall(out, length, turn, 16 * ROUNDING * size + turn * size)
+
+
+@define(frozen=True, eq=False)
+class PinContacts:
+    """M contacts of pegs on lines.
+
+    Parameters
+    ----------
+    line : (M,) index of the line.
+    feature : (M,) index of the feature touched.
+    point : (M, 2) centre of the peg, u and v in mm.
+    normal : (M, 2) outward unit normal there.
+    slack : (M,) how far in mm it is from breaking the rule of ends, infinite on a whole circle.
+    reach, swing : (M,) by how many mm and radians place and normal may be off.
+    branch : (M,) -1 or 1 for the lower or the upper of the two points of an arc, 1 on a straight feature.
+    """
+
+    line: IntArray
+    feature: IntArray
+    point: Array
+    normal: Array
+    slack: Array
+    reach: Array
+    swing: Array
+    branch: Array
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> PinContacts:
+        """The contacts of an index array or mask, in its order."""
+        return PinContacts(*(getattr(self, one.name)[order] for one in fields(PinContacts)))
+
+    @classmethod
+    def joined(cls, parts: list[PinContacts]) -> PinContacts:
+        """All contacts of several."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(PinContacts)))
+
+
+def pin_contacts_on(
+    lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
+) -> PinContacts:
+    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a tangent joint with
+    both features that meet there.
+
+    Parameters
+    ----------
+    chosen : first and past-the-last number of the features.
+    levels : (K,) v of rows, or u of columns if ``upright``, in mm.
+    margin : smallest distance in mm from the end of a feature.
+    """
+    first, last = chosen
+    rows = lying.rows[first:last]
+    along, across = ((Y, X) if upright else (X, Y)), ((AXIS_Y, AXIS_X) if upright else (AXIS_X, AXIS_Y))
+    together = max(TOGETHER // max(len(rows), 1), 1)
+    parts = []
+    for start in range(0, max(len(levels), 1), together):
+        some = levels[start : start + together]
+        for part in (on_lines(lying, rows, some, along, across), on_arcs(lying, rows, some, along, across)):
+            inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
+            kept = part if inside.all() else part.take(inside)
+            parts.append(PinContacts(kept.line + start, kept.feature + first, *tail(kept)))
+    return PinContacts.joined(parts)
+
+
+def tail(places: PinContacts) -> tuple[Array, ...]:
+    """All but the lines and features of contacts."""
+    return tuple(getattr(places, one.name) for one in fields(PinContacts))[2:]
+
+
+def on_lines(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
+    """Contacts with straight features; those parallel to the lines have none."""
+    straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
+    some = rows[straight]
+    rises = np.abs(some[:, across[1]])
+    # Most pairs of a line and a feature are far from each other: the bound below solved for s, generously.
+    farthest = 1.01 * (some[:, HALF_EXTENT] + 4.0 * lying.off / rises + LOOSE)
+    farthest[4.0 * lying.turn > 0.009 * rises] = np.inf
+    line, which = np.nonzero(np.abs(levels[:, None] - some[:, along[1]]) <= farthest * rises)
+    s = (levels[line] - some[which, along[1]]) / some[which, across[1]]
+    reach = 4.0 * (lying.off + lying.turn * np.abs(s)) / rises[which]
+    near = np.abs(s) <= some[which, HALF_EXTENT] + (reach + LOOSE)
+    line, which, s, reach = line[near], which[near], s[near], reach[near]
+    part = some.T[:, which]
+    point = np.stack([part[X] + s * part[AXIS_X], part[Y] + s * part[AXIS_Y]], axis=1)
+    slack = np.minimum(part[HALF_EXTENT] - s + part[HIGH_SLACK], part[HALF_EXTENT] + s + part[LOW_SLACK])
+    normal = np.stack([part[AXIS_Y], -part[AXIS_X]], axis=1)
+    turned = np.full(len(s), 2.0 * lying.turn)
+    return PinContacts(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
+
+
+def on_arcs(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
+    """Contacts with arcs."""
+    round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
+    some = rows[round_]
+    radius, place = some[:, RADIUS], some[:, along[1]]
+    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than both roots.
+    # Its normal is across the line to within its swing, so no contact there is told to press, but by balls.
+    least = 16.0 * lying.off * radius
+    low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
+    line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
+    up = levels[line] - place[which]
+    met = np.abs(up) <= radius[which] + 2.0 * lying.off
+    line, which, up = line[met], which[met], up[met]
+    part = some.T[:, which]
+    half = np.sqrt(np.maximum((part[RADIUS] - up) * (part[RADIUS] + up), 0.0))
+    grazing = ~(half * half > least[which])
+    one, other = part[across[0]] * half, part[across[1]] * up
+    ahead = np.stack([other - one, other + one], axis=1)
+    chosen, side = np.nonzero(grazing[:, None] | (ahead >= least_ahead(some)[which][:, None]))
+    line, which = line[chosen], which[chosen]
+    up, half, grazing = up[chosen], half[chosen], grazing[chosen]
+    part, branch = part[:, chosen], np.array([-1.0, 1.0])[side]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = 4.0 * lying.off * part[RADIUS] / half
+    reach[grazing] = half[grazing] + np.sqrt(2.0 * least[which[grazing]])
+    ray = np.empty((len(up), 2))
+    upright = along[0] == Y
+    ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
+    angle = np.arctan2(
+        part[AXIS_X] * ray[:, 1] - part[AXIS_Y] * ray[:, 0], part[AXIS_X] * ray[:, 0] + part[AXIS_Y] * ray[:, 1]
+    )
+    slack = np.minimum(
+        (part[HALF_EXTENT] - angle) * part[RADIUS] + part[HIGH_SLACK],
+        (part[HALF_EXTENT] + angle) * part[RADIUS] + part[LOW_SLACK],
+    )
+    slack[part[HALF_EXTENT] >= np.pi] = np.inf
+    normal = part[SIGN][:, None] * ray / part[RADIUS][:, None]
+    swing = 2.0 * (lying.turn + (reach + lying.off) / part[RADIUS])
+    point = np.stack([part[X] + ray[:, 0], part[Y] + ray[:, 1]], axis=1)
+    return PinContacts(line, round_[which], point, normal, slack, reach, swing, branch)
+
+
+def half_angles(rows: Array) -> Array:
+    """Half angles (F,) in radians of arcs (F, 12), and of what lies not far past their ends."""
+    past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
+    return np.asarray(np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi))
+
+
+def least_ahead(rows: Array) -> Array:
+    """By how many mm (F,) contacts lie along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
+    angle = half_angles(rows)
+    return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
+
+
+def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
+    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not far past the
+    ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the coordinate and along it."""
+    turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
+    low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
+    return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare

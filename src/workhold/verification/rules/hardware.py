@@ -1,0 +1,360 @@
+"""The rules of a toolkit, put together as its carriers say, and those about its holes.
+
+A carrier is asked what it is: whether it stands still or slides, has holes of its own or is bolted in one, or is a wall. Of
+two clamps, where one pair stands for all of its seat, fixtures of one seat and pair of directions are the same.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import combinations
+from math import hypot
+
+from attrs import evolve, field, frozen
+from flint import arb
+
+from workhold.errors import InputError
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
+from workhold.model.toolkit import Carrier, Toolkit
+from workhold.verification.balls import Point, exact_point
+from workhold.verification.contacts import Contact, Pose, standoff
+from workhold.verification.findings import Finding, number, rule
+from workhold.verification.outline import Outline
+from workhold.verification.rules.jaws import nearest_row_findings, opening_findings
+from workhold.verification.rules.stroke import (
+    WAYS,
+    Stroke,
+    clamp_place,
+    direction_of,
+    directions_of,
+    is_along_x,
+    line_of,
+    travelled,
+)
+from workhold.verification.rules.wall import WallContact, flush_findings, wall_contacts
+from workhold.verification.sides import Side
+from workhold.verification.tolerances import AGREEMENT
+
+__all__ = ["Hardware"]
+
+NUMBERS = ("no", "one", "two", "three", "four")
+
+
+@frozen
+class Hardware:
+    """The rules of a toolkit.
+
+    Parameters
+    ----------
+    toolkit : what is judged by them.
+    every : whether all pairs of clamps of a seat are listed; else one pair stands for them.
+    """
+
+    toolkit: Toolkit
+    every: bool = field(default=False, kw_only=True)
+
+    @classmethod
+    def of(cls, query: Query) -> Hardware:
+        """The rules of the toolkit of a query, and how it lists pairs of clamps."""
+        return cls(query.toolkit, every=query.listing == "all")
+
+    @cached_property
+    def carriers(self) -> dict[str, Carrier]:
+        """What pegs stand on, by name."""
+        return {one.name: one for one in self.toolkit.carriers}
+
+    @cached_property
+    def lattices(self) -> list[Carrier]:
+        """The carriers with holes of their own, those that stand still first."""
+        return [one for one in self.carriers.values() if one.on is None and not one.is_wall]
+
+    @cached_property
+    def tips(self) -> dict[str, Carrier]:
+        """The clamps by the directions in which they push."""
+        return {one.name.rpartition(" ")[2]: one for one in self.carriers.values() if one.on is not None}
+
+    @cached_property
+    def wall(self) -> Carrier | None:
+        """The wall that the part lies flush on."""
+        return next((one for one in self.carriers.values() if one.is_wall), None)
+
+    @cached_property
+    def groups(self) -> list[tuple[Carrier, int]]:
+        """What the pegs of a fixture stand on, and how many, of the arrangement that is first."""
+        counts = zip(self.carriers.values(), self.toolkit.arrangements[0].pegs, strict=True)
+        return [(carrier, count) for carrier, count in counts if count]
+
+    @cached_property
+    def clamps(self) -> int:
+        """How many clamps hold the part."""
+        return sum(count for carrier, count in self.groups if carrier.on is not None)
+
+    @cached_property
+    def stroke(self) -> Stroke:
+        """What each clamp has to keep; a travel of minus its stroke puts it at its hole."""
+        travel = next((tip.travel for tip in self.tips.values()), None)
+        span = None if travel is None or travel.most is None else (-travel.most, -travel.least)
+        return Stroke(span, None if self.wall is None else self.wall.noun)
+
+    @cached_property
+    def from_lowest(self) -> tuple[str, ...]:
+        """Of columns and rows, those that count from the lowest that is used: rows beside a wall count from there."""
+        if self.wall is not None:
+            return ("column",)
+        return ("column", "row") if self.tips else ()
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The pegs of a fixture, in their order, as messages call them."""
+        total, seen, out = Counter[str](), Counter[str](), list[str]()
+        for carrier, count in self.groups:
+            total[carrier.peg] += count
+        for carrier, count in self.groups:
+            for _ in range(count):
+                seen[carrier.peg] += 1
+                if carrier.is_wall:
+                    out.append(f"the {carrier.noun} at its {'left' if seen[carrier.peg] == 1 else 'right'} end")
+                else:
+                    out.append(
+                        f"the {carrier.peg}" if total[carrier.peg] == 1 else f"{carrier.peg} {seen[carrier.peg]}"
+                    )
+        return tuple(out)
+
+    @property
+    def pegs_wanted(self) -> str:
+        """What the pegs of a fixture are to be."""
+        words = [
+            f"the two ends of the {one.noun}" if one.is_wall else f"{NUMBERS[count]} {one.peg}{'s' * (count > 1)}"
+            for one, count in self.groups
+            if one.on is None
+        ]
+        if self.clamps:
+            words.append("a clamp" if self.clamps == 1 else "two clamps")
+        return f"{', '.join(words[:-1])} and then {words[-1]}"
+
+    @property
+    def same_words(self) -> str:
+        """What is said of a fixture that an earlier one already is."""
+        is_one = self.every or not self.toolkit.needs_pairs
+        return "it is the same as" if is_one else "it has the seat and the directions of"
+
+    @property
+    def slack_words(self) -> str:
+        """What is wrong where the clamping force is none."""
+        if self.clamps:
+            return "the clamp does not push the part"
+        return f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the {self.toolkit.noun} does not clamp"
+
+    @property
+    def wider_words(self) -> str:
+        """What queries there are that a listing also meets."""
+        if not self.clamps:
+            return "a smaller gap or contact margin, a larger opening, more rows, fewer restrictions or more types"
+        more = "directions" if self.clamps == 1 else "pairs of directions"
+        return f"a smaller contact margin, a longer stroke, more columns or rows, fewer restrictions or more {more}"
+
+    @property
+    def largest_radius(self) -> float:
+        """Of pegs and tips, in mm."""
+        return max(one.peg_radius for one in self.carriers.values())
+
+    def travels(self, fixture: Fixture) -> dict[str, float]:
+        """How far in mm what moves has travelled, by what each travel is called."""
+        if fixture.pair is not None:
+            named = zip(self.names[-2:], fixture.pair.travels, strict=True)
+            return {f"place of the tip of {name} on its line": travel for name, travel in named}
+        return {f"place of {self.names[-1]}'s tip on its line" if self.clamps else "opening": fixture.jaw_separation}
+
+    def has_its_pegs(self, fixture: Fixture) -> bool:
+        """Whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
+        directions, carriers = directions_of(fixture), self.carriers.values()
+        pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
+        still = [c.name for c, count in zip(carriers, pegs, strict=False) for _ in range(count) if c.on is None]
+        wanted = [*still, *(f"clamp {direction}" for direction in directions)]
+        there, order = [peg.carrier for peg in fixture.pegs], sorted if len(self.lattices) > 1 else list
+        return len(directions) == self.clamps and order(there) == order(wanted)
+
+    def taken(self, fixture: Fixture) -> Fixture:
+        """A fixture as it is read, with the travels that put the tips of clamps where they are written.
+
+        Raises
+        ------
+        InputError
+            When it is of another type, or stands on something else.
+        """
+        types = self.toolkit.types
+        clamps = 2 if fixture.pair is not None else 1 if fixture.direction is not None else 0
+        if fixture.type not in types or clamps != self.clamps:
+            raise InputError(f"its type is not {' or '.join(types)}")
+        if not clamps:
+            if any(peg.carrier not in self.carriers for peg in fixture.pegs):
+                raise InputError(f"a peg's {self.lattices[0].noun} is not {' or '.join(self.carriers)}")
+            return fixture
+        moved = [travelled(peg, self.carriers.get(peg.carrier, self.lattices[0])) for peg in fixture.pegs[-clamps:]]
+        pair = None if fixture.pair is None else evolve(fixture.pair, travels=(moved[0], moved[1]))
+        return evolve(fixture, jaw_separation=moved[0], pair=pair)
+
+    def place(self, peg: Peg) -> Point:
+        """Centre of a peg's hole without any travel, in mm."""
+        carrier = self.carriers[peg.carrier]
+        (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
+        return x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
+
+    def way(self, peg: Peg) -> tuple[float, float]:
+        """Unit vector along which a peg moves as its travel grows; (0, 0) of one that stands still."""
+        travel = self.carriers[peg.carrier].travel
+        return (0.0, 0.0) if travel is None else travel.unit
+
+    def contact(self, peg: Peg, side: Side) -> Contact:
+        """The contact of a peg or a tip, round or with a flat, which lies on lines, with a side."""
+        carrier = self.carriers[peg.carrier]
+        body = None if carrier.flat is None else arb(carrier.peg_radius)
+        radius = standoff(side, carrier.peg_radius, carrier.flat)
+        return Contact(self.place(peg), exact_point(*self.way(peg)), side, radius, body=body)
+
+    def contacts(self, fixture: Fixture, outline: Outline) -> list[Contact]:
+        """The contacts of all pegs of a fixture, in their order; each of two clamps has a travel of its own."""
+        sides = [outline.faces[peg.face] for peg in fixture.pegs]
+        ends: Iterator[WallContact] = iter(())
+        if self.wall is not None:
+            theta = arb(fixture.pose.theta_deg) * arb.pi() / 180
+            pose = Pose.of(theta, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
+            on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
+            ends = iter(wall_contacts(on_wall, outline, pose))
+        out: list[Contact] = []
+        for peg, side in zip(fixture.pegs, sides, strict=True):
+            out.append(next(ends) if peg.is_on_wall else self.contact(peg, side))
+        if fixture.pair is not None:
+            out[-1] = evolve(out[-1], travel=1)
+        return out
+
+    def shared_faces(self, fixture: Fixture, contacts: Sequence[Contact]) -> list[int]:
+        """Numbers of what the pegs touch: the same for those that an error of a face moves alike.
+
+        A corner on a wall is off by itself.
+        """
+        out = [peg.face for peg in fixture.pegs]
+        for place, contact in enumerate(contacts):
+            if isinstance(contact, WallContact):
+                out[place] = contact.faces[0] if len(contact.faces) == 1 else -1 - place
+        return out
+
+    def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
+        """What is wrong with the pegs, their holes or lines, and the places x, y written for them."""
+        yield from self.asked_findings(fixture)
+        yield from self.number_findings(fixture)
+        moved = list(self.travels(fixture).values())
+        for k, (name, peg) in enumerate(zip(self.names, fixture.pegs, strict=False)):
+            if peg.is_on_wall:
+                continue
+            if direction_of(peg):
+                yield from self.clamp_place_findings(name, peg)
+            travel = moved[1] if len(moved) > 1 and k == len(fixture.pegs) - 1 else moved[0]
+            noun = "line" if direction_of(peg) else "hole"
+            for axis, written, hole, way in zip("xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True):
+                off = abs(hole + arb(travel) * way - written)
+                if not off < AGREEMENT:
+                    words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
+                    yield from rule(AGREEMENT - off, words, words)
+
+    def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
+        """Whether a fixture has the pegs of its type, in different holes, and directions that are asked for, in order."""
+        directions, pegs = directions_of(fixture), fixture.pegs
+        if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
+            first = self.lattices[0]
+            count = sum(peg.carrier == first.name for peg in pegs)
+            words = f"{count} of its {len(pegs)} pegs are on the {first.title}, which is not type {fixture.type}"
+            yield Finding(True, words)
+        elif not self.has_its_pegs(fixture):
+            yield Finding(True, f"its pegs are not {self.pegs_wanted}")
+        if fixture.direction not in [one.direction for one in self.toolkit.arrangements]:
+            moves = "its clamp moves" if self.clamps == 1 else "its clamps move"
+            yield Finding(True, f"{moves} in {' and '.join(directions)}, which is not asked for")
+        lines = [(list(WAYS).index(direction_of(c)), line_of(c), c.face) for c in pegs if direction_of(c)]
+        if lines != sorted(lines):
+            yield Finding(True, "its clamps are not in the order of directions, lines and faces")
+        for carrier in self.lattices:
+            holes = [(peg.column, peg.row) for peg in pegs if peg.carrier == carrier.name]
+            if len(set(holes)) < len(holes):
+                yield Finding(True, f"two {carrier.peg}s are in the same hole")
+
+    def number_findings(self, fixture: Fixture) -> Iterator[Finding]:
+        """Whether there are the columns and rows in which the pegs stand, counted as they are to be."""
+        standing = [pair for pair in zip(self.names, fixture.pegs, strict=False) if not pair[1].is_on_wall]
+        for noun in ("column", "row"):
+            numbers = []
+            for name, peg in standing:
+                if not self.is_counted(peg, noun):
+                    continue
+                base = self.carriers[self.carriers[peg.carrier].on or peg.carrier]
+                place, count = getattr(peg, noun), getattr(base, f"{noun}s")
+                numbers.append(place)
+                if place < 0 or (count is not None and place >= count):
+                    known = f"{noun}s from 0 upward" if count is None else f"{count} {noun}s"
+                    if len(self.lattices) > 1:
+                        known = known.removesuffix(" columns")
+                    yield Finding(True, f"{name} is in {noun} {place} of a {base.noun} with {known}")
+            if noun in self.from_lowest and min(numbers) > 0:
+                yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
+
+    def is_counted(self, peg: Peg, noun: str) -> bool:
+        """Whether a column or a row of a peg is one of the lattice: of a clamp without a hole that of its line alone."""
+        return not direction_of(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
+
+    def clamp_place_findings(self, name: str, clamp: Peg) -> Iterator[Finding]:
+        """Whether a clamp is told by its hole, or by its line where it is in none."""
+        is_bolted = self.stroke.span is not None
+        place = clamp_place(self.lattices[0].name, direction_of(clamp), clamp.column, clamp.row, is_bolted)
+        if clamp.place != place:
+            told = "hole in which it is bolted" if is_bolted else "line alone, since it has no travel"
+            yield Finding(True, f"{name} is not told by the {told}")
+        if not is_bolted and (clamp.column if is_along_x(clamp) else clamp.row):
+            yield Finding(True, f"the place of {name} on its line is not counted from the plate's first hole")
+
+    def standing_findings(
+        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, outline: Outline
+    ) -> Iterator[Finding]:
+        """Whether everything can stand as it does at a proven pose."""
+        named = list(zip(self.names, fixture.pegs, contacts, strict=True))
+        if self.wall is not None:
+            ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
+            yield from flush_findings(self.wall.noun, ends, pose, outline)
+        for jaw in self.lattices:
+            if jaw.travel is not None:
+                yield from opening_findings(jaw, pose.travels[0])
+                if self.wall is not None:
+                    lowest = min(peg.row for peg in fixture.pegs if peg.carrier == jaw.name)
+                    yield from nearest_row_findings(jaw, lowest, pose.travels[0])
+        locators = [(name, contact) for name, peg, contact in named if peg.carrier == self.lattices[0].name]
+        clamps = [(name, peg, contact) for name, peg, contact in named if direction_of(peg)]
+        for name, _, clamp in clamps:
+            yield from self.stroke.findings(name, locators, clamp, pose, outline)
+        if len(clamps) > 1:
+            yield from self.stroke.apart_findings(clamps[0][2], clamps[1][2], pose)
+        elif self.stroke.span is not None:
+            ((name, peg, _),) = clamps
+            noun, axis = ("column", 0) if is_along_x(peg) else ("row", 1)
+            numbers = [getattr(one, noun) for one in fixture.pegs if one.carrier == self.lattices[0].name]
+            if self.fits(noun, [*numbers, getattr(peg, noun) - round(self.way(peg)[axis])]):
+                yield from self.stroke.nearer_findings(name, -pose.travels[0], self.lattices[0].pitch[axis])
+
+    def fits(self, noun: str, numbers: Sequence[int]) -> bool:
+        """Whether what stands still has columns or rows of such numbers, however it is shifted."""
+        count, lowest = getattr(self.lattices[0], f"{noun}s"), min(numbers) if noun in self.from_lowest else 0
+        return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
+
+    def crowding(self, fixture: Fixture) -> str:
+        """What stands in a blocked hole or overlaps, as it is written, in one sentence without a full stop."""
+        pegs = [(peg, self.carriers[peg.carrier]) for peg in fixture.pegs]
+        for name, (peg, carrier) in zip(self.names, pegs, strict=True):
+            blocked = [holes for holes in carrier.blocked if holes.column == peg.column]
+            if any(holes.row in (None, peg.row) for holes in blocked):
+                return f"{name} stands in {peg.hole}, which is blocked"
+        bodies = [(k, peg, c.body_radius) for k, (peg, c) in enumerate(pegs, 1) if c in self.lattices]
+        for (i, one, radius), (k, other, reach) in combinations(bodies, 2):
+            if hypot(one.x - other.x, one.y - other.y) < radius + reach - AGREEMENT:
+                return f"the bodies of pegs {i} and {k} overlap"
+        return ""

@@ -1,0 +1,31 @@
+"""A value of each field of a toolkit, and the fields of a kind with one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from workhold.fixels.fields import table_of
+
+# A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
+VALUES: dict[str, tuple[Any, Any]] = {
+    "pitch": ((16.0, 18.0), "16,18"),
+    "columns": (3, "3"),
+    "peg_radius": (2.5, "2.5"),
+    "body_radius": (3.5, "3.5"),
+    "flat": ((2.25, 1.0), "2.25,1"),
+    "rows": (7, "7"),
+    "blocked": (["L-B3", "R-A"], ["L-B3", "R-A"]),
+    "min_gap": (13.0, "13"),
+    "max_opening": (61.0, "61"),
+    "row_offset": (-4.5, "-4.5"),
+    "clamps": (2, "2"),
+    "clamp_radius": (5.5, "5.5"),
+    "travel": ((11.0, 41.0), "11,41"),
+    "directions": ([("-x", "-y")], "-x:-y"),
+    "wall_offset": (9.5, "9.5"),
+}
+
+
+def given(kind: str) -> dict[str, Any]:
+    """A value for each field of a kind."""
+    return {row.name: VALUES[row.name][0] for row in table_of(kind).fields}
