@@ -32,7 +32,7 @@ from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.stroke import WAYS, Stroke, clamp_place
-from workhold.verification.seat import Push, closure_margin, ratio_of
+from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, Standing
 from workhold.verification.undecided import undecided_faults
 
@@ -351,6 +351,31 @@ def push(taken: tuple[float, float, float], share: float = 1.0) -> Push:
     """A clamp of which the locators take up so much."""
     a, b, c = (arb(value) for value in taken)
     return Push((a, b, c), arb(share))
+
+
+@pytest.mark.parametrize(
+    ("apart", "first", "words"),
+    [
+        (1e-5, push((0.5, -0.5, 0.5)), ""),
+        (
+            1e-7,
+            push((0.5, -0.5, 0.5)),
+            "the locators do not fix the pose: their wrenches have a determinant of only 1e-07",
+        ),
+        (40.0, push((9e5, -0.5, 0.5)), ""),
+        (40.0, push((2e6, -0.5, 0.5)), "clamp 1 presses a locator with 2e+06 times its own force"),
+        (40.0, push((0.5, -0.5, 0.5), 1e-7), "clamp 1 does not push the part"),
+        (40.0, push((0.5, 0.5, 0.5)), "clamp 1 holds the part without the other"),
+    ],
+)
+def test_what_clamps_may_do_at_a_seat(apart: float, first: Push, words: str) -> None:
+    """Two locators so far apart below the part and one beside it, whose determinant that is; another clamp keeps all."""
+    points = [(arb(0), arb(0)), (arb(apart), arb(0)), (arb(0), arb(5))]
+    normals = [(arb(0), arb(1)), (arb(0), arb(1)), (arb(1), arb(0))]
+    seat, second = LocatorWrenches(points, normals), push((0.5, -0.5, 0.5))
+    balance = SeatBalance(points, normals, seat, (first, second), ratio_of(first, second))
+    found = [finding.reason for finding in balance.push_findings(1.0)]
+    assert found == [] if not words else words in found[0]
 
 
 def test_ratio_and_margin_in_closed_form() -> None:
