@@ -11,7 +11,7 @@ import pytest
 from workhold import Fixture, Pose, Result, Vise
 from workhold.verification import repeats
 from workhold.verification.repeats import Key, Place, Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:
@@ -50,7 +50,7 @@ def moved(fixture: Fixture, distance: float) -> Fixture:
 
 @pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
 def test_the_same(widget_result: Result, again: object) -> None:
-    seen = Seen(Hardware(widget_result.toolkit))
+    seen = Seen(ToolkitRules(widget_result.toolkit))
     for index, fixture in enumerate(widget_result):
         assert seen.add(index, fixture) is None
     for index, fixture in enumerate(widget_result):
@@ -59,7 +59,7 @@ def test_the_same(widget_result: Result, again: object) -> None:
 
 def test_not_the_same(widget_result: Result) -> None:
     """Another place of the workpiece, or another opening with the same left pegs and pose."""
-    seen = Seen(Hardware(widget_result.toolkit))
+    seen = Seen(ToolkitRules(widget_result.toolkit))
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
@@ -88,7 +88,7 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
     monkeypatch.setattr(repeats, "patterns", one_pattern)
-    seen = Seen(Hardware(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
+    seen = Seen(ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]
