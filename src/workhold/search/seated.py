@@ -1,9 +1,9 @@
 """The first fixtures of a list with their seating, ordered anew by it.
 
-A search finds and ranks fixtures by figures that do without seating. Of the first of them, as many as a query asks, the
-seating is worked out, each pattern of pegs once; then they are ordered by the query's ranking, in which the warnings of the
-seating count as those of quality do. What is equal keeps the order that it had. Those whose seating is not as asked are
-left out, and so are then all whose seating was not worked out.
+A search finds and ranks fixtures by figures that do without seating. Of the first of them, as many as a query
+asks, the seating is worked out, each pattern of pegs once; then they are ordered by the query's ranking, in
+which the warnings of the seating count as those of quality do. What is equal keeps the order that it had.
+Those whose seating is not as asked are left out, and so are then all whose seating was not worked out.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ class Sink(Protocol):
     def folder(self) -> Path: ...
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other; fewer when somebody asks to
-        stop."""
+        """Takes a result and its fixtures, so many, best first, in tables one after the other; fewer when
+        somebody asks to stop."""
 
 
 @frozen
@@ -77,7 +77,7 @@ def seated_answer(
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Result:
-    """Answer a query, and work out the seating of the first fixtures if it asks for that.
+    """Answers a query, and works out the seating of the first fixtures if it asks for that.
 
     Parameters
     ----------
@@ -107,11 +107,13 @@ def deliver_seated(
     progress: Progress | None,
     cancel: Event | None,
 ) -> Result:
-    """Hand over what a query with seating asks for, as :func:`seated_answer` finds it; the result comes without fixtures.
+    """Delivers what a query with seating asks for, as :func:`seated_answer` finds it; the result comes
+    without fixtures.
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its fixtures.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its
+        fixtures.
 
     Raises
     ------
@@ -130,12 +132,13 @@ def deliver_seated(
 
 
 def is_put_in_by_hand(query: Query) -> bool:
-    """Whether the part is pushed against its locators by hand, as with two clamps, of which none brings it home."""
+    """Whether the part is pushed against its locators by hand, as with two clamps, of which none brings it
+    home."""
     return query.toolkit.needs_pairs
 
 
 def refuse_unasked(query: Query) -> None:
-    """Refuse what cannot be asked of seating.
+    """Refuses what cannot be asked of seating.
 
     Raises
     ------
@@ -152,7 +155,8 @@ def refuse_unasked(query: Query) -> None:
 
 
 def put_in_by_hand(result: Result, query: Query) -> Result:
-    """A result of two clamps as that of the query with seating: the same fixtures, and how the part is put in."""
+    """A result of two clamps as that of the query with seating: the same fixtures, and how the part is put
+    in."""
     notes = (*result.reasons, by_hand_note()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
@@ -252,7 +256,7 @@ class SeatedSink:
         return self.sink.folder
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other."""
+        """Takes a result and its fixtures, so many, best first, in tables one after the other."""
         if is_put_in_by_hand(self.work.query):
             self.sink.receive(put_in_by_hand(result, self.work.query), listed, tables)
             return

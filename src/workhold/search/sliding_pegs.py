@@ -1,9 +1,10 @@
 """Where two round pegs of a lattice that slides towards a wall touch a part that lies flush on it.
 
 The hull edge on the wall fixes the angle and the height of the part. What is left is where the first peg's
-centre is, u along the wall and v above it: a crossing of its offset curve with that of the second peg, moved
-back by the difference of their holes. Two lines have one crossing at most, a line and an arc or two arcs two.
-Where the curves run along each other both pegs have one normal, and with the wall's they never close.
+centre is, u along the wall and v above it. It is at a crossing of its offset curve with that of the second
+peg, moved back by the difference of their holes. Two lines have one crossing at most, a line and an arc or
+two arcs two. Where the curves run along each other both pegs have one normal, and with the wall's they never
+close.
 
 Bounds of the error are as in ``search.pin_contacts``: curves are off by a few ``off`` mm, a crossing by that
 over the sine of the angle at which they cross, and a normal by ``turn`` and, on an arc, by that over the
@@ -81,9 +82,10 @@ def steps_between(jaw: Carrier, longest: float) -> IntArray:
 def sliding_pegs(
     lying: PartOnWall, chosen: tuple[int, int], jaw: Carrier, steps: IntArray, margin: float
 ) -> Iterator[SlidingPegs]:
-    """Contacts of two pegs in holes of a jaw, at least nearly ``margin`` mm inside the ends of their features
-    and at least nearly as far from the wall as the jaw may come, some at a time; at a tangent joint with both
-    features.
+    """Contacts of two pegs in holes of a jaw, some at a time; at a tangent joint with both features.
+
+    They are at least nearly ``margin`` mm inside the ends of their features, and at least nearly as far from
+    the wall as the jaw may come.
 
     Parameters
     ----------
